@@ -65,6 +65,9 @@ ENGINE = option(
     completion(lambda: ENGINES),
 )
 NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
+SECTION = option(
+    "--section", "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.", "WORD"
+)
 AUDIT = option(
     "--audit/--no-audit",
     "At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
@@ -94,6 +97,7 @@ def command(
     level: Annotated[str | None, LEVEL] = None,
     engine: Annotated[str, ENGINE] = AUTO,
     no_transits: Annotated[bool, NO_TRANSITS] = False,
+    section: Annotated[list[str] | None, SECTION] = None,
     audit: Annotated[bool | None, AUDIT] = None,
     confirm: Annotated[str | None, CONFIRM] = None,
     no_confirm: Annotated[bool, NO_CONFIRM] = False,
@@ -117,6 +121,7 @@ def command(
         "--digits": ("run.digits", digits),
         "--level": ("run.level", level and chosen("--level", level, LEVELS)),
         "--no-transits": ("run.transits", "false" if no_transits else None),
+        "--section": ("run.sections", ",".join(section) if section else None),
     }
     proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
     proving |= {"--no-confirm": no_confirm, "--function": function, "--no-function": function is False}

@@ -8,7 +8,7 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -22,16 +22,17 @@ from ..numbers.function import GoldenFunction, States
 from ..numbers.precision import Array
 from ..scenes.fields import Level
 from ..scenes.scene import Scene, parse_scene
+from ..scenes.sections import WORD
 from ..scenes.shipped import seals
 from .function import FunctionRecord, evaluated, read_function
 from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
 from .place import RANGES, golden_folder
-from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
+from .sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER, Sheet
 
 MAX_MANIFEST = 1 << 20  # bytes
-HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
+HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER, "sections": SECTIONS_HEADER}
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
-_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
+_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND, "section": WORD}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
 _HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
 
@@ -162,7 +163,9 @@ def _table(name: str, text: str, manifest: Manifest) -> Sheet:
     """Return a table from its text; ValueError says what is wrong with it."""
     kind = name.partition(".")[0]
     patterns = _patterns(name, kind, manifest)
-    lines, header, count = io.StringIO(text), tuple(patterns), getattr(manifest.counts, kind)
+    counts = manifest.sections.counts if kind == "sections" and manifest.sections else None
+    count = getattr(manifest.counts, kind) if counts is None else sum(counts.values())
+    lines, header = io.StringIO(text), tuple(patterns)
     if next(lines, "") != ",".join(header) + "\n":
         raise ValueError(f"the header must be {','.join(header)}")
     if text.count("\n") != count + 1 or not text.endswith("\n"):
@@ -180,6 +183,7 @@ def _table(name: str, text: str, manifest: Manifest) -> Sheet:
 def _patterns(name: str, kind: str, manifest: Manifest) -> dict[str, str]:
     """Return the pattern of each column's numbers, in the order of the columns."""
     doubles, decimals = name.endswith(".binary64.csv"), manifest.decimals.get(kind, {})  # type: ignore[call-overload]
+    decimals = manifest.sections.decimals if kind == "sections" and manifest.sections else decimals
     patterns = {}
     for column in HEADERS[kind]:
         places = decimals.get(column)
@@ -254,6 +258,7 @@ class Golden(GridColumns):
         grid: `grid.csv`.
         transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically zero.
         function: the golden function, None if it has none; `at` serves all the same.
+        sections: the rows of `sections.csv` of each section that the scene asks for, by its word.
     """
 
     path: Path
@@ -262,6 +267,7 @@ class Golden(GridColumns):
     grid: PrintedTable
     transits: PrintedTable
     function: GoldenFunction | None = None
+    sections: Mapping[str, PrintedTable] = field(default_factory=dict)
 
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, with their bounds.
@@ -322,4 +328,12 @@ def load(name: str | Path) -> Golden:
         printed = files.tables["grid.csv"], files.tables.get("transits.csv", none)
         tables = (printed[0], bounds.grid), (printed[1], bounds.transits)
     grid, transits = (PrintedTable(*table) for table in tables)
-    return Golden(files.folder, files.manifest, files.scene, grid, transits, function)
+    return Golden(files.folder, files.manifest, files.scene, grid, transits, function, _sections(files))
+
+
+def _sections(files: Files) -> dict[str, PrintedTable]:
+    if (sheet := files.tables.get("sections.csv")) is None or files.manifest.sections is None:
+        return {}
+    said = files.manifest.sections
+    rows = {word: [row for row in sheet.rows if row[0] == word] for word in said.counts}
+    return {word: PrintedTable(replace(sheet, rows=own), said.bounds) for word, own in rows.items()}

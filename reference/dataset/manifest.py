@@ -30,7 +30,7 @@ Decimal = Annotated[str, Field(pattern=NUMBER), BeforeValidator(_bound_as_text)]
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 Name = Annotated[str, Field(max_length=400)]
 Text = Annotated[str, Field(max_length=20_000)]
-Kind = Literal["grid", "transits"]  # of a table
+Kind = Literal["grid", "transits", "sections"]  # of a table
 Count = Annotated[int, Field(ge=0, le=10**10)]
 Decimals = Annotated[int, Field(ge=0, le=2000)]  # digits after the point
 FileName = Literal[
@@ -42,6 +42,7 @@ FileName = Literal[
     "vectors.json",
     "function.json",
     "function.f64",
+    "sections.csv",
 ]
 ALWAYS, OPTIONAL = get_args(FileName)[:2], get_args(FileName)[2:]
 FUNCTION: tuple[FileName, FileName] = ("function.json", "function.f64")
@@ -120,6 +121,18 @@ class Possible(Part):
     parity: Literal["odd", "even", "unknown"]
 
 
+class SectionsRecord(Part):
+    """What `sections.csv` holds: digits and largest bound of each column; of each section its passages.
+
+    `counts` are its rows, and `possible` intervals in which the proof could not decide.
+    """
+
+    decimals: dict[Name, Decimals]
+    bounds: dict[Name, Decimal]
+    counts: dict[Name, Count]
+    possible: dict[Name, list[Possible]]
+
+
 class EnclosureRecord(Part):
     """The proof: its method, size and largest radii, and the bits to which heyoka's run agrees with it."""
 
@@ -178,6 +191,12 @@ class Manifest(Part):
     generator: dict[Name, Name]
     command: Text
     files: dict[FileName, FileRecord]
+    sections: SectionsRecord | None = None  # where the scene asks for some; else it does not stand there
+
+    def text(self) -> str:
+        """Return the text of the file, without sections where there are none."""
+        document = self.model_dump(exclude=None if self.sections else {"sections"})
+        return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:
@@ -203,6 +222,10 @@ class Manifest(Part):
             "files: transits.csv belongs to a dataset with transits": not transits
             or "transits.csv" in self.files
             or self.alone,
+            "sections: they belong to a scene that asks for some": bool(self.sections)
+            == ("sections" in self.scene.get("run", ())),
+            "files: sections.csv belongs to a dataset with sections": ("sections.csv" in self.files)
+            == (bool(self.sections) and not self.alone),
             "files: a golden function has two files, and a proof": (FUNCTION[0] in self.files)
             == (FUNCTION[1] in self.files)
             <= bool(self.enclosure),
@@ -227,7 +250,8 @@ class Manifest(Part):
 
     def bound(self, table: Kind, column: str) -> Fraction:
         """Return the bound on a column's printed numbers, the largest of all rows."""
-        return Fraction(getattr(self.bounds, table)[column])
+        bounds = self.sections.bounds if table == "sections" and self.sections else getattr(self.bounds, table)
+        return Fraction(bounds[column])
 
 
 def differences(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:

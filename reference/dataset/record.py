@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -30,6 +31,7 @@ from .manifest import (
     Manifest,
     Possible,
     RunRecord,
+    SectionsRecord,
 )
 from .place import changes, changes_in, dataset_id, is_of_shipped_scene, shipped_scene
 from .sheets import Sheet, column_bounds, scene_inputs
@@ -78,7 +80,13 @@ class Making:
 
 
 def manifest_of(
-    solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None, *, tables: bool = True
+    solution: Solution,
+    grid: Sheet,
+    transits: Sheet,
+    name: str | None = None,
+    *,
+    tables: bool = True,
+    sections: Sheet | None = None,
 ) -> Manifest:
     """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id.
 
@@ -105,20 +113,39 @@ def manifest_of(
         bounds=_bounds(solution, grid, transits),
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
         transits=completeness(scene, solution.zeros is None, bool(solution.possible)),
-        possible=[
-            Possible.model_validate(
-                # rounded outwards, but not beyond the end of the run, which the last row prints exactly
-                {"from_s": outward(low, -1), "to_s": min(outward(high, 1), end, key=Fraction), "parity": parity}
-            )
-            for low, high, parity in solution.possible
-        ],
+        possible=_possible(solution.possible, end),
         run=RunRecord.model_validate(run),
         cross_checks=[CrossCheckRecord.model_validate(check) for check in solution.checks],
         enclosure=None if proof is None else _enclosure(proof),
         generator=generator(),
         command=command(scene, name, options),
         files={},
+        sections=None if sections is None else _sections(solution, sections),
         **following(scene, run.formulation, run.number, grid),
+    )
+
+
+def _possible(intervals: Iterable[tuple[Fraction, Fraction, str]], end: str) -> list[Possible]:
+    """Return intervals rounded outwards, but not beyond the end of the run, which the last row prints exactly."""
+    return [
+        Possible.model_validate(
+            {"from_s": outward(low, -1), "to_s": min(outward(high, 1), end, key=Fraction), "parity": parity}
+        )
+        for low, high, parity in intervals
+    ]
+
+
+def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
+    """Return what a manifest says of `sections.csv`."""
+    named, bounds, end = solution.sections.items(), dict[str, str](), fixed_decimal(solution.times[-1], 2000)
+    for _, passages in named if sheet.rows else ():
+        own = column_bounds(passages.table, sheet.decimals)
+        bounds = {column: max(bounds.get(column, "0"), bound, key=Fraction) for column, bound in own.items()}
+    return SectionsRecord(
+        decimals=sheet.decimals,
+        bounds=bounds,
+        counts={word: len(passages.table) for word, passages in named},
+        possible={word: _possible(passages.possible, end) for word, passages in named},
     )
 
 
@@ -158,7 +185,8 @@ def command(scene: Scene, name: str, options: str) -> str:
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
     parts += [options]
     parts += [] if run.transits else ["--no-transits"]
-    own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=")
+    parts += [word for section in run.sections or () for word in ("--section", f"'{section}'")]
+    own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "run.sections=")
     shipped = shipped_scene(scene)
     changed = changes_in(name) if shipped is scene else changes(scene, shipped)
     changed = [change for change in changed if not change.startswith(own_option)]

@@ -12,7 +12,16 @@ from ..solver.solution import SAMPLED, Solution
 from .function import FunctionRecord
 from .manifest import ALWAYS, FUNCTION, MANIFEST, Content, FileRecord, Manifest
 from .record import CONFIRM, Making, manifest_of
-from .sheets import GRID_HEADER, Sheet, binary64_sheet, by_field, grid_sheet, nearest_doubles, transits_sheet
+from .sheets import (
+    GRID_HEADER,
+    Sheet,
+    binary64_sheet,
+    by_field,
+    grid_sheet,
+    nearest_doubles,
+    sections_sheet,
+    transits_sheet,
+)
 from .vectors import vectors
 
 MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles
@@ -46,7 +55,9 @@ def render(solution: Solution, name: str | None = None, *, tables: bool = True) 
         if len(transits.rows) <= MOST_DOUBLES:
             of_transits = nearest_doubles(solution.transits, transits)
             sheets["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
-    record = manifest_of(solution, grid, transits, name, tables=tables)
+    if solution.scene.run.sections:
+        sheets["sections.csv"] = sections_sheet(solution)
+    record = manifest_of(solution, grid, transits, name, tables=tables, sections=sheets.get("sections.csv"))
     contents: dict[str, Content] = {}
     if tables:
         contents |= {name: sheet.csv() for name, sheet in sheets.items()} | derived_texts(record, sheets)
@@ -79,6 +90,10 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
             from ..enclosure.function import check_function
 
             check_function(files[FUNCTION[0]], files[FUNCTION[1]], proof.function, proof.proved)
+        if proof and said.get("sections"):
+            from ..enclosure.sections import check_sections
+
+            check_sections(files, proof.sections, proof.proved)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 
@@ -157,10 +172,12 @@ def _accuracy(manifest: Manifest, transits: Sheet | None) -> list[str]:
 
 
 def _how_to(manifest: Manifest) -> list[str]:
+    counts = manifest.sections.counts if manifest.sections else {}
     return [
         "",
         "How to score: compare your t, x, y, z with grid.csv; grid.binary64.csv holds the nearest doubles,",
         "also as hexfloats. A program that reads its inputs as doubles solves the problem whose inputs are",
         f"read as binary64; this dataset reads them as {manifest.inputs}.",
+        *(f"Passages in sections.csv: {count} of {word}" for word, count in counts.items()),
         "",
     ]

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
-from ..numbers.columns import GRID, TRANSITS
+from ..numbers.columns import GRID, STATE, TRANSITS
 from ..numbers.precision import fixed_decimal, rounded_up
 from ..numbers.table import Integers, Table, integers
 from ..scenes.scene import Scene
-from ..solver.solution import Solution, exact_decimals, grid_decimals, transit_decimals
+from ..scenes.sections import SEPARATOR
+from ..solver.solution import Solution, exact_decimals, grid_decimals, section_decimals, transit_decimals
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
+SECTIONS_HEADER = ("section", "k", "t", "direction", *STATE, "bound")
 NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}  # the decimals with a fixed number of digits, also doubles
 
 
@@ -62,15 +65,28 @@ def grid_sheet(solution: Solution) -> Sheet:
 
 def transits_sheet(solution: Solution) -> Sheet:
     """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
-    table = solution.zeros
-    if table is None:
+    if solution.zeros is None:
         return Sheet(TRANSITS_HEADER, [], {})
     decimals = transit_decimals(solution)
+    return Sheet(TRANSITS_HEADER, _zeros(solution.zeros, solution.directions, decimals), decimals)
+
+
+def sections_sheet(solution: Solution) -> Sheet:
+    """Return `sections.csv`: every passage of each section, in the order of the scene's words."""
+    decimals, rows = section_decimals(solution), list[tuple[str, ...]]()
+    for word, passages in solution.sections.items():
+        rows += [(word, *row) for row in _zeros(passages.table, passages.directions, decimals)]
+    return Sheet(SECTIONS_HEADER, rows, decimals)
+
+
+def _zeros(table: Table, directions: Sequence[int], decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
+    """Return the rows of zeros: number, time, direction, the other columns, and the bound on the time."""
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
-    printed, rows = table.printed(decimals), []
-    for k, (row, error, direction) in enumerate(zip(printed, table.bound("t"), solution.directions, strict=True), 1):
-        rows.append((str(k), row[0], f"{direction:+d}", *row[1:], rounded_up(error + half_unit)))
-    return Sheet(TRANSITS_HEADER, rows, decimals)
+    rows = zip(table.printed(decimals), table.bound("t"), directions, strict=True)
+    return [
+        (str(k), row[0], f"{direction:+d}", *row[1:], rounded_up(error + half_unit))
+        for k, (row, error, direction) in enumerate(rows, 1)
+    ]
 
 
 def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Sheet:
@@ -113,7 +129,10 @@ def by_field(inputs: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
     """Return all inputs of a scene as strings, section by section."""
     document = scene.model_dump(exclude_none=True, include={"pendulum", "site", "release", "run"})
-    return {
-        section: {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in table.items()}
-        for section, table in document.items()
-    }
+
+    def text(value: Any) -> str:
+        if isinstance(value, tuple):
+            return SEPARATOR.join(value)
+        return str(value).lower() if isinstance(value, bool) else str(value)
+
+    return {section: {key: text(value) for key, value in table.items()} for section, table in document.items()}

@@ -7,10 +7,10 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
-from .balls import SHORT, ball, cross, demand, interval
+from .balls import SHORT, Vector, ball, cross, demand, interval
 from .bound import SceneBalls, state
 from .guess import around_zero
-from .shapes import Covered, EnclosedTransit, Interval, Leaf
+from .shapes import Covered, EnclosedTransit, Leaf
 
 MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
 
@@ -26,6 +26,7 @@ class Slope:
     def __init__(self, covered: Covered) -> None:
         self.covered, (piece, tube) = covered, covered
         self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
+        self.slow, self.flat = piece.balls.slow, piece.balls.flat
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> Any:
@@ -42,25 +43,29 @@ class Slope:
         k, bend = self.piece.k, [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
         return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
 
+    def row(self, s: arb) -> Vector:
+        """Return x, y, z, vy and ax over the length at a transit; xdot, the velocity's first component, is 0."""
+        turned, h, (r, v) = self.piece.balls.turned, self.piece.k.h, state(self.covered, s, 1)
+        return [*turned(r, -1), turned([0, *v], -1)[1] / h, self.at(1, s) / h**2]
+
 
 class Scan:
     """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8)."""
 
-    def __init__(self, balls: SceneBalls) -> None:
-        self.balls, self.left, self.time, self.leaves = balls, 0, Fraction(0), 0
+    def __init__(self, balls: SceneBalls, slope: Any = Slope, found: Any = EnclosedTransit) -> None:
+        self.balls, self.left, self.time, self.leaves, self.slope = balls, 0, Fraction(0), 0, slope
         self.end: tuple[Slope, arb] | None = None
-        self.found, self.cluster = list[EnclosedTransit](), list[Leaf]()
+        self.kind, self.found, self.cluster = found, list[Any](), list[Leaf]()
 
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
         piece = covered.piece
         demand(piece.begin == self.time and piece.balls is self.balls, "steps must join, and be of one scene")
         with ctx.workprec(self.balls.prec):
-            slope, low, high = Slope(covered), ball(piece.step.low), ball(piece.step.high)
+            slope, low, high = self.slope(covered), ball(piece.step.low), ball(piece.step.high)
             self.left = self.left if self.time else sign(slope.at(0, low))
             self.end, self.time, self.leaves = (slope, high), piece.end, 0
-            ends = [low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]
-            for part in pairwise(ends):
+            for part in pairwise([low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]):
                 self._sort(slope, *part, 2)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
@@ -72,9 +77,9 @@ class Scan:
             rate = slope.at(1, whole) if depth < 4 else slope.rate(whole)
             speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
             way, bend = sign(speed), sign(rate)
-            if not way and self.balls.slow and not (self.left or self.cluster):
+            if not way and slope.slow and not (self.left or self.cluster):
                 # this is the first leaf: from rest, xdot takes the sign of its first derivative that is not 0
-                way = bend or (slope.push(whole) if self.balls.flat else 0)
+                way = bend or (slope.push(whole) if slope.flat else 0)
             elif not way and bend and sign(slope.at(0, low)) == (last := sign(slope.at(0, high))):
                 way = last
         deep = 2 * depth >= self.balls.prec or self.leaves > MOST_LEAVES
@@ -86,7 +91,7 @@ class Scan:
             self._sort(slope, low, middle, depth + 1)
             self._sort(slope, middle, high, depth + 1)
 
-    def finish(self) -> list[EnclosedTransit]:
+    def finish(self) -> list[Any]:
         """Close the cluster that is open at T; return all transits in order."""
         with ctx.workprec(self.balls.prec):
             self._close(sign(self.end[0].at(0, self.end[1])) if self.end else 0)
@@ -103,13 +108,9 @@ class Scan:
         t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
         parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
         way = leaves[0].bend if steady else right if product < 0 else 0
-        self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
-
-    def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
-        turned, parts = self.balls.turned, [(f, f.piece.k.h, s, *state(f.covered, s, 1)) for f, s in touched(leaves, t)]
-        # the velocity's first component, xdot, is 0
-        rows = [[*turned(r, -1), turned([0, *v], -1)[1] / h, f.at(1, s) / h**2] for f, h, s, r, v in parts]
-        return [interval(reduce(arb.union, x) * self.balls.length) for x in zip(*rows, strict=True)]
+        rows = zip(*(slope.row(s) for slope, s in touched(leaves, t)), strict=True)
+        values = (interval(reduce(arb.union, x) * self.balls.length) for x in rows)
+        self.found.append(self.kind(parity, way, interval(t), *values))
 
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:

@@ -57,7 +57,9 @@ def asked(said: Any) -> tuple[Inputs, tuple[Fraction, ...]]:
     numbers |= {kind: tuple(map(exact, RELEASES[kind])), "gravity_is": texts.pop("gravity_is")}
     flat = texts["inverse_flattening"] == "inf"
     inputs = Inputs(**numbers, flattening=Fraction(0) if flat else 1 / exact("inverse_flattening"))
-    demand(texts.keys() <= {"digits", "level", "transits", "inverse_flattening"}, "misprint: unknown inputs")
+    demand(
+        texts.keys() <= {"digits", "level", "transits", "sections", "inverse_flattening"}, "misprint: unknown inputs"
+    )
     count = inputs.t_end // inputs.grid_step + 1
     # doubles may miss t_end by their rounding alone
     count -= 0 < (count - 1) * inputs.grid_step > inputs.t_end - inputs.grid_step / (1 << 30)

@@ -21,7 +21,7 @@ from .bound import Piece, SceneBalls
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
-from .shapes import Proved, ProvedFunction, State
+from .shapes import Proved, ProvedFunction, ProvedSections, State
 from .sums_checked import check_sums
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
@@ -47,6 +47,7 @@ class Enclosure:
     velocity_radius: Fraction  # in m/s
     cpu_s: dict[str, float]  # by part of the work
     function: ProvedFunction | None = None  # the golden function, if it was asked for
+    sections: ProvedSections | None = None  # the same
 
 
 class _TooWide(Exception):
@@ -68,6 +69,7 @@ def enclose(
     method: str | None = None,
     flint_only: bool = False,
     function: bool = False,
+    sections: tuple[str, ...] = (),
 ) -> Enclosure:
     """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
 
@@ -82,6 +84,7 @@ def enclose(
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
         flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
         function: also make the golden function, and bound it.
+        sections: words of sections, whose passages are enclosed as well.
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
@@ -95,7 +98,7 @@ def enclose(
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), radius, transits, progress, flint_only, function)
+            run = _Run(inputs, plan, list(times), radius, transits, progress, flint_only, function, sections)
             return run.prove(approximant)
         except _TooWide as error:
             reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
@@ -137,9 +140,10 @@ class _Run:
         progress: Callable[[float], None] | None,
         flint_only: bool,
         function: bool,
+        sections: tuple[str, ...],
     ) -> None:
         self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
-        self.transits, self.flint_only, self.function = transits, flint_only, function
+        self.transits, self.flint_only, self.function, self.sections = transits, flint_only, function, sections
         self.end = times[-1]
         self.clock = _Clock()
 
@@ -154,7 +158,11 @@ class _Run:
         balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
         course = Course(balls, self.times, columns is not None, self.transits)
-        fit, steps, count, known = None, chain([first], steps), 0, 0
+        fit, steps, count, known, sections = None, chain([first], steps), 0, 0, None
+        if self.sections:
+            from .sections import Sections  # nor one without sections on theirs
+
+            sections = Sections(course, self.sections)
         if self.function:
             from .fit import Fit, on_doubles  # a proof without a function does not rest on its code
 
@@ -177,8 +185,11 @@ class _Run:
         function = fit.finish() if fit else None
         proved = function.proved if function else course.finish()
         self.clock.lap("function" if function else "proof")
+        passages = sections.finish(proved) if sections else None
         position, velocity = self._check_widths(proved.states, self.end, 1, bits)
-        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function)
+        return Enclosure(
+            proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function, passages
+        )
 
     def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""

@@ -23,22 +23,37 @@ State = tuple[Interval, ...]  # x, y, z in m, vx, vy, vz in m/s
 
 
 @dataclass(frozen=True, slots=True)
-class EnclosedTransit:
-    """A single zero of xdot ("one"), or an interval that may hold zeros ("possible"); SI units."""
+class EnclosedZero:
+    """A single zero of xdot or of a section's form ("one"), or an interval that may hold zeros ("possible")."""
 
     parity: str  # "one"; of possible zeros "odd" (so at least one), "even" or "unknown"
-    direction: int  # +1 where xdot goes from - to +, 0 if not known
+    direction: int  # +1 where it goes from - to +, 0 if not known
     t: Interval
     x: Interval
     y: Interval
     z: Interval
-    vy: Interval
-    ax: Interval
 
     @property
     def kind(self) -> str:
         """Kind of transit: "one" where it is proved to be a single zero, else "possible"."""
         return "one" if self.parity == "one" else "possible"
+
+
+@dataclass(frozen=True, slots=True)
+class EnclosedTransit(EnclosedZero):
+    """A zero of xdot; SI units."""
+
+    vy: Interval
+    ax: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class EnclosedPassage(EnclosedZero):
+    """A zero of a section's form; SI units."""
+
+    vx: Interval
+    vy: Interval
+    vz: Interval
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +75,14 @@ class ProvedFunction:
     facts: dict[str, Any]  # what function.json says of its coefficients
     bounds: dict[str, Fraction]  # of what it evaluates to, in m and m/s
     data: bytes  # function.f64
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedSections:
+    """The passages of each section, by its word."""
+
+    proved: Proved  # in the same run
+    passages: dict[str, tuple[EnclosedPassage, ...]]
 
 
 class Box(NamedTuple):

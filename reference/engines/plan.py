@@ -42,6 +42,7 @@ class Plan:
         transits: whether to find the zeros of xdot.
         engine: the name of an engine, as `registry.engines` has them.
         other_steps: whether to take other steps than the engine would: for a run that checks one of the same engine.
+        sections: words of sections whose passages are to be found.
     """
 
     inputs: Inputs
@@ -51,6 +52,7 @@ class Plan:
     transits: bool
     engine: str = "heyoka"
     other_steps: bool = False
+    sections: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,7 @@ class Run:
         terms: elementary operations in the compiled Taylor decomposition.
         compile_s: CPU seconds of compiling.
         cpu_s: CPU seconds of the run without compiling.
+        passages: of each section `columns.SECTION` at each passage, and the signs of the crossings.
     """
 
     plan: Plan
@@ -78,6 +81,7 @@ class Run:
     terms: int
     compile_s: float
     cpu_s: float
+    passages: dict[str, tuple[Table, list[int]]] = field(default_factory=dict, repr=False)
 
     @cached_property
     def tension(self) -> float:
@@ -138,7 +142,6 @@ class Engine(ABC):
             IntegrationError: the integrator stopped, or its transits are in doubt. No numbers then.
         """
 
-    @abstractmethod
     def taylor_steps(
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
     ) -> Generator[TaylorStep, None, Run]:
@@ -152,6 +155,11 @@ class Engine(ABC):
             prec: precision of the run in bits.
             coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits.
         """
+        return self.expanded(self.plan(inputs, prec, times, transits=False), coefficient_bits)
+
+    @abstractmethod
+    def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
+        """Yield the Taylor steps of a planned run in the same way; transits are not looked for."""
 
     @abstractmethod
     def expected_s(self, steps: int, prec: int) -> float:

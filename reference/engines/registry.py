@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
+from time import process_time
 
 from ..errors import InputError
 from ..system.imports import switched_off
@@ -11,6 +13,7 @@ from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
 from .plan import Engine, Pace, Plan, Report, Run
 
+SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
 
 
@@ -61,5 +64,12 @@ def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS) -> Engine:
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
-    """Integrate a plan with its engine; for arguments and errors see `Engine.run`."""
-    return engines()[plan.engine].run(plan, report, pace)
+    """Integrate a plan with its engine; for arguments and errors see `Engine.run`. Sections take a second pass."""
+    engine = engines()[plan.engine]
+    done = engine.run(plan, report, pace)
+    if not plan.sections:
+        return done
+    from .passages import passages
+
+    begun, steps = process_time(), engine.expanded(plan, plan.number.prec + SERIES_BITS)
+    return replace(done, passages=passages(plan, steps), cpu_s=done.cpu_s + process_time() - begun)

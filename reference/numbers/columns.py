@@ -20,6 +20,7 @@ STATE = POSITION + VELOCITY
 RUN = (*STATE, "ax")  # an engine's results at each output time, and after t at each transit
 
 GRID = STATE  # of grid.csv, after t
+SECTION = ("t", *STATE)  # of sections.csv, beside section, number, direction and bound
 TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
 
 UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}  # of the columns of each kind

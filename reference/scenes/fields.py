@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from .inputs import GravityIs, NotNegative, Number, NumberOrInf, Positive, Refused, within
+from .sections import Sections
 
 MAX_DIGITS = 1000
 
@@ -90,3 +91,6 @@ class RunTable(SceneTable):
     digits: Annotated[int, AfterValidator(_digits)] = field(40, "", f"significant digits, at most {MAX_DIGITS}")
     level: Level = field("confirmed", "", "what has to stand behind every digit; enclosed is a proof")
     transits: bool = field(True, "", "whether the times of the transits are sought")
+    sections: Sections = field(
+        None, "", "other moments that are sought: highest, lowest, gate AZIMUTH, gate AZIMUTH@0, turn AZIMUTH"
+    )

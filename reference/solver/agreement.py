@@ -13,7 +13,7 @@ to first order; with the rates in the place of the errors the same sum bounds th
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -24,9 +24,10 @@ from ..errors import IntegrationError
 from ..model.algebra import dot
 from ..model.constants import Vector
 from ..model.force import acceleration, force
+from ..model.sections import form_of
 from ..model.start import Start
-from ..numbers.columns import GRID, POSITION, TRANSITS, VELOCITY
-from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, Array, to_fraction
+from ..numbers.columns import GRID, POSITION, SECTION, STATE, TRANSITS, VELOCITY
+from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, Array, decimals_for, to_fraction
 from ..numbers.table import Table, bits_in, decimals_of, resolved
 from .pilot import MARGIN_BITS
 
@@ -44,12 +45,14 @@ class Agreement:
         grid: largest difference in each column of the grid.
         transits: differences of each transit; None where they are not to be compared.
         errors: of each column of the grid: twice the difference, or the witness's resolution if there is none.
+        sections: differences of the passages of each section, where they are compared.
     """
 
     missing_bits: int
     grid: dict[str, Fraction]
     transits: Table | None
     errors: dict[str, Fraction]
+    sections: dict[str, Table] = field(default_factory=dict)
 
     @classmethod
     def between(cls, published: Run, witness: Run, digits: int) -> Agreement:
@@ -65,6 +68,21 @@ class Agreement:
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
         missing = bits_lacking(gaps, decimals)
+        lacking, sections = passages_lacking(published.passages, witness, decimals, digits)
+        agreed = cls._of_transits(published, witness, missing, gaps, errors, decimals, digits)
+        return replace(agreed, missing_bits=max(agreed.missing_bits, lacking), sections=sections)
+
+    @classmethod
+    def _of_transits(
+        cls,
+        published: Run,
+        witness: Run,
+        missing: int,
+        gaps: dict[str, Fraction],
+        errors: dict[str, Fraction],
+        decimals: dict[str, int],
+        digits: int,
+    ) -> Agreement:
         if published.transits is None or witness.transits is None:
             return cls(missing, gaps, None, errors)
         if published.directions != witness.directions:
@@ -111,6 +129,56 @@ def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> i
         if ratio > AGREEMENT:
             lacking = max(lacking, bits_in(ratio) + MARGIN_BITS)
     return lacking
+
+
+def passages_lacking(
+    published: Mapping[str, tuple[Table, list[int]]], witness: Run, decimals: Mapping[str, int], digits: int
+) -> tuple[int, dict[str, Table]]:
+    """Return the bits that two runs lack to agree on the passages of sections, and how far these are apart.
+
+    `decimals` are those of the grid's columns; where directions differ, no distances are told.
+    """
+    lacking, apart = 0, {}
+    latest = max((table.largest()["t"] for table, _ in published.values()), default=Fraction(0))
+    places = {"t": decimals_for(latest, digits), **decimals}
+    for word, (table, directions) in published.items():
+        other, others = witness.passages[word]
+        if directions != others:
+            lacking = max(lacking, witness.plan.number.prec // 2)
+            continue
+        apart[word] = table.distance(other)
+        lacking = max(lacking, bits_lacking(apart[word].largest(), places))
+    return lacking, apart
+
+
+def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None) -> Table:
+    """Return a section's passages in a run with the errors of each number, as `with_transit_errors` does for transits.
+
+    With the form's error e, its rate f and its second rate at most g, the time is off by at most 2 e/f if g (2 e/f) is
+    at most f; that of the motion's third rate is taken from its fastest rate.
+    """
+    start = Start.of(run.plan.inputs, DOUBLE_BITS + GUARD_BITS)
+    k, form, (table, _) = start.k.converted(float), form_of(word, start), run.passages[word]
+    size_a, size_b = (sum(abs(float(x)) for x in part) for part in (form.a, form.b))
+    n, v = (_vector(table[name] / k.length for name in kind) for kind in (POSITION, VELOCITY))
+    a = _vector(np.broadcast_arrays(*acceleration(n, v, k), n[0])[:3])
+    power = bits_in(max(errors.values()))
+    parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
+    off = size_a * sum(parts[name] for name in POSITION) + size_b * sum(parts[name] for name in VELOCITY)
+    f = abs(sum(float(p) * q + float(r) * s for p, q, r, s in zip(form.a, v, form.b, a, strict=True))) * k.length
+    g = (size_a * _norm(a) + size_b * (_norm(v) + _norm(a) / start.fastest_rate) * 4 * start.fastest_rate**2) * k.length
+    with np.errstate(divide="ignore", invalid="ignore"):
+        late = 2 * off / f
+        late = np.where(g * np.ldexp(late, power) <= f, late, np.inf) + np.ldexp(
+            table["t"], -run.plan.number.prec - power
+        )
+        rates = dict(zip(STATE, (*v, *a), strict=True))
+        columns = {"t": late} | {name: parts[name] + abs(rates[name]) * k.length * late for name in STATE}
+    for i, name in enumerate(SECTION if apart is not None else ()):
+        assert apart is not None
+        columns[name] = np.maximum(columns[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))
+    fixed = [_fixed(columns[name] * ROUNDED_UP, power, table.bits) for name in SECTION]
+    return Table(SECTION, table.bits, table.values, list(zip(*fixed, strict=True)))
 
 
 def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table | None) -> Table:

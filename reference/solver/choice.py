@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from hashlib import sha256
 from math import ceil, e, sqrt
@@ -12,8 +13,10 @@ from math import ceil, e, sqrt
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
+from ..model.start import Start
 from ..numbers.columns import POSITION, VELOCITY
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
+from ..numbers.table import bits_in
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, run_pilot
@@ -59,7 +62,7 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: 
     if scene.run.level == "enclosed":
         from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
 
-        bits = plan_for(scene.exact, times[-1], first_radius(pilot, scene.run.digits), None).bits - COEFFICIENT_BITS
+        bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None).bits - COEFFICIENT_BITS
         return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, transits=False)
     return published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
 
@@ -70,10 +73,11 @@ def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
     Where double serves, long double is compared with it, and nothing of higher precision is compiled; not with a proof.
     """
     span = scene.exact.t_end if scene.run.transits else None
+    more = second_order_bits(scene, pilot)
     if scene.run.level == "computed":
-        prec = pilot.bits_for(scene.run.digits, span, checked=False)
+        prec = pilot.bits_for(scene.run.digits, span, checked=False) + more
         return rounded_prec(prec) if prec > LONG_DOUBLE.prec else prec
-    prec = pilot.bits_for(scene.run.digits, span, checked=True)
+    prec = pilot.bits_for(scene.run.digits, span, checked=True) + more
     if prec <= DOUBLE.prec and engine in (AUTO, HARDWARE_ENGINE) and scene.run.level != "enclosed":
         return DOUBLE.prec
     return rounded_prec(max(prec, LONG_DOUBLE.prec))
@@ -83,13 +87,15 @@ def published_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec
     """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
     finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
     bits = prec if scene.run.level == "computed" else finer
-    return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.transits)
+    plan = fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.transits)
+    return replace(plan, sections=scene.run.sections or ())
 
 
 def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int) -> Plan:
     """Return heyoka's run that confirms another one: in another formulation, of `prec` bits."""
     number = DOUBLE if prec == DOUBLE.prec else real(prec)
-    return Plan(scene.exact, confirming_formulation(pilot), number, times, scene.run.transits)
+    sections = scene.run.sections or ()
+    return Plan(scene.exact, confirming_formulation(pilot), number, times, scene.run.transits, sections=sections)
 
 
 def drawn_intervals(scene: Scene) -> list[int]:
@@ -109,20 +115,28 @@ def confirming_formulation(pilot: Pilot) -> str:
     return "space" if pilot.tension > 0 else "spin"
 
 
+def second_order_bits(scene: Scene, pilot: Pilot) -> int:
+    """Return the bits that highest and lowest points need besides: the height is of second order in the amplitude."""
+    fastest_speed = max(pilot.sizes[name] for name in VELOCITY)
+    if not fastest_speed or not {"highest", "lowest"} & {*(scene.run.sections or ())}:
+        return 0
+    return bits_in(scene.exact.length * Fraction(Start.of(scene.exact, DOUBLE.prec).rate) / fastest_speed)
+
+
 def rounded_prec(prec: int) -> int:
     """Round a precision up to a multiple of `ROUND_TO_BITS`."""
     return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
 
 
-def first_radius(pilot: Pilot, digits: int) -> Fraction:
-    """Return the radius in m of the balls that a proof begins with.
+def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
+    """Return the radius in m of the balls that a proof of a scene begins with.
 
     It is a small part of the last digit's unit in the middle position or velocity column; smaller ones have smaller
     balls.
     """
-    decimals = pilot.decimals(digits)
+    decimals = pilot.decimals(scene.run.digits)
     unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
-    return unit / (1 << ROUNDING_BITS)
+    return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
 
 
 def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:

@@ -24,12 +24,12 @@ from ..numbers.table import Table
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..system.workers import Emit
-from .agreement import bits_lacking
+from .agreement import bits_lacking, passages_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, rounded_prec
 from .pilot import run_pilot
 from .proving import Problem, guarded, proved
 from .reach import MAX_RAISES, check_reach
-from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, transit_decimals
+from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
@@ -105,7 +105,12 @@ def proved_digits(solution: Solution) -> Any:
     tables = [solution.grid.printed(grid_decimals(solution))]
     if solution.zeros is not None:
         tables.append(solution.zeros.printed(transit_decimals(solution)))
-    return tables, solution.directions, [parity for *_, parity in solution.possible]
+    signs, possible = [solution.directions], [solution.possible]
+    for passages in solution.sections.values():
+        tables.append(passages.table.printed(section_decimals(solution)))
+        signs.append(passages.directions)
+        possible.append(passages.possible)
+    return tables, signs, [[parity for *_, parity in part] for part in possible]
 
 
 def _send_digits(emit: Emit, problem: Problem) -> None:
@@ -130,7 +135,9 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     """Return heyoka's run over the drawn intervals, each from the middle of the proven one at its first row."""
     from ..engines.heyoka.run import run_between
 
-    return run_between(replace(plan, transits=False), solution.grid, drawn_intervals(solution.scene), report)
+    return run_between(
+        replace(plan, transits=False, sections=()), solution.grid, drawn_intervals(solution.scene), report
+    )
 
 
 def confirmed(problem: Problem, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
@@ -164,7 +171,12 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
     `grid` are the solution's rows that the run has.
     """
     gaps = grid.distance(witness.grid.only(GRID)).largest()
-    missing = bits_lacking(gaps, grid_decimals(solution))
+    decimals = grid_decimals(solution)
+    decided = {
+        w: (p.table, p.directions) for w, p in solution.sections.items() if w in witness.passages and not p.possible
+    }
+    lacking, _ = passages_lacking(decided, witness, decimals, solution.scene.run.digits)
+    missing = max(lacking, bits_lacking(gaps, decimals))
     if solution.zeros is None or witness.transits is None or solution.possible:
         return CrossCheck.of(witness, gaps, None), missing
     if witness.directions != solution.directions:

@@ -7,6 +7,7 @@ whose states must lie in the balls, and one with event detection, which must fin
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -15,14 +16,15 @@ from typing import Any
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
-from ..numbers.columns import GRID, POSITION, TRANSITS
+from ..numbers.columns import GRID, POSITION, SECTION, TRANSITS
 from ..numbers.precision import cheapest_type, rounded_up
 from ..numbers.table import Table, bits_in
 from ..scenes.scene import Scene
-from .choice import first_radius, late_radius
+from .agreement import with_passage_errors
+from .choice import first_radius, late_radius, second_order_bits
 from .pilot import ESTIMATE_FACTOR, Pilot
 from .proof_steps import COEFFICIENT_BITS, EngineChanged, Feed
-from .solution import CrossCheck, Proof, Solution, Source, UndecidedRounding, check_decided
+from .solution import CrossCheck, Passages, Proof, Solution, Source, UndecidedRounding, check_decided
 
 ROUNDING_TRIES = 8  # radii that are tried before giving up
 FINER = 2**16  # the next radius is smaller by this factor at least,
@@ -68,7 +70,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
     """
     scene, times, pilot = problem.scene, problem.times, problem.pilot
     span = float(times[-1])
-    radius = first = first_radius(pilot, scene.run.digits)
+    radius = first = first_radius(scene, pilot)
     feed = Feed(scene.exact, times, problem.engine, pilot.steps)
 
     try:
@@ -80,6 +82,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                 transits=scene.run.transits,
                 approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
                 function=problem.function,
+                sections=scene.run.sections or (),
                 progress=report and (lambda part: report(part * span)),
             )
             try:
@@ -126,11 +129,21 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         cpu_s=enclosed.cpu_s,
         proved=enclosed.proved,
         function=enclosed.function,
+        sections=enclosed.sections,
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)
     source = Source.of(approximant)
-    return Solution(scene, times, grid, transits, directions, source, (check,), pilot.cpu_s, proof, possible)
+    solution = Solution(scene, times, grid, transits, directions, source, (check,), pilot.cpu_s, proof, possible)
+    found = enclosed.sections.passages if enclosed.sections else {}
+    return replace(solution, sections={word: _passages(zeros, times[-1], bits) for word, zeros in found.items()})
+
+
+def _passages(zeros: Any, end: Fraction, bits: int) -> Passages:
+    ones, others = ([z for z in zeros if (z.kind == "one") is single] for single in (True, False))
+    table = Table.of_intervals(SECTION, [[getattr(z, name) for name in SECTION] for z in ones], bits)
+    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
+    return Passages(table, [z.direction for z in ones], possible)
 
 
 def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
@@ -159,19 +172,20 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     Raises:
         IntegrationError: the run finds other transits; names the first that differs.
     """
-    scene, times, transits = solution.scene, solution.times, solution.zeros
-    if transits is None:
+    scene, times, transits = solution.scene, solution.times, solution.transits
+    if solution.zeros is None and not solution.sections:
         return solution
     usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
-    least = _bits_to_see(transits, times[-1], pilot)
+    least, more = _bits_to_see(transits, times[-1], pilot), second_order_bits(scene, pilot)
     contradiction: IntegrationError | None = None
     units = {name: Fraction(1, 10**places) for name, places in pilot.decimals(USUAL_DIGITS).items()}
-    for prec in (max(usual, least), max(finer, least + finer - usual)):
+    for prec in (max(usual + more, least), max(finer + more, least + finer - usual)):
         if prec > MOST_CHECK_PREC:
             reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
             break
         try:
-            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, transits=True))
+            words, wanted = scene.run.sections or (), solution.zeros is not None
+            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, wanted, sections=words))
         except (UnreachableError, OverflowError) as error:
             reason = error
             break
@@ -179,7 +193,8 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
         try:
             if any(gaps[name] > unit for name, unit in units.items()):
                 raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
-            apart = _transit_gap(event_run, solution, ESTIMATE_FACTOR * gaps["vx"])
+            apart = _transit_gap(event_run, solution, ESTIMATE_FACTOR * gaps["vx"]) if wanted else None
+            _check_passages(event_run, solution, gaps)
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
         else:
@@ -187,6 +202,22 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     if contradiction is not None:
         raise contradiction
     return replace(solution, not_checked=str(reason))
+
+
+def _check_passages(event_run: Run, solution: Solution, gaps: Mapping[str, Fraction]) -> None:
+    """Raise `IntegrationError` where a run finds other passages of a section, given how far its states are off."""
+    errors = {name: ESTIMATE_FACTOR * gap for name, gap in gaps.items()}
+    for word, passages in solution.sections.items():
+        if passages.possible:
+            continue
+        seen, directions = with_passage_errors(event_run, errors, word, None), event_run.passages[word][1]
+        if directions != passages.directions:
+            found = f"{len(directions)} passages, the enclosure {len(passages.directions)}, or other directions"
+            raise IntegrationError(f"{word}: heyoka finds {found}.")
+        apart = passages.table.distance(seen).exact("t")
+        for k, (gap, *bounds) in enumerate(zip(apart, seen.bound("t"), passages.table.bound("t"), strict=True), 1):
+            if gap > sum(bounds):
+                raise IntegrationError(f"{word}: heyoka's passage {k} is {float(gap):.1e} s from the enclosure.")
 
 
 def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:

@@ -17,6 +17,7 @@ from ..engines.plan import Run
 from ..errors import InputError, UnreachableError
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
+from ..numbers.precision import decimals_for
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
@@ -75,7 +76,7 @@ class Source:
 class Proof:
     """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
 
-    `proved` and `function` are what trusted code returned, and compares with what is written; `audited`: FLINT alone
+    `proved`, `function` and `sections` are what trusted code returned, and compares with what is written; `audited`: FLINT alone
     proves it too;
     `confirmed`: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
     transit, or a sample: a tenth of the grid's intervals, each from its first row.
@@ -92,8 +93,24 @@ class Proof:
     cpu_s: dict[str, float]
     proved: Any = field(default=None, repr=False)
     function: Any = field(default=None, repr=False)
+    sections: Any = field(default=None, repr=False)
     audited: bool = False
     confirmed: Confirmation = "none"
+
+
+@dataclass(frozen=True)
+class Passages:
+    """The passages of a section.
+
+    Attributes:
+        table: `columns.SECTION` at each, in SI units, with bounds.
+        directions: +1 where the section's form grows, per passage.
+        possible: intervals in s, each with a parity, that may hold passages which the proof could not decide.
+    """
+
+    table: Table = field(repr=False)
+    directions: list[int]
+    possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -113,7 +130,8 @@ class Solution(GridColumns):
         possible: intervals in s, each with a parity, that may hold transits which the proof could not decide.
         guard: at the level enclosed, where no run confirms every transit, one with event detection that found them
             all, in the cheapest type that serves; it goes into no dataset.
-        not_checked: why there is neither. The proof does not rest on it, and a run that finds other transits is an
+        sections: the passages of each section that the scene asks for, by its word.
+        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest on it, and a run that finds other transits is an
             error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,), `solution.exact("x")` are
@@ -133,6 +151,7 @@ class Solution(GridColumns):
     possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
     guard: CrossCheck | None = None
     not_checked: str = ""
+    sections: Mapping[str, Passages] = field(default_factory=dict, repr=False)
 
     @property
     def transits(self) -> Table:
@@ -182,6 +201,12 @@ def transit_decimals(solution: Solution) -> dict[str, int]:
     }
 
 
+def section_decimals(solution: Solution) -> dict[str, int]:
+    """Return those of the passages of sections: as in the grid, and t by the latest of all."""
+    latest = max((passages.table.largest()["t"] for passages in solution.sections.values()), default=Fraction(0))
+    return {"t": decimals_for(latest, solution.scene.run.digits), **grid_decimals(solution)}
+
+
 def exact_decimals(values: tuple[Fraction, ...]) -> int:
     """Return the digits after the point that print terminating decimals exactly."""
     digits = 0
@@ -196,6 +221,7 @@ def check_decided(solution: Solution) -> None:
     tables: list[tuple[Table, dict[str, int]]] = [(solution.grid, grid_decimals(solution))]
     if solution.zeros is not None:
         tables.append((solution.zeros, transit_decimals(solution)))
+    tables += [(passages.table, section_decimals(solution)) for passages in solution.sections.values()]
     undecided = [number for table, decimals in tables if (number := table.undecided(decimals)) is not None]
     if undecided:
         raise UndecidedRounding(*max(undecided))

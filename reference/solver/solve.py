@@ -8,7 +8,8 @@ finer run. For `computed` there is one run only, and for `enclosed` a proof (`en
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, overload
 
@@ -22,11 +23,11 @@ from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..numbers.table import Table
 from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene, as_scene
-from .agreement import Agreement, with_transit_errors
+from .agreement import Agreement, with_passage_errors, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import Pilot
 from .reach import MAX_PREC, MAX_RAISES, Pace, check_reach, out_of_reach
-from .solution import CrossCheck, Solution, Source
+from .solution import CrossCheck, Passages, Solution, Source
 
 if TYPE_CHECKING:
     from .ranges import Ranges
@@ -54,6 +55,7 @@ def solve(
     level: str | None = None,
     t_end: str | float | None = None,
     transits: bool | None = None,
+    sections: str | Sequence[str] | None = None,
     engine: str | None = None,
     audit: bool = False,
     confirm: Confirmation = "none",
@@ -71,6 +73,7 @@ def solve(
     level: str | None = None,
     t_end: str | float | None = None,
     transits: bool | None = None,
+    sections: str | Sequence[str] | None = None,
     engine: str | None = None,
     audit: bool = False,
     confirm: Confirmation = "none",
@@ -87,6 +90,7 @@ def solve(
         level: one of `scene.LEVELS`.
         t_end: end of the run in s; a number is taken as it is printed.
         transits: whether to find every zero of xdot.
+        sections: other moments to find, such as ["highest", "gate 30"]: docs/scene.md has the words.
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that is installed. At
             the level confirmed the run that confirms is always heyoka's.
         audit: at the level enclosed, prove the same run again by FLINT alone, and require the same digits.
@@ -108,7 +112,8 @@ def solve(
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
     if uncertain is not None:
-        wanted = {"digits": digits, "audit": audit, "function": function, "confirm": confirm != "none"}
+        wanted: dict[str, Any] = {"digits": digits, "audit": audit, "function": function, "sections": sections}
+        wanted["confirm"] = confirm != "none"
         for wish in (name for name, asked in wanted.items() if asked):
             raise InputError(
                 wish, wanted[wish], "nothing together with uncertain", "Intervals have the digits they support."
@@ -118,7 +123,8 @@ def solve(
         level = "enclosed"
     elif derivatives:
         raise InputError("derivatives", True, "uncertain inputs, to which they are taken", "Give uncertain={…} too.")
-    requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
+    words = sections if sections is None or isinstance(sections, str) else ",".join(sections)
+    requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits, "sections": words}
     scene = as_scene(scene).with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
@@ -176,7 +182,8 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Re
     prec = first_prec(scene, pilot, engine)
     check_reach(pilot.steps, prec, scene.run.digits)
     published = run(published_plan(scene, times, pilot, prec, engine), report)
-    return _assemble(scene, times, published, pilot.estimates(published.plan.number.prec), None, (), pilot.cpu_s)
+    errors = pilot.estimates(published.plan.number.prec)
+    return _with_sections(_assemble(scene, times, published, errors, None, (), pilot.cpu_s), published, errors, {})
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
@@ -196,7 +203,8 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         if not gap.missing_bits:
             transit_s = None if gap.transits is None else gap.transits.largest()["t"]
             check = CrossCheck.of(witness, gap.grid, transit_s)
-            return _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot.cpu_s)
+            solution = _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot.cpu_s)
+            return _with_sections(solution, published, gap.errors, gap.sections)
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
             last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord
@@ -217,8 +225,8 @@ def _witness(fine: Plan, prec: int, engine: str, steps: int) -> Plan:
     """Return the run that checks another at the level self_consistent: by another engine, or in other steps."""
     coarse = fastest(prec, engine, steps)
     if coarse.name == fine.engine:
-        return coarse.witness(fine, prec)
-    return coarse.plan(fine.inputs, prec, fine.times, fine.transits)
+        return replace(coarse.witness(fine, prec), sections=fine.sections)
+    return replace(coarse.plan(fine.inputs, prec, fine.times, fine.transits), sections=fine.sections)
 
 
 def _assemble(
@@ -234,3 +242,12 @@ def _assemble(
     grid = published.grid.only(GRID).with_errors(errors)
     transits = None if published.transits is None else with_transit_errors(published, errors, apart)
     return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot_s)
+
+
+def _with_sections(
+    solution: Solution, published: Run, errors: Mapping[str, Fraction], apart: Mapping[str, Table]
+) -> Solution:
+    """Return a solution with the passages of its run, which have their bounds."""
+    tables = {word: with_passage_errors(published, errors, word, apart.get(word)) for word in published.passages}
+    sections = {word: Passages(table, published.passages[word][1]) for word, table in tables.items()}
+    return replace(solution, sections=sections)

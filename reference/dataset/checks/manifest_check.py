@@ -56,6 +56,7 @@ def problems(files: Files) -> Iterator[str]:
         yield f"{MANIFEST}: command does not follow from the scene"
         return
     yield from _possible(files)
+    yield from _sections(files)
     yield from _bounds(manifest)
     yield from _evidence(manifest)
     if not manifest.alone:
@@ -79,6 +80,23 @@ def _possible(files: Files) -> Iterator[str]:
         if not last <= low < high <= files.scene.exact.t_end:
             yield f"{MANIFEST}: possible transits must be intervals in order within (0, t_end]"
         last = high
+
+
+def _sections(files: Files) -> Iterator[str]:
+    """Check that `sections.csv` has the scene's sections in order, their rows counted, with bounds of their digits."""
+    said, sheet = files.manifest.sections, files.tables.get("sections.csv")
+    if said is None:
+        return
+    words = files.scene.run.sections or ()
+    if not tuple(said.counts) == tuple(said.possible) == words:
+        yield f"{MANIFEST}: sections are not those of the scene: {', '.join(words)}"
+    if sheet and [row[:2] for row in sheet.rows] != [
+        (w, str(k)) for w, n in said.counts.items() for k in range(1, n + 1)
+    ]:
+        yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
+    for name, bound in said.bounds.items():
+        if Fraction(bound) * 10 ** said.decimals[name] < Fraction(1, 2):
+            yield f"{MANIFEST}: sections.bounds.{name} = {bound} is less than half a unit of the last digit"
 
 
 def _bounds(manifest: Manifest) -> Iterator[str]:

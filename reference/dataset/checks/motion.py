@@ -17,10 +17,10 @@ import numpy as np
 
 from ...engines.limbs.size import LEAST_PREC, LIMB_BITS, MOST_PREC
 from ...engines.plan import Plan, Run
-from ...engines.registry import engines
+from ...engines.registry import engines, run
 from ...errors import UnreachableError
 from ...model.start import Start
-from ...numbers.columns import GRID, TRANSITS, VELOCITY
+from ...numbers.columns import GRID, SECTION, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ..golden import Files
@@ -87,7 +87,9 @@ def _run(files: Files, prec: int, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
     times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
     plan = limbs.plan(inputs, prec, tuple(times), files.scene.run.transits)
-    return limbs.run(plan, report and (lambda t: report(t, float(inputs.t_end))))
+    said = files.manifest.sections
+    words = tuple(word for word, possible in said.possible.items() if not possible) if said else ()
+    return run(replace(plan, sections=words), report and (lambda t: report(t, float(inputs.t_end))))
 
 
 def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
@@ -108,8 +110,18 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
         elif found:
             both = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
             kinds.append(("transits", both[0], both[1]))
+    if sheet := files.tables.get("sections.csv"):
+        if any(coarse.passages[word][1] != directions for word, (_, directions) in fine.passages.items()):
+            return None
+        decided = [row for row in sheet.rows if row[0] in fine.passages]
+        signs = [(word, f"{sign:+d}") for word, (_, ways) in fine.passages.items() for sign in ways]
+        if [(row[0], row[3]) for row in decided] != signs:
+            differing.append(f"sections.csv: {len(decided)} passages are not the motion's, which are {len(signs)}")
+        elif signs:
+            files = replace(files, tables={**files.tables, "sections.csv": replace(sheet, rows=decided)})
+            kinds.append(("sections", _joined(coarse.passages), _joined(fine.passages)))
     for kind, rough, table in kinds:
-        columns = table.only(GRID if kind == "grid" else TRANSITS)
+        columns = table.only({"grid": GRID, "transits": TRANSITS, "sections": SECTION}[kind])
         apart = columns.distance(rough).largest()
         bounds = {name: files.manifest.bound(kind, name) for name in columns.columns}
         if any(apart[name] > bound for name, bound in bounds.items()):
@@ -119,6 +131,12 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     times = function.moments(files)
     rough, table = (_at(map(Fraction, times), run) for run in (coarse, fine))
     return differing + function.contradicted(files, times, table, table.distance(rough).largest())
+
+
+def _joined(passages: Mapping[str, tuple[Table, list[int]]]) -> Table:
+    """Return the passages of all sections in one table."""
+    tables = [table for table, _ in passages.values()]
+    return replace(tables[0], values=[row for table in tables for row in table.values], errors=[])
 
 
 def _at(times: Iterable[Fraction], run: Run) -> Table:
@@ -157,7 +175,7 @@ def _off(
     kind: Kind, sheet: Sheet, table: Table, apart: Mapping[str, Fraction], bounds: Mapping[str, Fraction]
 ) -> list[str]:
     """Return a sentence for every printed number that is further from a run than its bound and the runs' distance."""
-    off, word = [], "transit" if kind == "transits" else "t ="
+    off, word = [], {"grid": "t =", "transits": "transit", "sections": "passage of"}[kind]
     printed, ten = sheet.integers(table.columns)
     unit = ten << table.bits
     for i, name in enumerate(table.columns):

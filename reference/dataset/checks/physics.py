@@ -39,6 +39,12 @@ def problems(files: Files) -> Iterator[str]:
     constant = files.scene.exact.drag == 0
     if constant:
         yield from grid.with_another_invariant(grid.first())
+    if "sections.csv" in files.tables and files.tables["sections.csv"].rows:
+        passages = _moments(files, "sections")
+        yield from passages.off_the_sphere()
+        yield from passages.not_along_the_sphere()
+        if constant:
+            yield from passages.with_another_invariant(grid.first())
     if files.manifest.counts.transits:
         transits = _moments(files, "transits")
         yield from transits.off_the_sphere()
@@ -53,7 +59,7 @@ def _moments(files: Files, kind: Kind) -> _Moments:
     At a transit the velocity is (0, vy, -y vy / z).
     """
     sheet = files.tables[f"{kind}.csv"]
-    printed = STATE if kind == "grid" else ("x", "y", "z", "vy")
+    printed = ("x", "y", "z", "vy") if kind == "transits" else STATE
     columns, unit = sheet.integers(printed)
     bounds = [files.manifest.bound(kind, name) for name in printed]
     if kind == "transits":  # xdot is zero by definition, and zdot follows
@@ -62,10 +68,10 @@ def _moments(files: Files, kind: Kind) -> _Moments:
     numbers = [number * unit for number in (files.scene.exact.length, *bounds)]
     finer = math.lcm(*(number.denominator for number in numbers))
     length, *whole = (int(number * finer) for number in numbers)
-    word = "t =" if kind == "grid" else "transit"
+    word, count = {"grid": ("t =", 1), "transits": ("transit", 1), "sections": ("passage", 2)}[kind]
     return _Moments(
         files=files,
-        names=[f"{kind}.csv: {word} {row[0]}" for row in sheet.rows],
+        names=[f"{kind}.csv: {word} {' '.join(row[:count])}" for row in sheet.rows],
         columns=[column * finer for column in columns],
         unit=unit * finer,
         bounds=whole,

@@ -35,13 +35,11 @@ class Heyoka(Engine):
 
         return run(plan, report, pace)
 
-    def taylor_steps(
-        self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
-    ) -> Generator[TaylorStep, None, Run]:
-        """Yield the Taylor steps of a run of `momentum` in MPFR: n east, north, up, then h H; return the run."""
+    def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
+        """Yield the Taylor steps of a run in MPFR: n east, north, up, then, in `momentum`, h H; return the run."""
         from .run import taylor_steps
 
-        return taylor_steps(inputs, times, prec, coefficient_bits)
+        return taylor_steps(plan, coefficient_bits)
 
     def expected_s(self, steps: int, prec: int) -> float:
         """Return the expected CPU seconds of `steps` steps at `prec` bits."""

@@ -26,9 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import cache
 from itertools import pairwise
-from math import comb
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -36,6 +34,7 @@ from numpy.polynomial.polynomial import polyval
 
 from ...errors import IntegrationError
 from ...numbers.precision import Array
+from ..bernstein import MOST_TERMS, ROUNDING, bernstein, signs_of
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
@@ -44,8 +43,6 @@ if TYPE_CHECKING:
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
 SHORTER = Fraction(79, 128)  # a step taken again is cut by this factor: no simple ratio, so that no edge returns
 AT_ONCE = 100  # steps that are checked together
-ROUNDING = 2.0**-46  # of Bernstein's form in double, against the sum of the coefficients' sizes
-MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
 MOST_PIECES = 200  # that a step is cut into
 MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a piece
 
@@ -158,9 +155,9 @@ def _first_contradiction(steps: Sequence[_Step]) -> tuple[int, str] | None:
     series = x.astype(float) * k
     sizes = np.abs(series)
     noise = ROUNDING * sizes.sum(axis=1) + sizes[:, MOST_TERMS:].sum(axis=1)
-    forms = (series[:, :MOST_TERMS] / noise[:, None]) @ _bernstein(min(x.shape[1], MOST_TERMS))[0].T
+    forms = (series[:, :MOST_TERMS] / noise[:, None]) @ bernstein(min(x.shape[1], MOST_TERMS))[0].T
     ends = np.sign([*series[:, 0], float(polyval(1, x[-1] * k))])
-    changes = np.count_nonzero(np.diff(_signs(forms, ends[:-1], ends[1:])), axis=1)
+    changes = np.count_nonzero(np.diff(signs_of(forms, ends[:-1], ends[1:])), axis=1)
     found = np.array([len(step.directions) for step in steps])
     first = np.array([step.directions[0] if step.directions else 0 for step in steps])
     for i in map(int, np.flatnonzero((changes != found) | (found > 1) | (first + ends[:-1] * found != 0))):
@@ -175,13 +172,6 @@ def _first_contradiction(steps: Sequence[_Step]) -> tuple[int, str] | None:
     return None
 
 
-def _signs(form: Array, left: Any, right: Any) -> Array:
-    """Return the signs of Bernstein forms, at the ends as given; where rounding decides 0, which makes two changes."""
-    signs = np.sign(np.trunc(form))
-    signs[..., 0], signs[..., -1] = left, right
-    return signs
-
-
 def _count_zeros(xdot: Any, form: Array, left: float, right: float) -> float:
     """Return how many zeros a polynomial has between 0 and 1; NaN if more than two are too close to be counted.
 
@@ -191,11 +181,11 @@ def _count_zeros(xdot: Any, form: Array, left: float, right: float) -> float:
         left: its sign at 0.
         right: its sign at 1.
     """
-    count, (_, to_half) = 0.0, _bernstein(len(form))
+    count, (_, to_half) = 0.0, bernstein(len(form))
     zero = 0 * xdot[0]
     pieces = [(form, zero, zero + 1, left, right)]
     for form, low, high, left, right in pieces:  # which grow
-        changes = np.count_nonzero(np.diff(_signs(form, left, right)))
+        changes = np.count_nonzero(np.diff(signs_of(form, left, right)))
         bends = np.sign(np.trunc(np.diff(form, 2) / 4))
         if changes <= 1:
             count += changes
@@ -210,14 +200,6 @@ def _count_zeros(xdot: Any, form: Array, left: float, right: float) -> float:
         else:
             return np.nan
     return count
-
-
-@cache
-def _bernstein(terms: int) -> tuple[Array, Array]:
-    """Return the matrices from coefficients to Bernstein's form, and from that to the form on the first half."""
-    n = range(terms)
-    form = np.array([[comb(j, i) / comb(terms - 1, i) for i in n] for j in n])
-    return form, np.array([[comb(j, i) / 2**j for i in n] for j in n])
 
 
 def _dips(xdot: Any, low: Any, high: Any) -> bool:

@@ -33,20 +33,19 @@ DECAYS = 5.0  # with a fast drag γ the step size is at most DECAYS MOST_TURN/γ
 STEP_BITS = 6  # mantissa of a step size: equal steps share their scaled constants, and times stay short
 
 
-def taylor_steps(
-    inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
-) -> Generator[TaylorStep, None, Run]:
-    """Yield the Taylor steps of a run from t = 0 to one step beyond the last time; return the run.
+def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
+    """Yield the Taylor steps of a run from t = 0 to one step beyond the last time, in MPFR; return the run.
 
-    Their rows are n east, north and up, and h H.
+    Their rows are n east, north and up, and h H, in `momentum`, or what else the formulation has.
     """
-    plan = Plan(inputs, "momentum", real(prec), times, transits=False)
-    start = Start.of(inputs, prec + GUARD_BITS)
-    stepper = Stepper(FORMULATIONS["momentum"], start, plan.number, span=times[-1])
+    plan = replace(plan, number=real(plan.number.prec), transits=False)
+    times, start = plan.times, Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
+    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, span=times[-1])
     grid = [stepper.numbers.of(t) for t in times]
     started = time.process_time()
     rate = max(float(start.ctx.sqrt(start.ctx.norm(start.k.pull))), float(start.k.drag) / DECAYS)
-    longest = _few_bits(MOST_TURN / rate) if rate > 0 else max(times[-1], Fraction(1))
+    turn = MOST_TURN * float(OTHER_STEPS) if plan.other_steps else MOST_TURN
+    longest = _few_bits(turn / rate) if rate > 0 else max(times[-1], Fraction(1))
     states, limit, beyond = [stepper.state], stepper.numbers.of(longest), False
     while not beyond:
         beyond = stepper.time > grid[-1]

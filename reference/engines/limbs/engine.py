@@ -43,13 +43,11 @@ class Limbs(Engine):
 
         return run(plan, report, pace)
 
-    def taylor_steps(
-        self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
-    ) -> Generator[TaylorStep, None, Run]:
+    def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
         """Yield the Taylor steps of a run, in the axes of a proof; return the run."""
         from .run import taylor_steps
 
-        return taylor_steps(self.plan(inputs, prec, times, transits=False), coefficient_bits)
+        return taylor_steps(plan, coefficient_bits)
 
     def expected_s(self, steps: int, prec: int) -> float:
         """Return about how many CPU seconds a run takes that would be `steps` steps in double."""

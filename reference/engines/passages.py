@@ -1,0 +1,182 @@
+"""Passages of sections in a run: the zeros of affine forms on its Taylor steps, so that none is lost and none doubled.
+
+The zeros of a step's polynomial are counted by Descartes' rule: in Bernstein's form its coefficients change sign as
+often as it has zeros, or 2, 4, ... times oftener. One change at most is certain. A convex piece has one zero if its
+ends differ in sign; else two or none, and the form at its minimum says which. Any other piece is halved. Signs at places
+are those of integers, and that at a step's start is that at the end of the step before. All engines are served alike.
+
+A zero at the release that no digit of the run tells from it, as that of every velocity at rest, does not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ..errors import IntegrationError
+from ..model.sections import Form, form_of
+from ..model.start import Start
+from ..numbers.columns import SECTION
+from ..numbers.precision import GUARD_BITS, Array, to_fraction
+from ..numbers.table import Table
+from ..numbers.taylor_step import LOCAL, TaylorStep
+from .bernstein import MOST_TERMS, ROUNDING, bernstein, signs_of
+from .plan import Plan, Report
+
+SPARE_BITS = 64  # of forms, places and states beyond the run's own
+NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
+MOST_PIECES = 200  # that a step is cut into
+GRAZING = "Ask for more digits, or leave this section out (run.sections)."
+
+
+class Search:
+    """The passages of one section: `take` every step in order."""
+
+    def __init__(self, word: str, form: Form, prec: int) -> None:
+        self.word, self.form, self.bits, self.noise = word, form, prec + SPARE_BITS, prec - NOISE_BITS
+        self.left, self.found = 0, list[tuple[list[int], int]]()
+
+    def take(self, step: TaylorStep, rows: list[list[int]]) -> None:
+        """Find the passages in a step whose polynomials are x, y, z over l."""
+        unit, h = 1 << self.bits, step.h
+        a, b = ([int(to_fraction(x) * f * unit) for x in v] for v, f in ((self.form.a, h), (self.form.b, 1)))
+        g = [
+            sum(p * row[k] + (k + 1) * q * row[k + 1] for p, q, row in zip(a, b, rows)) for k in range(len(rows[0]) - 1)
+        ]
+        g[0] -= int(to_fraction(self.form.d) * h * unit) << step.bits
+        least = (sum(map(abs, a)) + sum(map(abs, b))) << step.bits >> self.noise
+        if not self.left:  # at the release
+            while g and abs(g[0]) <= least:
+                g = g[1:]
+        if not g or max(map(abs, g)) <= least:
+            raise IntegrationError(f"{self.word}: the motion stays in this section, as far as digits tell.", GRAZING)
+        places = Places(g, least, self.bits, self.word)
+        left, right = self.left or places.sign(0), places.sign(unit)
+        for low, high, sign in places.isolated(left, right):
+            s = places.root(low, high, sign)
+            if self.form.direction in (0, -sign):
+                self.found.append((self._moment(step, rows, s), -sign))
+        self.left = right
+
+    def _moment(self, step: TaylorStep, rows: list[list[int]], s: int) -> list[int]:
+        """Return time in s, n and n' in 1/s at a place, as integers over 2**bits."""
+        values = [horner(row, s, self.bits) for row in rows]
+        n, v = ([_shifted(value[i], self.bits - step.bits) for value in values] for i in (0, 1))
+        t = step.centre + step.h * Fraction(s, 1 << self.bits)
+        return [int(t * (1 << self.bits)), *n, *(int(x / step.h) for x in v)]
+
+
+class Places:
+    """A polynomial of s in [0, 1] with integer coefficients, and the places of its zeros, integers over 2**bits."""
+
+    def __init__(self, g: list[int], least: int, bits: int, word: str) -> None:
+        self.g, self.least, self.bits, self.word = g, least, bits, word
+
+    def sign(self, s: int) -> int:
+        """Return the sign at a place."""
+        return 1 if horner(self.g, s, self.bits)[0] >= 0 else -1
+
+    def isolated(self, left: int, right: int) -> Iterator[tuple[int, int, int]]:
+        """Yield, in order, intervals that hold one zero each, and the sign before it; given the signs at the ends."""
+        scale = max(map(abs, self.g))
+        series = np.array([c / scale for c in self.g])
+        sizes = np.abs(series)
+        series, noise = series[:MOST_TERMS], ROUNDING * sizes.sum() + sizes[MOST_TERMS:].sum()
+        to_form, to_half = bernstein(len(series))
+        pieces, cut = [(to_form @ series / noise, 0, 1 << self.bits, left, right)], 0
+        while pieces:
+            form, low, high, before, after = pieces.pop()
+            changes = np.count_nonzero(np.diff(signs_of(form, before, after)))
+            bends = np.sign(np.trunc(np.diff(form, 2) / 4))
+            if changes <= 1:
+                yield from [(low, high, before)] * changes
+            elif len(bends) and abs(bends.sum()) == len(bends) and (before != after or before != bends[0]):
+                yield from [(low, high, before)] * (before != after)
+            elif len(bends) and abs(bends.sum()) == len(bends):
+                if flat := self._dip(low, high, before):
+                    yield from ((low, flat, before), (flat, high, -before))
+            else:
+                cut += 1
+                if cut > MOST_PIECES:
+                    raise self._grazes()
+                middle = (low + high) // 2
+                between = self.sign(middle)
+                pieces.append(((to_half @ form[::-1])[::-1], middle, high, between, after))
+                pieces.append((to_half @ form, low, middle, before, between))
+
+    def _dip(self, low: int, high: int, side: int) -> int:
+        """Return the place of a convex piece's extremum where it lies beyond zero, seen from its ends; else 0."""
+        rates = [k * c for k, c in enumerate(self.g)][1:]
+        falls = horner(rates, low, self.bits)[0] * side < 0
+        if not falls or horner(rates, high, self.bits)[0] * side < 0:
+            return 0
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if horner(rates, middle, self.bits)[0] * side < 0 else (low, middle)
+        bottom = horner(self.g, high, self.bits)[0]
+        if abs(bottom) <= self.least:
+            raise self._grazes()
+        return high if bottom * side < 0 else 0
+
+    def root(self, low: int, high: int, before: int) -> int:
+        """Return the zero between two places, by Newton's method, or by halving where that leaves them."""
+        s = (low + high) // 2
+        for _ in range(4 * self.bits):
+            value, rate = horner(self.g, s, self.bits)
+            low, high = (s, high) if (value >= 0) == (before > 0) else (low, s)
+            place = s - (value << self.bits) // rate if rate else low - 1
+            s, last = (place if low <= place <= high else (low + high) // 2), s
+            if abs(s - last) <= 1:
+                break
+        return s
+
+    def _grazes(self) -> IntegrationError:
+        return IntegrationError(f"{self.word}: the motion touches this section within the precision.", GRAZING)
+
+
+def horner(g: list[int], s: int, bits: int) -> tuple[int, int]:
+    """Return a polynomial and its rate at s/2**bits, rounded down."""
+    value = rate = 0
+    for c in reversed(g):
+        rate = value + (rate * s >> bits)
+        value = c + (value * s >> bits)
+    return value, rate
+
+
+def _shifted(value: int, bits: int) -> int:
+    return value << bits if bits >= 0 else value >> -bits
+
+
+def passages(
+    plan: Plan, steps: Iterable[TaylorStep], report: Report | None = None
+) -> dict[str, tuple[Table, list[int]]]:
+    """Return `columns.SECTION` at each passage of a plan's sections, and its direction, from the plan's Taylor steps.
+
+    Raises:
+        IntegrationError: a section that the motion touches, or stays in, as far as the digits tell.
+    """
+    start = Start.of(plan.inputs, plan.number.prec + SPARE_BITS + GUARD_BITS)
+    searches = [Search(word, form_of(word, start), plan.number.prec) for word in plan.sections]
+    unit = 1 << plan.number.prec + SPARE_BITS
+    sin, cos = ((int(to_fraction(x) * unit)) for x in ((start.k.sin, start.k.cos) if start.k.rate else (1, 0)))
+    for step in steps:
+        x, second, third, *_ = (step.coefficients[i] for i in range(3))
+        if step.columns[:3] == LOCAL:
+            rows = [x, second, third]
+        else:
+            pairs = list(zip(second, third, strict=True))
+            rows = [x, [(m * sin + w * cos) // unit for m, w in pairs], [(w * sin - m * cos) // unit for m, w in pairs]]
+        for search in searches:
+            search.take(step, rows)
+        if report is not None:
+            report(float(step.centre))
+    bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)
+    tables = {}
+    for search in searches:
+        kept = [(row, direction) for row, direction in search.found if row[0] <= last]
+        values = [(row[0], *(int(x * length) for x in row[1:])) for row, _ in kept]
+        tables[search.word] = Table(SECTION, bits, values), [direction for _, direction in kept]
+    return tables

@@ -1,0 +1,44 @@
+"""Sections as affine forms: a·n + b·n' - d, whose zeros are the moments that are sought; n = r/l, axes x, y, z.
+
+xdot is the form with b along x. A gate lies along an azimuth and the plumb line at the pivot, through the rest position,
+or along z through the suspension; its form grows to the left of the azimuth. The highest points are where the velocity
+along the plumb line changes from up to down.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..numbers.precision import to_mpf
+from ..scenes.sections import azimuth_of
+from .algebra import cross, dot, scale
+from .constants import Vector
+from .start import Start
+
+NOTHING: Vector = (0, 0, 0)
+
+
+class Form(NamedTuple):
+    """The form a·n + b·n' - d, and the direction of the zeros that count: +1 where it grows, -1, or 0 for both."""
+
+    a: Vector
+    b: Vector
+    d: Any
+    direction: int = 0
+
+
+def form_of(word: str, start: Start) -> Form:
+    """Return the form of a section's word, in the precision of a scene's start.
+
+    Raises:
+        UnreachableError: a gate through the rest position, and the scene has none.
+    """
+    ctx, pull = start.ctx, start.k.pull
+    kind, angle = word.split()[0], to_mpf(azimuth_of(word) / 180, ctx)
+    along = (ctx.cospi(angle), ctx.sinpi(angle), 0)
+    if kind == "turn":
+        return Form(NOTHING, along, 0)
+    if kind != "gate":
+        return Form(NOTHING, scale(-1, pull), 0, -1 if kind == "highest" else 1)
+    across = (-along[1], along[0], 0) if word.endswith("@0") else cross(along, pull)
+    return Form(across, NOTHING, 0 if word.endswith("@0") else dot(across, start.rest))

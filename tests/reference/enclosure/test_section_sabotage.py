@@ -1,0 +1,319 @@
+"""Faults in the trusted lines of sections, one at a time in a copy of the module: each has to be found."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import mpmath as mp
+import pytest
+from enclosure_oracle import constants, acceleration, scene, truth
+from enclosure_recurrence import Recurrence
+from flint import arb, ctx
+from passages import WAYS, form, value
+from sampled import one_in
+
+import reference
+import reference.enclosure.sections
+from reference.dataset.render import render
+from reference.enclosure.approximant import pair
+from reference.enclosure.balls import ball
+from reference.enclosure.bound import Piece, SceneBalls
+from reference.enclosure.course import Course
+from reference.enclosure.prove import until
+from reference.enclosure.shapes import Covered, Tube
+from reference.numbers.taylor_step import EARTH, TaylorStep
+
+SOURCE = reference.enclosure.sections.__file__
+BITS = 128
+FAST = {"rotation_rate": "0.02", "equatorial_radius": "1000", "length": "20", "x": "3", "y": "-2"}
+CASES = {  # changes of Paris, sections, end: rest and moving, fast planets, where d is large
+    "paris": ({}, ("highest", "lowest", "gate 30", "gate -75.5@0", "turn 100.25"), 20),
+    "fast": (FAST | {"vx": "0.4"}, ("highest", "lowest", "gate 30", "gate 110@0", "turn 200"), 20),
+    "lean": (FAST | {"latitude": "-35", "gravity_is": "effective"}, ("gate 0", "gate 91", "gate 0@0", "highest"), 20),
+    "plane": ({"rotation_rate": "0", "vy": "0.3"}, ("gate 10", "gate 100@0", "turn 53.2", "lowest"), 20),
+    "own plane": ({"angles": ("5", "30", "0", "0")}, ("gate 30@0", "turn 120", "highest"), 20),
+}
+OWN_PLANE = {"id": "own_plane", "release": {"angle": "5", "azimuth": "30"}, "run": {"t_end": "40", "grid_step": "20"}}
+TRUTHS = {}
+
+
+def forms_hold(module):
+    """Lemma 12.1 at a made-up motion: p + δ cos and sin of every size, whose tube is known to be tight."""
+    balls = SceneBalls(scene(rotation_rate="0"), BITS + 64)
+    unit = 1 << BITS
+    for a, b, d in (
+        ([1, 0, 0], [0] * 3, 0),
+        ([0] * 3, [0, 1, 0], 0),
+        ([0, 3, 0], [0] * 3, 2),
+        ([0, 0, 1], [0, 0, 2], 1),
+    ):
+        for h in (1, Fraction(1, 4), 3):
+            rows = tuple([int(x * unit / 8) for x in row] for row in ([1, 2, 3], [3, -1, 2], [-2, 4, 1])) + ([0],)
+            piece = Piece(balls, TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH))
+            axis = next(i for i, x in enumerate([p or q for p, q in zip(a, b, strict=True)]) if x)
+            for part in range(3):  # which of the three bounds is used up: position, velocity or acceleration
+                sizes = [0, 0, 0]
+                sizes[part] = Fraction(1, 100)
+                tube = Tube(*(ball(Fraction(x)) for x in sizes))
+                made = module.Form(Covered(piece, tube), *([arb(x) for x in row] for row in (a, b)), arb(d))
+                for s in (Fraction(-1, 2), Fraction(0), Fraction(3, 4)):
+                    for side in (1, -1):
+                        r, v, w = (
+                            [sum(Fraction(c, unit) * f(k) for k, c in enumerate(row)) for row in rows[:3]]
+                            for f in _powers(s)
+                        )
+                        for i, x in enumerate((r, v, w)):
+                            x[axis] += side * sizes[i]
+                        true = h * (sum(p * q for p, q in zip(a, r, strict=True)) - d) + sum(
+                            p * q for p, q in zip(b, v, strict=True)
+                        )
+                        rate = h * sum(p * q for p, q in zip(a, v, strict=True)) + sum(
+                            p * q for p, q in zip(b, w, strict=True)
+                        )
+                        with ctx.workprec(BITS + 64):
+                            assert made.at(0, ball(s)).overlaps(ball(true)), "the form"
+                            assert made.at(1, ball(s)).overlaps(ball(rate)), "its rate"
+                scale = float(h * max(a) * sizes[0] + max(b) * sizes[1])
+                assert float(made.tube.u) == pytest.approx(scale, rel=1e-6), "what counts as near to zero"
+
+
+def _powers(s):
+    yield lambda k: s**k
+    yield lambda k: k * s ** (k - 1) if k else 0
+    yield lambda k: k * (k - 1) * s ** (k - 2) if k > 1 else 0
+
+
+def passages_hold(module, names=CASES):
+    """Passages lie where the motion is, in the direction that it has; as many as its form has signs."""
+    for name in names:
+        changes, words, end = CASES[name]
+        inputs = scene(t_end=str(end), **changes)
+        balls = SceneBalls(inputs, BITS + 64)
+        course = Course(balls, [Fraction(0), Fraction(end)], False, True)
+        sections = module.Sections(course, words)
+        for step in until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(end)):
+            course.advance(step)
+        made = sections.finish(course.finish())
+        assert tuple(made.passages) == words
+        with mp.workprec(200):
+            if name not in TRUTHS:
+                times = [Fraction(end * k, 400) for k in range(1, 401)]
+                TRUTHS[name] = [[mp.mpf(x.numerator) / x.denominator for x in row] for row in truth(inputs, times, 200)]
+            for word in words:
+                check(inputs, word, made.passages[word], TRUTHS[name], end, name)
+
+
+def check(inputs, word, zeros, states, end, name):
+    parts, pars, way = form(inputs, word), constants(inputs), WAYS.get(word)
+    signs = [int(mp.sign(value(parts, state))) for state in states]
+    changes = [q for p, q in zip(signs, signs[1:], strict=False) if p != q and way in (None, q)]
+    ones = [z for z in zeros if z.parity == "one"]
+    possible = [z for z in zeros if z.parity != "one"]
+    assert [z.direction for z in ones] == changes, (name, word, len(ones), len(changes))
+    # nothing is left open but what vanishes at the release
+    assert len(possible) == (name == "own plane" and word == "gate 30@0"), (name, word)
+    assert all(z.t.low <= 0 < z.t.high < Fraction(1, 100) for z in possible)
+    at = truth(inputs, [(z.t.low + z.t.high) / 2 for z in ones], 200) if ones else []
+    for z, row in zip(ones, at, strict=True):
+        state = [mp.mpf(x.numerator) / x.denominator for x in row]
+        rates = [*state[3:], *acceleration(pars, state)]
+        late, half = -value(parts, state) / value((*parts[:2], 0), rates), (z.t.high - z.t.low) / 2
+        assert abs(late) <= mp.mpf(half.numerator) / half.denominator, (name, word, "time")
+        assert half < Fraction(1, 10**25), (name, word, "useless")
+        for x, rate, q in zip(state, rates, (z.x, z.y, z.z, z.vx, z.vy, z.vz), strict=True):
+            low, high = (mp.mpf(e.numerator) / e.denominator for e in (q.low, q.high))
+            assert low <= x + late * rate <= high, (name, word, "state")
+
+
+def sabotaged(old, new):
+    """The module with a place of its source replaced."""
+    text = Path(SOURCE).read_text(encoding="utf-8")
+    assert text.count(old) == 1, old
+    module = ModuleType("reference.enclosure.sections")
+    module.__package__ = "reference.enclosure"
+    exec(compile(text.replace(old, new), SOURCE, "exec"), module.__dict__)
+    return module
+
+
+@pytest.fixture(scope="module")
+def papers():
+    """The texts of a dataset with sections, what was proved, and forgeries of the texts."""
+    words = ["highest", "gate 30@0"]
+    solution = reference.solve(dict(OWN_PLANE), level="enclosed", digits=12, sections=words)
+    texts = {k: v for k, v in render(solution).items() if isinstance(v, str)}
+    return texts, solution.proof
+
+
+def forged(texts):
+    table, manifest = texts["sections.csv"], json.loads(texts["manifest.json"])
+
+    def said(change):
+        document = json.loads(texts["manifest.json"])
+        change(document["sections"])
+        return texts | {"manifest.json": json.dumps(document)}
+
+    row = table.splitlines()[2]
+    cells = row.split(",")
+    for i, cell in enumerate(cells[1:-1], 1):
+        other = cell[:-1] + str((int(cell[-1]) + 5) % 10) if i != 3 else cell.replace("-", "+")
+        yield texts | {"sections.csv": table.replace(row, ",".join([*cells[:i], other, *cells[i + 1 :]]))}
+    yield texts | {"sections.csv": table.replace(row, row.replace("highest", "gate 30@0"))}
+    yield texts | {"sections.csv": table.replace(row + "\n", "")}
+    yield texts | {"sections.csv": table.replace("section,k", "sections,k")}
+    yield said(lambda s: s["possible"]["gate 30@0"].pop())
+    for key, value in (("parity", "odd"), ("from_s", "0.001"), ("to_s", "0")):
+        yield said(lambda s, key=key, value=value: s["possible"]["gate 30@0"][0].update({key: value}))
+    yield said(lambda s: s["bounds"].update({"x": "1e-30"}))
+    manifest["scene"]["run"]["sections"] = "highest"
+    yield texts | {"manifest.json": json.dumps(manifest)}
+
+
+def papers_hold(module, papers):
+    """What was proved is accepted, and nothing else."""
+    texts, proof = papers
+    module.check_sections(texts, proof.sections, proof.proved)
+    for text in forged(texts):
+        with pytest.raises((ArithmeticError, LookupError, ValueError)):
+            module.check_sections(text, proof.sections, proof.proved)
+    copies = replace(proof.sections), replace(proof.proved)
+    for sections, proved in ((copies[0], proof.proved), (proof.sections, copies[1])):
+        with pytest.raises(ArithmeticError):
+            module.check_sections(texts, sections, proved)
+
+
+def courses_hold(module):
+    """Sections belong to the course that gave them every tube, and to no other."""
+    inputs = scene(t_end="5")
+    balls = SceneBalls(inputs, BITS + 64)
+    steps = list(until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(5)))
+    courses = [Course(balls, [Fraction(0), Fraction(5)], False, True) for _ in range(2)]
+    mine, other = (module.Sections(course, ("highest",)) for course in courses)
+    covered = []
+    courses[0].followers.append(SimpleNamespace(advance=covered.append))
+    for step in steps:
+        courses[0].advance(step)
+    with pytest.raises(ArithmeticError):
+        mine.advance(covered[0])
+    with pytest.raises(ArithmeticError):
+        other.advance(covered[0])
+    proved = courses[0].finish()
+    for wrong in (replace(proved), SimpleNamespace(times=proved.times)):
+        with pytest.raises((ArithmeticError, TypeError)):
+            mine.finish(wrong)
+    with pytest.raises(ArithmeticError):
+        other.finish(proved)
+    late = module.Sections(courses[0], ("highest",))
+    with pytest.raises(ArithmeticError):
+        late.finish(proved)
+    assert mine.finish(proved) in module.FINISHED
+
+
+def all_holds(module, papers):
+    forms_hold(module)
+    courses_hold(module)
+    papers_hold(module, papers)
+    passages_hold(module)
+
+
+def test_the_module_as_it_is_passes_every_check(papers):
+    all_holds(reference.enclosure.sections, papers)
+
+
+FAULTS = [
+    # the words
+    ('"highest": -1, "lowest": 1', '"highest": 1, "lowest": -1'),
+    ('"highest": -1, "lowest": 1', '"highest": -1, "lowest": -1'),
+    ('azimuth.removesuffix("@0") or 0) / 180', 'azimuth.removesuffix("@0") or 0) / 200'),
+    ("balls.turned([cos, sin, arb(0)], 1), [UNIT]", "balls.turned([sin, cos, arb(0)], 1), [UNIT]"),
+    ("balls.turned([cos, sin, arb(0)], 1), [UNIT]", "balls.turned([cos, -sin, arb(0)], 1), [UNIT]"),
+    ("balls.turned([cos, sin, arb(0)], 1), [UNIT]", "balls.turned([cos, sin, arb(0)], -1), [UNIT]"),
+    ("balls.turned([cos, sin, arb(0)], 1), [UNIT]", "[cos, sin, arb(0)], [UNIT]"),
+    ('along if kind == "turn" else times(-1, balls.c)', 'along if kind == "turn" else times(1, balls.c)'),
+    (
+        'along if kind == "turn" else times(-1, balls.c)',
+        'along if kind == "turn" else balls.turned([arb(0), arb(0), arb(1)], 1)',
+    ),
+    ('along if kind == "turn" else times(-1, balls.c)', 'along if kind != "turn" else times(-1, balls.c)'),
+    ("balls.turned([-sin, cos, arb(0)], 1)", "balls.turned([sin, cos, arb(0)], 1)"),
+    ("balls.turned([-sin, cos, arb(0)], 1)", "balls.turned([sin, -cos, arb(0)], 1)"),
+    ("balls.turned([-sin, cos, arb(0)], 1)", "balls.turned([cos, sin, arb(0)], 1)"),
+    ("balls.turned([-sin, cos, arb(0)], 1)", "cross(along, balls.c)"),
+    ('if azimuth.endswith("@0"):', "if False:"),
+    ('if azimuth.endswith("@0"):', "if True:"),
+    (
+        "times(-1, cross(balls.omega, cross(balls.omega, rest)))",
+        "times(1, cross(balls.omega, cross(balls.omega, rest)))",
+    ),
+    ("times(-1, cross(balls.omega, cross(balls.omega, rest)))", "times(-1, cross(balls.omega, rest))"),
+    (
+        "times(-1, cross(balls.omega, cross(balls.omega, rest)))",
+        "times(-2, cross(balls.omega, cross(balls.omega, rest)))",
+    ),
+    ("times(-1, cross(balls.omega, cross(balls.omega, rest)))", "[arb(0)] * 3"),
+    ("times(1 / dot(pull, pull).sqrt(), pull)", "times(-1 / dot(pull, pull).sqrt(), pull)"),
+    ("times(1 / dot(pull, pull).sqrt(), pull)", "pull"),
+    ("(across := cross(along, balls.c))", "(across := cross(balls.c, along))"),
+    ("(across := cross(along, balls.c))", "(across := along)"),
+    ("zero, dot(across, rest)", "zero, arb(0)"),
+    ("zero, dot(across, rest)", "zero, -dot(across, rest)"),
+    ("zero, dot(across, rest)", "zero, dot(across, balls.r)"),
+    # the form and its rate
+    ("[*times(h, a), *b]", "[*a, *b]"),
+    ("[*times(h, a), *b]", "[*times(h, a), *times(h, b)]"),
+    ("[*piece.p, *piece.v]", "[*piece.v, *piece.p]"),
+    ("-h * d * arb_poly", "h * d * arb_poly"),
+    ("-h * d * arb_poly", "-d * arb_poly"),
+    ("-h * d * arb_poly", "0 * arb_poly"),
+    ("arb_poly([piece.unit])", "arb_poly([1])"),
+    ("size(a) * h * x + size(b) * y", "size(a) * h * x"),
+    ("size(a) * h * x + size(b) * y", "size(b) * y"),
+    ("size(a) * h * x + size(b) * y", "size(a) * x + size(b) * y"),
+    ("size(a) * h * x + size(b) * y", "size(a) * h * y + size(b) * x"),
+    ("((eta, u), (u, bend))", "((eta, u), (eta, u))"),
+    ("((eta, u), (u, bend))", "((eta, eta), (u, u))"),
+    ("(f.derivative(), more)", "(f, more)"),
+    ("(f.derivative(), more)", "(2 * f.derivative(), more)"),
+    ("(f.derivative(), more)", "(f.derivative(), off)"),
+    ("(f, off), (f.derivative()", "(f, more), (f.derivative()"),
+    ("_replace(u=off.rad())", "_replace(u=off.rad() * 1000)"),
+    ("(g * arb(1), x) for g", "(g * arb(2), x) for g"),
+    ("(g * arb(1), x) for g", "(g * arb(1), arb(0)) for g"),
+    ("for x in [*a, d, *piece.balls.release[1]]", "for x in [*a, d]"),
+    ("for x in [*a, d, *piece.balls.release[1]]", "for x in [d, *piece.balls.release[1]]"),
+    ("for x in [*a, d, *piece.balls.release[1]]", "for x in piece.balls.release[1]"),
+    (
+        "x.is_zero() for x in [*a, d, *piece.balls.release[1]]), False",
+        "x.is_zero() for x in [*a, d, *piece.balls.release[1]]), True",
+    ),
+    ("turned(r, -1), *turned(times(1 / self", "turned(r, 1), *turned(times(1 / self"),
+    ("times(1 / self.piece.k.h, v)", "v"),
+    # the course
+    ('demand(not self.course.open, "a tube', 'demand(True, "a tube'),
+    ("proved in FINISHED and proved.times is", "proved.times is"),
+    ("and proved.times is self.course.times", ""),
+    ("{scan.time for scan in self.scans} == {proved.times[-1]}", "True"),
+    ('z.parity != "one" or z.direction == way', 'z.parity != "one" or z.direction != way'),
+    ('not way or z.parity != "one" or z.direction == way', "True"),
+    # the papers
+    ("sections in FINISHED and sections.proved is proved and header", "sections.proved is proved and header"),
+    ("sections.proved is proved and header", "header"),
+    ('and header == f"section,{HEADER}"', ""),
+    ('right and "; ".join(sections.passages) == manifest["scene"]["run"]["sections"]', "right"),
+    ("[k, z.t, z.direction, z.x", "[k, z.t, int(z.direction), z.y"),
+    ('Fraction(part["from_s"]) <= low and high', "high"),
+    ('low and high <= Fraction(part["to_s"])', "low"),
+    ('inside and part["parity"] == z.parity', "inside"),
+    ("[cell[0] for cell in cells] == [row[0] for row in rows]", "True"),
+    ("{name: Fraction(x) for name, x in least.items()}", "dict.fromkeys(HEADER.split(','), Fraction(1))"),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), one_in(8, FAULTS))
+def test_each_fault_is_found(old, new, papers):
+    module = sabotaged(old, new)
+    with pytest.raises(
+        (AssertionError, ArithmeticError, LookupError, TypeError, ValueError, AttributeError, pytest.fail.Exception)
+    ):
+        all_holds(module, papers)

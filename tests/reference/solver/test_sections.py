@@ -1,0 +1,147 @@
+"""Sections: none lost, none doubled, all inside their bounds, against another code."""
+
+import json
+import math
+from fractions import Fraction
+from random import Random
+
+import pytest
+from forgery import seal
+from passages import found, outside, rows_of
+from random_scenes import random_scene
+from sampled import one_in
+
+import reference
+from reference.dataset.golden import load, read_files
+from reference.dataset.verify import verify
+from reference.dataset.write import write
+from reference.errors import InputError
+from reference.scenes.fields import LEVELS
+from reference.scenes.scene import parse_scene
+
+NEAR = 0.05  # of a swing: doubles lose digits where the motion amplifies errors; 400 bits tell each time exactly
+LASTS = 12  # a damped swing is followed while it is above exp(-LASTS) of itself
+
+
+def drawn(seed):
+    """A random scene of some swings, and sections at random azimuths."""
+    document, rng = random_scene(seed), Random(seed)
+    pace = (float(document["site"]["gravity"]) / float(document["pendulum"]["length"])) ** 0.5
+    drag = float(document["pendulum"]["drag"])
+    end = min(float(document["run"]["t_end"]), 6 * 6.2832 / pace, LASTS / drag if drag else 1e300)
+    document["run"] |= {"t_end": f"{end:.9g}", "grid_step": f"{end / 3:.6g}", "digits": 14}
+    azimuths = [f"{rng.uniform(-180, 180):.6f}" for _ in range(3)]
+    words = ["highest", "lowest", f"gate {azimuths[0]}", f"gate {azimuths[1]}@0", f"turn {azimuths[2]}"]
+    if seed in (2, 15):  # planets that turn so fast that the pull singles out no rest position
+        del words[2]
+    return parse_scene(document), words, 6.2832 / pace
+
+
+def check(solution, words, swing):
+    """The passages are those of DOP853, in number, direction and time, and truth lies within each bound."""
+    inputs = solution.scene.exact
+    expected = found(inputs, words, inputs.t_end)
+    for word in words:
+        passages = solution.sections[word]
+        assert not passages.possible, (word, passages.possible)
+        times = [float(t) for t in passages.table.exact("t")]
+        told = list(zip(times, passages.directions, strict=True))
+        assert [way for _, way in told] == [way for _, way in expected[word]], (word, told, expected[word])
+        assert all(abs(t - other) < NEAR * swing for (t, _), (other, _) in zip(told, expected[word], strict=True)), word
+        assert outside(inputs, word, *rows_of(passages.table)) == []
+
+
+@pytest.mark.parametrize("seed", one_in(8, range(40)))
+def test_sections_of_random_scenes_are_those_of_another_code(seed):
+    scene, words, swing = drawn(seed)
+    check(reference.solve(scene, level="enclosed", sections=words), words, swing)
+
+
+OWN_PLANE = {"id": "own_plane", "release": {"angle": "5", "azimuth": "30"}, "run": {"t_end": "40", "grid_step": "20"}}
+TINY = {  # a swing of a nanometre, whose height changes by 1e-20 m
+    "id": "tiny",
+    "site": {"gravity_is": "effective", "latitude": "90"},
+    "release": {"x": "1e-9", "y": "0"},
+    "run": {"t_end": "40", "grid_step": "20", "digits": 15},
+}
+
+
+def test_a_release_at_rest_in_the_gates_own_plane_is_possible_next_to_0_and_nothing_is_lost():
+    words = ["gate 30@0", "gate 30", "turn 120", "highest"]
+    solution = reference.solve(OWN_PLANE, level="enclosed", digits=15, sections=words)
+    ((low, high, parity),) = solution.sections["gate 30@0"].possible
+    assert low == 0 < high < Fraction(1, 10**6)
+    assert parity == "unknown"
+    expected = found(solution.scene.exact, words, 40)
+    for word in words:
+        passages = solution.sections[word]
+        later = [t for t, _ in expected[word] if t > 1e-3]
+        assert [float(t) for t in passages.table.exact("t")] == pytest.approx(later, abs=1e-6), word
+        assert word == words[0] or not passages.possible
+    # the plumb line stands 0.1 mm beside this plane's own line: it is decided there
+    assert len(solution.sections["gate 30"].directions) == 4
+
+
+@pytest.mark.parametrize("level", ["self_consistent", "confirmed", "enclosed"])
+def test_the_highest_points_of_a_nanometres_swing_are_found_once_each(level):
+    solution = reference.solve(TINY, level=level, sections=["highest", "lowest"])
+    half = math.pi * math.sqrt(67 / 9.80665)
+    for word, first in (("highest", half), ("lowest", half / 2)):
+        passages = solution.sections[word]
+        times = [float(t) for t in passages.table.exact("t")]
+        assert times == pytest.approx([first + k * half for k in range(len(times))], rel=1e-7)
+        assert len(times) == int((40 - first) / half) + 1
+        assert max(passages.table.bound("t")) < Fraction(1, 10**12)
+
+
+def test_all_levels_find_the_same_passages():
+    words = ["highest", "gate 53.130102354155978@0", "gate 30", "turn 90", "turn 0"]
+    solutions = [reference.solve("paris", level=x, digits=15, t_end=60, sections=words) for x in LEVELS]
+    proof = solutions[-1]
+    for solution in solutions[:-1]:
+        for word in words:
+            mine, proved = solution.sections[word], proof.sections[word]
+            assert mine.directions == proved.directions
+            apart = mine.table.distance(proved.table)
+            for name in mine.table.columns:
+                bounds = zip(apart.exact(name), mine.table.bound(name), proved.table.bound(name), strict=True)
+                assert all(gap <= a + b for gap, a, b in bounds), (word, name)
+    # xdot = 0 is one of them
+    assert proof.sections["turn 0"].table.exact("t") == pytest.approx(proof.transits.exact("t"), abs=1e-30)
+
+
+@pytest.mark.parametrize("level", ["confirmed", "enclosed"])
+def test_a_dataset_with_sections_is_written_read_and_verified(tmp_path, level):
+    solution = reference.solve(OWN_PLANE, level=level, digits=15, sections=["highest", "gate 30"])
+    folder = write(solution, tmp_path / "own")
+    golden = load(folder)
+    assert verify(folder).problems == []
+    for word, passages in solution.sections.items():
+        assert golden.sections[word].exact("t") == pytest.approx(passages.table.exact("t"), abs=1e-13)
+        assert len(golden.sections[word].bound("t")) == len(passages.directions)
+    text = (folder / "sections.csv").read_text(encoding="utf-8")
+    row = text.splitlines()[2]
+    cells = row.split(",")
+    moved = f"{cells[2][:-2]}{(int(cells[2][-2]) + 3) % 10}{cells[2][-1]}"
+    changed = read_files(folder).texts | {"sections.csv": text.replace(row, ",".join([*cells[:2], moved, *cells[3:]]))}
+    seal(folder, json.loads((folder / "manifest.json").read_text(encoding="utf-8")), changed)
+    assert any("sections.csv: passage of highest: t is off" in problem for problem in verify(folder).problems)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "gate",
+        "gate 400",
+        "turn north",
+        "gate 1e2",
+        "turn 30@0",
+        "top",
+        "gate 30,gate 30",
+        ["highest", "highest"],
+        "gate ٣",
+    ],
+)
+def test_a_wrong_section_is_refused_with_what_was_expected(words):
+    with pytest.raises(InputError, match=r"run\.sections.*(highest, lowest, gate AZIMUTH|each section once)"):
+        reference.solve("paris", sections=words)
