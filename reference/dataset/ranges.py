@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from ..engines.plan import Report
 from ..errors import DatasetError, FoucaultError, InputError
-from ..numbers.columns import GRID, TRANSITS
+from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..scenes.scene import parse_scene
-from ..solver.ranges import Ends, Intervals, Ranges
+from ..solver.ranges import Ends, Intervals, Ranges, Zeros
 from ..solver.solution import exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
@@ -23,7 +23,7 @@ from .sheets import scene_inputs
 from .write import check_target, filled, replace, writable_place
 
 FORMAT = 1
-GRID_FILE, TRANSITS_FILE = "grid.csv", "transits.csv"
+GRID_FILE, TRANSITS_FILE, SECTIONS_FILE = "grid.csv", "transits.csv", "sections.csv"
 DIGITS = 2  # that a width has in the tables: the ends widen it by a tenth at most
 
 
@@ -116,7 +116,8 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
         texts = {RANGES: (folder / RANGES).read_text(encoding="utf-8")}
-        texts |= {name: (folder / name).read_text(encoding="utf-8") for name in (GRID_FILE, TRANSITS_FILE)}
+        names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in said else []))
+        texts |= {name: (folder / name).read_text(encoding="utf-8") for name in names}
         if _text({**said, "seal": _seal(said)}) != texts[RANGES]:
             raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed"])
         for name, digest in said["sha256"].items():
@@ -124,25 +125,36 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
                 raise DatasetError(str(folder), [f"{name}: a byte was changed (sha256 differs)"])
         name = said["id"].partition("+")[0].removesuffix(f".{said['inputs']}")
         scene = parse_scene({"id": name, "inputs": said["inputs"], **said["scene"]})
-        tables = {
-            name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in (GRID_FILE, TRANSITS_FILE)
+        tables = {name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in names}
+        passages = {
+            word: _zeros([row[1:] for row in tables[SECTIONS_FILE] if row[0] == word], SECTION, possible)
+            for word, possible in said.get("sections", {}).items()
         }
-        possible = tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in said["possible"])
+        transits = _zeros(tables[TRANSITS_FILE], TRANSITS, said["possible"])
         ranges = Ranges(
             scene,
             {name: width.removeprefix("±") for name, width in said["uncertain"].items()},
             tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
             Intervals(GRID, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
-            Intervals(TRANSITS, tuple(_intervals(row[2:]) for row in tables[TRANSITS_FILE])),
-            [int(row[1]) for row in tables[TRANSITS_FILE]],
-            possible,
+            transits.table,
+            transits.directions,
+            transits.possible,
             said["proof"]["engine"],
+            passages,
         )
     except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
         if isinstance(error, DatasetError):
             raise
         raise DatasetError(str(folder), [f"cannot be read: {type(error).__name__} {error}"]) from None
     return ranges, texts
+
+
+def _zeros(rows: Sequence[Sequence[str]], columns: tuple[str, ...], possible: Sequence[Mapping[str, str]]) -> Zeros:
+    return Zeros(
+        Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
+        [int(row[1]) for row in rows],
+        tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in possible),
+    )
 
 
 def _intervals(cells: Sequence[str]) -> tuple[Ends, ...]:
@@ -203,10 +215,20 @@ def _grid(ranges: Ranges) -> str:
 
 
 def _transits(ranges: Ranges) -> str:
-    rows = zip(ranges.directions, _cells(ranges.transits), strict=True)
-    lines = [["k", "direction", *_names(TRANSITS)]]
-    lines += [[str(k), str(direction), *row] for k, (direction, row) in enumerate(rows, 1)]
+    rows = _zero_rows(ranges.transits, ranges.directions)
+    return _csv([["k", "direction", *_names(TRANSITS)], *rows])
+
+
+def _sections(ranges: Ranges) -> str:
+    lines = [["section", "k", "direction", *_names(SECTION)]]
+    for word, found in ranges.sections.items():
+        lines += [[word, *row] for row in _zero_rows(found.table, found.directions)]
     return _csv(lines)
+
+
+def _zero_rows(table: Intervals, directions: Sequence[int]) -> list[list[str]]:
+    rows = zip(directions, _cells(table), strict=True)
+    return [[str(k), str(direction), *row] for k, (direction, row) in enumerate(rows, 1)]
 
 
 def _names(columns: Sequence[str]) -> list[str]:
@@ -220,6 +242,8 @@ def _csv(lines: Sequence[Sequence[str]]) -> str:
 def _texts(ranges: Ranges) -> dict[str, str]:
     """Return the files of ranges, sealed."""
     tables = {GRID_FILE: _grid(ranges), TRANSITS_FILE: _transits(ranges)}
+    if ranges.sections:
+        tables[SECTIONS_FILE] = _sections(ranges)
     said = _manifest(ranges, tables)
     return {RANGES: _text(said | {"seal": _seal(said)}), **tables}
 
@@ -250,10 +274,12 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
         "scene": sections,
         "uncertain": _signed(ranges),
         "period_s": period_texts(ranges),
-        "possible": [
-            {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
-            for low, high, parity in ranges.possible
-        ],
+        "possible": _possible(ranges.possible),
+        **(
+            {"sections": {word: _possible(z.possible) for word, z in ranges.sections.items()}}
+            if ranges.sections
+            else {}
+        ),
         "counts": {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)},
         "proof": {
             "engine": ranges.engine,
@@ -263,3 +289,8 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
         },
         "sha256": {name: _hash(text) for name, text in tables.items()},
     }
+
+
+def _possible(intervals: Sequence[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
+    """Return intervals that may hold other zeros, as `ranges.json` lists them."""
+    return [{"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity} for low, high, parity in intervals]

@@ -129,13 +129,18 @@ class BoxRadius(Radius):
 class Windows:
     """Runs a course in the scene's time; gives states and transits of all inputs of the box in their own time."""
 
-    def __init__(self, box: Box, prec: int, until: list[Fraction], transits: bool) -> None:
+    def __init__(self, box: Box, prec: int, until: list[Fraction], transits: bool, words: tuple[str, ...] = ()) -> None:
         self.box, self.balls, self.times = box, BoxBalls(box, prec), tuple(until)
         self.pace, self.hulls, self.done = self.balls.paces, list[Vector](), 0
         demand(self.pace.low > 0 == until[0], "a box is followed from its release on")
         self.course = Course(self.balls, [self.pace.high * until[-1]], False, transits)  # to the latest end
         self.course.bound = BoxRadius(self.balls)
         self.course.followers.append(self)
+        self.sections: Any = None
+        if words:
+            from .sections import Sections  # a box without sections does not rest on their code
+
+            self.sections = Sections(self.course, words)
 
     def advance(self, covered: Covered) -> None:
         """Take the next tube: at each output time some pendulums of the box may be in it."""
@@ -150,22 +155,29 @@ class Windows:
 
     def finish(self) -> ProvedBox:
         """Return what is proved, in the time of each pendulum, to which it was `pace` times that of the course."""
-        proved, pace, length, out = self.course.finish(), self.balls.pace, self.balls.length, list[EnclosedTransit]()
+        proved, pace, length = self.course.finish(), self.balls.pace, self.balls.length
+        passages = self.sections.finish(proved).passages if self.sections else {}
         demand(self.done == len(self.times), "the steps do not end with the run")
         with ctx.workprec(self.balls.prec):
             own = [[*times(length, x[:3]), *times(length * pace, x[3:])] for x in self.hulls]
             own[0] = [x * length for part in self.balls.release for x in part]
             if self.balls.given:
                 own[0][:2], own[0][3:5] = self.balls.given[:2], self.balls.given[2:]
-            for z in proved.transits or ():
-                t, vy, ax = (
-                    interval(hull(q.low, q.high) * f) for q, f in ((z.t, 1 / pace), (z.vy, pace), (z.ax, pace**2))
-                )
-                out += [replace(z, t=t, vy=vy, ax=ax)] if t.low <= self.times[-1] else []
             states = tuple(tuple(map(interval, x)) for x in own)
-        transits = None if proved.transits is None else tuple(out)
-        FINISHED.add(result := ProvedBox(self.box, self.times, states, transits))
+            transits = None if proved.transits is None else self.in_own_time(proved.transits)
+            sections = {word: self.in_own_time(zeros) for word, zeros in passages.items()}
+        FINISHED.add(result := ProvedBox(self.box, self.times, states, transits, sections))
         return result
+
+    def in_own_time(self, zeros: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Return zeros in the time of each pendulum: those that may come up to the end."""
+        pace, moved = self.balls.pace, list[Any]()
+        factors = {"t": 1 / pace, "vx": pace, "vy": pace, "vz": pace, "ax": pace**2}
+        for z in zeros:
+            old = {name: getattr(z, name, None) for name in factors}
+            new = {name: interval(hull(x.low, x.high) * factors[name]) for name, x in old.items() if x}
+            moved += [replace(z, **new)] if new["t"].low <= self.times[-1] else []
+        return tuple(moved)
 
 
 def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:

@@ -13,6 +13,7 @@ from .printed import DECIMAL, PLAIN, RELEASES, asked
 from .shapes import Interval, ProvedBox
 
 GRID, TRANSITS = ("x", "y", "z", "vx", "vy", "vz"), ("t", "x", "y", "z", "vy", "ax")
+PASSAGES = ("t", *GRID)
 
 
 def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
@@ -23,15 +24,15 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     demand(
         proved in FINISHED and (inputs, *ends) == proved.box and times == proved.times, "the proof is of other inputs"
     )
-    ones, others = ([z for z in found if (z.parity == "one") is single] for single in (True, False))
     check_rows(texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True)))
-    zeros = ([k, z.direction, *(getattr(z, name) for name in TRANSITS)] for k, z in enumerate(ones, 1))
-    check_rows(texts["transits.csv"], ["k", "direction"], TRANSITS, zeros)
-    for z, text in zip(others, said["possible"], strict=True):
-        until = Interval(max(z.t.low, Fraction(0)), min(z.t.high, times[-1]))
-        demand(
-            holds(text["from_s"], text["to_s"], until) and text["parity"] == z.parity, "misprint: a possible transit"
-        )
+    ones, others = check_zeros(texts["transits.csv"], TRANSITS, found, said["possible"], times[-1])
+    words = [*proved.sections]
+    header, *parts = [line.partition(",") for line in texts["sections.csv"].splitlines()] if words else [["section"]]
+    right = header[0] == "section" and sorted(parts, key=lambda part: words.index(part[0])) == parts
+    demand(right and [*said.get("sections", {})] == words, "misprint: other sections")
+    for word, zeros in proved.sections.items():
+        text = "\n".join([header[2], *(row for name, _, row in parts if name == word)])
+        check_zeros(text, PASSAGES, zeros, said["sections"][word], times[-1])
     if said["period_s"] is not None:
         swings = (len(ones) - 1) // 2
         demand(swings > 0 and not others, "misprint: a period where transits are undecided")
@@ -41,6 +42,17 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
         demand(holds(low, high, mean), "misprint: the period")
     counts = {"grid": len(times), "transits": len(ones), "possible": len(others)}
     demand(said["counts"] == counts, "misprint: the counts")
+
+
+def check_zeros(text: str, names: tuple[str, ...], found: Any, possible: Any, end: Fraction) -> tuple[Any, Any]:
+    """Demand that a table has the single zeros, and that the possible ones are listed; return both."""
+    ones, others = ([z for z in found if (z.parity == "one") is single] for single in (True, False))
+    rows = ([k, z.direction, *(getattr(z, name) for name in names)] for k, z in enumerate(ones, 1))
+    check_rows(text, ["k", "direction"], names, rows)
+    for z, part in zip(others, possible, strict=True):
+        until = Interval(max(z.t.low, Fraction(0)), min(z.t.high, end))
+        demand(holds(part["from_s"], part["to_s"], until) and part["parity"] == z.parity, "misprint: a possible zero")
+    return ones, others
 
 
 def end_of(inputs: Inputs, uncertain: Mapping[str, str], side: int) -> Inputs:

@@ -47,6 +47,7 @@ def enclose_box(
     progress: Callable[[float], None] | None = None,
     halves: dict[str, Fraction] | None = None,
     derivatives: bool = False,
+    sections: tuple[str, ...] = (),
 ) -> BoxEnclosure:
     """Prove what holds at times from 0 on for all inputs of a box, and every transit up to the last of them.
 
@@ -58,6 +59,7 @@ def enclose_box(
         progress: called with the part of the time span that is proved.
         halves: half of the width of each uncertain input by its full name; with them derivatives may be used.
         derivatives: whether they are wanted; else they are used where one radius grows too much.
+        sections: words of sections, whose passages are enclosed as well.
 
     Raises:
         UnreachableError: the box is too wide; says up to which time it holds.
@@ -66,7 +68,7 @@ def enclose_box(
     try:
         balls = BoxBalls(box, LOOK_BITS)
         bits = plan_for(box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius").bits
-        windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits)
+        windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits, sections)
         course, latest = windows.course, windows.course.times[-1]
         follower = source = None
         if halves and (derivatives or _growth(balls) * float(latest) > GROWTH):

@@ -95,12 +95,13 @@ class Box(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ProvedBox:
-    """Proved for all inputs of a box: states at `times`, and each transit that may come up to the last of them."""
+    """Proved for all inputs of a box: states at `times`, and each zero that may come up to the last of them."""
 
     box: Box
     times: tuple[Fraction, ...]
     states: tuple[State, ...]
     transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or xdot is identically zero
+    sections: dict[str, tuple[EnclosedPassage, ...]]  # by their words
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ import numpy as np
 from ..engines import AUTO
 from ..engines.plan import Report
 from ..errors import InputError, unknown
-from ..numbers.columns import GRID, TRANSITS, Framed, data_frame
+from ..numbers.columns import GRID, SECTION, TRANSITS, Framed, data_frame
 from ..numbers.precision import Array, double_below, fixed_decimal
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene, checked_value, full_name
@@ -74,6 +74,32 @@ class Intervals(Framed):
         return data_frame({f"{name}_{word}": of(name) for name in self.columns for word, of in ends})
 
 
+@dataclass(frozen=True)
+class Zeros:
+    """The transits of a box, or the passages of one of its sections.
+
+    Attributes:
+        table: intervals in each of which every pendulum of the box has one, in order; the last one may come after the
+            end for some.
+        directions: +1 where the form grows, per zero.
+        possible: intervals of time that may hold other zeros, each with its parity.
+    """
+
+    table: Intervals
+    directions: list[int] = field(repr=False)
+    possible: tuple[tuple[Fraction, Fraction, str], ...]
+
+    @classmethod
+    def of(cls, found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> Zeros:
+        """Return what a proof found up to `end`."""
+        ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
+        return cls(
+            Intervals(columns, tuple(tuple(getattr(z, name) for name in columns) for z in ones)),
+            [z.direction for z in ones],
+            tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others),
+        )
+
+
 class Derivative(NamedTuple):
     """Derivatives to one input, per SI unit of it (degrees for angles), as proven intervals.
 
@@ -102,6 +128,7 @@ class Ranges:
         directions: +1 where xdot goes from - to +, per transit.
         possible: intervals of time that may hold other zeros, each with its parity.
         engine: whose steps were proved.
+        sections: the passages of each section that the scene asks for, by its word.
         proof: the `BoxEnclosure`; None for ranges that were read from a file.
     """
 
@@ -113,6 +140,7 @@ class Ranges:
     directions: list[int] = field(repr=False)
     possible: tuple[tuple[Fraction, Fraction, str], ...]
     engine: str
+    sections: Mapping[str, Zeros] = field(default_factory=dict, repr=False)
     proof: Any = field(default=None, repr=False)
 
     @property
@@ -209,21 +237,23 @@ def solve_ranges(
 
     try:
         tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(box, list(times), approximant, scene.run.transits, tell, widths, derivatives)
+        proof = enclose_box(
+            box, list(times), approximant, scene.run.transits, tell, widths, derivatives, scene.run.sections or ()
+        )
     finally:
         for feed in feeds:
             feed.stop()
-    found = proof.proved.transits or ()
-    ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
+    transits = Zeros.of(proof.proved.transits or (), TRANSITS, end)
     return Ranges(
         scene,
         texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
-        Intervals(TRANSITS, tuple(tuple(getattr(z, name) for name in TRANSITS) for z in ones)),
-        [z.direction for z in ones],
-        tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others),
+        transits.table,
+        transits.directions,
+        transits.possible,
         feeds[-1].begun,
+        {word: Zeros.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
         proof,
     )
 
