@@ -9,7 +9,7 @@ import typer
 
 from reference import InputError, Ranges, Scene, load_ranges
 from reference.commands.progress import progress
-from reference.commands.terminal import emit, stoppable
+from reference.commands.terminal import emit, refuse, stoppable
 from reference.dataset.place import RANGES, golden_folder
 from reference.solver.ranges import Intervals, exact_texts, widths_of
 
@@ -34,18 +34,30 @@ def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
 
 
 def hold(
-    files: list[str], transits: str | None, ranges: Ranges, naming: Naming, tolerance: float | None, as_json: bool
+    files: list[str],
+    transits: str | None,
+    section: str | None,
+    ranges: Ranges,
+    naming: Naming,
+    tolerance: float | None,
+    as_json: bool,
 ) -> None:
     """Hold files, or transits alone, against ranges, and print what comes of it; exit status 1 where one disagrees."""
     if not files and transits is None:
         raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
+    if section is not None:
+        if transits is None:
+            refuse({"--section": section}, "without --transits")
+        (section, *more) = ranges.scene.with_values({"run.sections": section}).run.sections or ("",)
+        if more or not section:
+            raise InputError("--section", section, "one section", "Score the passages of each by themselves.")
     times, found = None if transits is None else read_transits(transits, naming.units), []
     names: list[str | None] = [*files] or [None]
     for file in names:
         rows = None if file is None else read(Path(file), columns=naming.columns, units=naming.units)
         with stoppable("nothing was written"), progress() as show:
             report: Any = show(f"the proof of {ranges.scene.id}", float(ranges.scene.exact.t_end))
-            found.append(measured(rows, times, ranges, tolerance or 0.0, str(transits), report))
+            found.append(measured(rows, times, ranges, tolerance or 0.0, str(transits), report, section))
     if as_json:
         emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
     else:

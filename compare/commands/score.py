@@ -67,6 +67,9 @@ HOW = option(
 COLUMNS = option("--columns", "Names of a file's columns in order; - for one that is not read.", "t,x,y,…")
 UNITS = option("--units", "Units of times and lengths, such as ms,cm (default: s,m).", "A,B")
 TRANSITS = option("--transits", "Score transits too, or alone: a file with times of xdot = 0 in a column t.", "FILE")
+SECTION = option(
+    "--section", "Of uncertain inputs: --transits are passages of this section, such as 'gate 30'.", "WORD"
+)
 RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
 NAME = option("--name", "Name of the program of --run (default: the program).", "WORD")
 SETTING = option("--setting", "Value of {setting} in --run, in s (default: 200 a period).", "S")
@@ -118,6 +121,7 @@ def command(
     columns: Annotated[str | None, COLUMNS] = None,
     units: Annotated[str | None, UNITS] = None,
     transits: Annotated[str | None, TRANSITS] = None,
+    section: Annotated[str | None, SECTION] = None,
     run: Annotated[str | None, RUN] = None,
     name: Annotated[str | None, NAME] = None,
     setting: Annotated[float | None, SETTING] = None,
@@ -187,12 +191,20 @@ def command(
             }
             unused |= {"--plot": plot, "--junit": junit, "--github": github, "--as-model": as_model}
             refuse({**unused, "--no-diagnosis": no_diagnosis}, "where inputs are uncertain")
-            hold(list(candidates or ()), transits, ranges, naming, tolerance, as_json)
+            hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
             return
+        refuse({"--section": section}, "where all inputs are certain")
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
         refuse(
-            {**others, "--uncertain": uncertain, "--set": set_ or None, "--t-end": t_end, "--columns": columns},
+            {
+                **others,
+                "--section": section,
+                "--uncertain": uncertain,
+                "--set": set_ or None,
+                "--t-end": t_end,
+                "--columns": columns,
+            },
             "together with --suite",
         )
     if covers is not None and not 0 < covers <= 1:

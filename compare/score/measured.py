@@ -17,6 +17,7 @@ from ..candidates.candidate import Candidate
 TOLD = 5  # of the numbers outside, those that are listed: the farthest of each column first
 ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing
 SWING = 7.0  # times sqrt(l/g): a period, and some
+TRANSIT = "transit"
 APART, INSIDE = "disagrees", "cannot be told apart"
 
 
@@ -39,7 +40,7 @@ class Measured:
         name: of the candidate.
         ranges: what was proved, at the times of its rows.
         rows: the number of rows up to the end of the scene.
-        transits: the number of its transits, None if it has none.
+        transits: the number of its transits or passages, None if it has none.
         outside: every number that contradicts the proof, the farthest of a column first.
         notes: remarks that a reader ought to know.
     """
@@ -50,6 +51,12 @@ class Measured:
     transits: int | None
     outside: tuple[Outside, ...]
     notes: tuple[str, ...]
+    section: str | None = None
+
+    @property
+    def kind(self) -> str:
+        """What its `transits` are."""
+        return f"passages of {self.section}" if self.section else "transits"
 
     @property
     def verdict(self) -> str:
@@ -60,7 +67,7 @@ class Measured:
         """Yield the lines for people, the verdict first."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
         counted = [f"{self.rows} rows"] if self.rows else []
-        counted += [] if self.transits is None else [f"{self.transits} transits"]
+        counted += [] if self.transits is None else [f"{self.transits} {self.kind}"]
         scene, what = self.ranges.scene.id, " and ".join(counted)
         if not self.outside:
             yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved"
@@ -68,7 +75,7 @@ class Measured:
             numbers = "1 number is" if len(self.outside) == 1 else f"{len(self.outside)} numbers are"
             yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
         for column, t, got, low, high, by in self.outside[:TOLD]:
-            at, unit = ("", "s") if column == "transit" else (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m")
+            at, unit = (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m") if column in STATE else ("", "s")
             yield f"  {column}{at}: {got:.10g}, proved {low:.10g} to {high:.10g} {unit} ({by:.2g} outside)"
         for note in self.notes:
             yield f"Note: {note}."
@@ -82,6 +89,7 @@ class Measured:
             "uncertain": {name: f"±{width}" for name, width in self.ranges.uncertain.items()},
             "rows": self.rows,
             "transits": self.transits,
+            "section": self.section,
             "outside": [number._asdict() for number in self.outside],
             "notes": list(self.notes),
         }
@@ -94,17 +102,19 @@ def measured(
     tolerance: float = 0.0,
     name: str = "",
     report: Any = None,
+    section: str | None = None,
 ) -> Measured:
     """Hold a candidate, or transits alone, against ranges; rows at other times than theirs take another proof.
 
     Args:
         candidate: rows of positions and, if there, velocities.
-        transits: times of xdot = 0 in s.
+        transits: times of xdot = 0 in s, or of passages of a section.
         ranges: read from files, or made for these rows where they have no times.
         tolerance: how far outside a number of a row may lie, in m or m/s, at least the rounding of doubles; transits
             are taken as they are.
         name: of transits alone.
         report: called with the simulated time reached, in s.
+        section: the word of the section that `transits` are passages of.
 
     Raises:
         InputError: no row or transit lies within the scene's span.
@@ -118,27 +128,29 @@ def measured(
     name = name if candidate is None else candidate.name
     if not kept and not seen:
         raise InputError(name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end.")
-    if not ({*kept} <= {*ranges.times} and (ranges.transits or ranges.possible or not seen)):
+    if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or not seen)):
         inputs, last = ranges.scene.exact, max([*kept, *seen])
         # a swing beyond the last one, so that a transit is not cut off
         later = (
             last + Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else 2 * last
         )
         wanted = sorted({Fraction(0), *kept, *([min(later, end)] if seen or not last else [])})
-        scene = ranges.scene.with_values([f"run.transits={'true' if seen else 'false'}"])
+        sought = {"run.transits": str(bool(seen and not section)).lower(), "run.sections": section or ""}
+        scene = ranges.scene.with_values(sought)
         box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
         ranges = solve_ranges(scene, box, report=report, times=wanted)
-    if seen and not (ranges.transits or ranges.possible):
-        raise InputError(name, "transits", "none: xdot has no single zeros in this scene", "Give positions instead.")
+    if seen and not _intervals(ranges, section):
+        none = f"none: {section or 'xdot'} has no single zeros in this scene"
+        raise InputError(name, "transits", none, "Give positions instead.")
     off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
-    off += _transits(seen, ranges)
+    off += _zeros(seen, _intervals(ranges, section), section or TRANSIT)
     first = {column: max(z.by for z in off if z.column == column) for column in {z.column for z in off}}
     off.sort(key=lambda z: (z.by < first[z.column], z.column not in STATE, -z.by))
     notes = (
         *(candidate.notes if candidate else ()),
         *([f"{late} rows after {float(end):g} s are left out"] if late else []),
     )
-    return Measured(name, ranges, len(kept), len(seen) if transits is not None else None, tuple(off), notes)
+    return Measured(name, ranges, len(kept), len(seen) if transits is not None else None, tuple(off), notes, section)
 
 
 def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float) -> Iterator[Outside]:
@@ -154,10 +166,20 @@ def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, toler
                 yield Outside(name, *map(float, (t, got, low, high, by)))
 
 
-def _transits(times: Sequence[Fraction], ranges: Ranges) -> Iterator[Outside]:
-    """Yield transits in no proven interval, or in one whose only transit is another."""
-    free = [(ends, True) for ends in ranges.transits.exact("t")]
-    free += [((low, high), False) for low, high, _ in ranges.possible]
+def _intervals(ranges: Ranges, section: str | None) -> list[tuple[tuple[Fraction, Fraction], bool]]:
+    """Return the intervals of transits, or of a section's passages, and whether each has just one."""
+    found = ranges.sections.get(section) if section else None
+    if section and not found:
+        return []
+    table, possible = (found.table, found.possible) if found else (ranges.transits, ranges.possible)
+    ones = [(ends, True) for ends in table.exact("t")] if len(table) else []
+    return [*ones, *(((low, high), False) for low, high, _ in possible)]
+
+
+def _zeros(
+    times: Sequence[Fraction], free: list[tuple[tuple[Fraction, Fraction], bool]], word: str
+) -> Iterator[Outside]:
+    """Yield transits or passages in no proven interval, or in one whose only one is another."""
     every = [ends for ends, _ in free]
 
     def gap(t: Fraction, ends: tuple[Fraction, Fraction]) -> Fraction:
@@ -167,7 +189,7 @@ def _transits(times: Sequence[Fraction], ranges: Ranges) -> Iterator[Outside]:
         nearest = min(free, key=lambda interval: gap(t, interval[0]), default=None)
         if nearest is None or gap(t, nearest[0]):
             ends = nearest[0] if nearest else min(every, key=lambda ends: gap(t, ends))
-            yield Outside("transit", *map(float, (t, t, *ends, gap(t, ends))))
+            yield Outside(word, *map(float, (t, t, *ends, gap(t, ends))))
         elif nearest[1]:
             free.remove(nearest)
 

@@ -18,7 +18,7 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
-FIRST_TRANSITS = 3  # that are told of uncertain inputs
+FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -197,7 +197,7 @@ def _motion(scene: Scene) -> dict[str, Any]:
 
 
 def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
-    """Return proven intervals of the period and of the first transits, for every value of uncertain inputs.
+    """Return proven intervals of the period, the first transits and passages, for every value of uncertain inputs.
 
     Raises:
         InputError: an input, or a width.
@@ -208,12 +208,17 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
 
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
     ranges = solve(scene, uncertain=widths)
-    first = [list(ends(*interval)) for interval in ranges.transits.exact("t")[:FIRST_TRANSITS]]
+    tables = {"transit": ranges.transits, **{word: found.table for word, found in ranges.sections.items()}}
+    first = {
+        word: [list(ends(*interval)) for interval in table.exact("t")[:FIRST] if len(table)]
+        for word, table in tables.items()
+    }
     return {
         "over_s": scene.run.t_end,
         "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
         "period_s": period_texts(ranges),
-        "first_transits_s": first,
+        "first_transits_s": first.pop("transit"),
+        "first_passages_s": first,
         "possible": len(ranges.possible),
     }
 
@@ -222,7 +227,11 @@ def _ranges_line(ranges: dict[str, Any]) -> str:
     """Return in a line what holds for all values of uncertain inputs."""
     box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
     told = ["period_s = {} to {}".format(*ranges["period_s"])] if ranges["period_s"] else []
-    told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
+    zeros = {"transit {}": ranges["first_transits_s"]}
+    zeros |= {f"passage {{}} of {word}": ends for word, ends in ranges["first_passages_s"].items()}
+    told += [
+        f"{words.format(k)} = {low} to {high} s" for words, ends in zeros.items() for k, (low, high) in enumerate(ends, 1)
+    ]
     return f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (
         ", ".join(told) or "no transit is decided"
     )
