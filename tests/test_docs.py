@@ -30,9 +30,10 @@ from compare.score.explanation import conventions
 from foucault import commands as commands_of_foucault
 from reference.scenes.scene import Scene
 
-TUTORIAL, SCENE, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
+TUTORIAL, SCENE, MEASURED, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/tutorial.md",
     "docs/scene.md",
+    "docs/measured.md",
     "docs/oracle.md",
     "docs/sweeps.md",
     "docs/studies.md",
@@ -48,6 +49,7 @@ LANGUAGES = {
     CONTRIBUTING: {"sh"},
     TUTORIAL: {"sh", "console", "python", "toml"},
     SCENE: {"console", "toml"},
+    MEASURED: {"console", "csv", "pycon", "toml"},
     ORACLE: {"python", "console"},
     SWEEPS: {"console", "sh", "bash"},
     STUDIES: {"sh"},
@@ -80,6 +82,16 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path):
         assert shows(shown, got), f"{command}\n{got}"
     template = reference.load_scene(tmp_path / "mine.toml")
     assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
+
+
+def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path):
+    assert write_files(MEASURED, tmp_path) == ["hall.toml", "passages.csv"]
+    for command, shown in commands(MEASURED):
+        got = output(command, tmp_path)
+        assert shows(shown, got), f"{command}\n{got}"
+    late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
+    (tmp_path / "late.csv").write_text(late, encoding="utf-8")
+    assert "late.csv disagrees" in output('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
 
 
 def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path):
@@ -174,10 +186,11 @@ def test_what_the_tutorial_installs_can_be_had():
     assert set(extras.split(",")) <= set(project["optional-dependencies"])
 
 
-def test_the_lines_of_the_page_on_python_print_what_it_shows():
-    (block,) = of_language(API, "pycon")
+@pytest.mark.parametrize("page", [API, MEASURED])
+def test_the_lines_of_python_on_a_page_print_what_it_shows(page):
+    (block,) = of_language(page, "pycon")
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner()
-    runner.run(parser.get_doctest(block, {}, "API", API, 0))
+    runner.run(parser.get_doctest(block, {}, page, page, 0))
     assert runner.summarize(verbose=False).failed == 0
 
 

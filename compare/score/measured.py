@@ -56,7 +56,8 @@ class Measured:
     @property
     def kind(self) -> str:
         """What its `transits` are."""
-        return f"passages of {self.section}" if self.section else "transits"
+        several = "" if self.transits == 1 else "s"
+        return f"passage{several} of {self.section}" if self.section else f"transit{several}"
 
     @property
     def verdict(self) -> str:

@@ -215,7 +215,7 @@ def _generate_ranges(
     box = ", ".join(f"{name} ±{width}" for name, width in ranges.uncertain.items())
     typer.echo(f"{folder}: {counts['grid']} grid times, {counts['transits']} transits, for every {box}: enclosed")
     if ranges.possible:
-        typer.echo(f"{counts['possible']} intervals may hold more transits")
+        typer.echo(f"intervals that may hold more transits: {counts['possible']}")
     if period:
         typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")
 
