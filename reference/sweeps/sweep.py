@@ -192,11 +192,7 @@ def sweep(
     if t_end is not None:
         scene = scene.with_values({"run.t_end": t_end})
     return run(
-        asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options),
-        folder,
-        workers,
-        cluster,
-        report,
+        asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options), folder, workers, cluster, report
     )
 
 
