@@ -192,16 +192,12 @@ def sweep(
     if t_end is not None:
         scene = scene.with_values({"run.t_end": t_end})
     return run(
-        asked_for(scene, words_of(over), file, out=folder, audit=audit_rows, **options),
-        folder,
-        workers,
-        cluster,
-        report,
+        asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options), folder, workers, cluster, report
     )
 
 
 def asked_for(
-    scene: Scene, over: Iterable[str] = (), rows: Path | None = None, *, out: Path | None, **options: Any
+    scene: Scene, over: Iterable[str] = (), rows: Path | None = None, out: Path | None = None, **options: Any
 ) -> Request:
     """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `request.request`.
 

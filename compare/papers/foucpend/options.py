@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from reference import InputError, Scene, parse_scene
 from reference.scenes.fields import RunTable
+from reference.system.documents import texts_of
 
 METHOD_OF = {"4": "rk4", "5": "rkng56", "6": "rkng67"}
 MAX_STEPS = 1_000_000_000
@@ -32,25 +33,7 @@ class Switch:
     field: str = ""
 
 
-SWITCHES = {
-    "x": Switch("M", "East position at time zero, m", "0", "release.x"),
-    "y": Switch("M", "North position at time zero, m", "0", "release.y"),
-    "l": Switch("M", "Cord length, m", "67", "pendulum.length"),
-    "v": Switch("M/S", "East velocity at time zero, m/s", "0", "release.vx"),
-    "L": Switch("DEG", "Geodetic latitude, degrees", "48.846111", "site.latitude"),
-    "T": Switch("S", "Duration, s", "86400", "run.t_end"),
-    "t": Switch("S", "Time step, s", "0.1", "run.grid_step"),
-    "s": Switch("N", "Number of steps from one snapshot to the next", "1"),
-    "g": Switch("M/S2", "Gravity, m/s²", "9.80665", "site.gravity"),
-    "O": Switch("RAD/S", "Angular speed of the Earth, rad/s", "7.292115e-5", "site.rotation_rate"),
-    "f": Switch(
-        "1/F", "Inverse flattening of the Earth, or inf for a sphere", "298.257223564", "site.inverse_flattening"
-    ),
-    "h": Switch("M", "Altitude of the suspension, m", "0", "site.altitude"),
-    "r": Switch("M", "Equatorial radius of the Earth, m", "6.378137e6", "site.equatorial_radius"),
-    "R": Switch("4|5|6", "Integrator: 4 Runge-Kutta, 5 RKN-G 5(6), 6 RKN-G 6(7)", "4"),
-    "a": Switch("BITS", "Leave out 1: the off-diagonal elements; 2: the terms in Ω²; 3: both", "0"),
-}
+SWITCHES = {letter: Switch(**switch) for letter, switch in texts_of(__file__).items()}
 DEFAULTS = {letter: switch.default for letter, switch in SWITCHES.items()}
 _LETTERS = {switch.field: letter for letter, switch in SWITCHES.items() if switch.field}
 

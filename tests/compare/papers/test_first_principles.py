@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compare.papers.digits import MP, mpf, norm, pi, shown, sqrt
+from compare.papers.digits import MP, mpf, norm, pi, shown, sqrt, vector
 from compare.papers.first_principles import (
     by_angles,
     by_plane,
@@ -10,6 +10,7 @@ from compare.papers.first_principles import (
     horizontal_acceleration,
     in_rate,
     motion,
+    plane_state,
     rest,
     rotated,
     suspension,
@@ -31,7 +32,7 @@ def test_the_suspension_stands_on_the_ellipsoid_and_its_normal() -> None:
 
 def test_a_turn_keeps_lengths_and_is_undone_by_the_turn_back() -> None:
     p = points()[0]
-    axis = (mpf("0.6"), mpf("0"), mpf("0.8"))
+    axis = vector(mpf("0.6"), mpf("0"), mpf("0.8"))
     turned = rotated(p.position, axis, p.t)
     assert abs(norm(turned) - norm(p.position)) < TINY
     back = rotated(turned, axis, -p.t)
@@ -42,13 +43,16 @@ def test_the_reference_s_accelerations_satisfy_euler_and_lagrange() -> None:
     for p in points():
         a = horizontal_acceleration(p)
         for i in (0, 1):
-            assert abs(euler_lagrange(p, by_plane, (p.x, p.y), (p.vx, p.vy), a, i)) < TINY
+            assert abs(euler_lagrange(p, by_plane, *plane_state(p)[:2], a, i)) < TINY
 
 
 def test_euler_and_lagrange_of_a_planar_pendulum_are_the_textbook_s() -> None:
     for p in points():
         still = MP.zero
-        left = euler_lagrange(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, still), (p.cord_second, still), 0, still)
+        q, v, a = (
+            vector(part, other) for part, other in ((p.cord, p.azimuth), (p.cord_rate, still), (p.cord_second, still))
+        )
+        left = euler_lagrange(p, by_angles, q, v, a, 0, still)
         textbook = p.length**2 * p.cord_second + p.gravity * p.length * MP.sin(p.cord)
         assert abs(left - textbook) < TINY
 
