@@ -701,3 +701,13 @@ def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_i
     closer = judge(rows, path, tolerance=score.errors.max_m, explain=False)
     assert closer.errors.bound_m < score.errors.bound_m / 3
     assert not closer.in_doubt
+
+
+def test_a_baseline_is_explained_only_where_a_model_may_pass(monkeypatch, good):
+    asked = []
+    monkeypatch.setattr("compare.score.judge.judge", lambda *_, **options: asked.append(options["explain"]))
+    monkeypatch.setattr("compare.score.judge.since", lambda *_: None)
+    for explain, as_model in ((True, True), (True, False), (False, True)):
+        score = judge(good, "paris", baseline=good, explain=explain, as_model=as_model)
+        assert score.notes[-1] == "the baseline has no score of it: this verdict stands alone"
+    assert asked == [True, False, False]
