@@ -68,20 +68,25 @@ def gauss_newton(model: Model, start: Numbers, *, steps: int, gain: float) -> tu
             are those of numbers that the model fits itself, because it is linear in them.
         start: first numbers.
         steps: that are taken at most.
-        gain: share of what was left that a step has to come below, or it is not taken and the search ends.
+        gain: share of what was left that a step has to come below, or it is not taken and the search ends; after a step
+            that leaves plainly more, as one along a bent valley does, another one may.
     """
-    numbers, (left, slopes) = start, model(start)
-    least = float(np.linalg.norm(left))
+    best = numbers = start
+    left, slopes = model(start)
+    least, strayed = float(np.linalg.norm(left)), False
     if not math.isfinite(least):
         return start, math.inf
     for _ in range(steps):
         made = slopes()
         if not np.isfinite(made).all():
             break
-        moved = numbers + best_change(made, left)[: len(numbers)]
-        left, slopes = model(moved)
+        numbers = numbers + best_change(made, left)[: len(numbers)]
+        left, slopes = model(numbers)
         size = float(np.linalg.norm(left))
-        if not size < gain * least:
+        if size < gain * least:
+            best, least, strayed = numbers, size, False
+        elif strayed or not least < gain * size < math.inf:
             break
-        numbers, least = moved, size
-    return numbers, least
+        else:
+            strayed = True
+    return best, least

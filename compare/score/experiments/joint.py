@@ -39,7 +39,6 @@ INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")  # nu
 CLOCK = Cause(
     "clock", "clock", "moves on by {value} s while its clock counts one", lambda p: p, FITTED, "pace", "clock"
 )
-STEEP = 5  # power of the frequency with which the error of a step of order 4 grows in a time
 TRIED = 30  # readings of a family that are run
 EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
 
@@ -77,10 +76,6 @@ class Trial:
     def given(self, name: str) -> float:
         """Return a number that the program was given."""
         return self.setting if name == "step" else float(getattr(self.case.right, name))
-
-    def enough(self, first: Trial) -> float:
-        """Return the distance in m that may be left: a step's error that is too small to be seen in the first grows."""
-        return self.case.enough * max(self.case.frequency / first.case.frequency, 1.0) ** STEEP
 
 
 class Part(NamedTuple):
@@ -154,7 +149,7 @@ class JointCase(Case):
 
     def weight(self, run: Trial) -> float:
         """Return by what the rows of a run are multiplied."""
-        return self.runs[0].case.enough / run.enough(self.runs[0])
+        return self.runs[0].case.enough / run.case.enough
 
     def side_by_side(self, rows: Sequence[Array]) -> Array:
         """Return rows of each run as those of one."""
@@ -204,7 +199,7 @@ class JointCase(Case):
         assert isinstance(reading.program, Joint)
         most = 0.0
         for run, program in zip(self.runs, reading.program.programs(), strict=True):
-            made, allowed = run.case.positions(program), run.enough(self.runs[0])
+            made, allowed = run.case.positions(program), run.case.enough
             if program.method is not None:
                 effect = largest(made - run.case.positions(replace(program, method=None, step=0.0)))
                 allowed += clean_share(run.case, program.kind) * effect

@@ -11,9 +11,10 @@ import numpy as np
 from reference import FoucaultError, Scene
 
 from ...candidates.candidate import Candidate, Deviation
-from ...candidates.external import SETTING
-from ..explanation.explain import RENAMED, Problem, explanation_of_case
+from ...methods.external import SETTING
+from ..explanation.explain import RENAMED, Problem
 from ..explanation.findings import UNCORRECTED, Explanation
+from ..explanation.fitted import readers_of
 from ..explanation.gate import loose
 from ..explanation.stepped import Steps, likely_steps
 from ..explanation.unexplained import largest
@@ -98,13 +99,10 @@ class Laboratory:
                 changed = largest(run.case.rows.positions - first.case.rows.positions)
                 if changed > first.case.enough:
                     return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
-        try:
-            said = [explanation_of_case(run.case, run.problem.scene) for run in self._runs]
-        except UNSOLVED:
-            return []
-        said = [one for one in said if one.causes]
-        words = {cause.id for one in said for cause in one.causes}
-        return said[:1] if words == {"integrator_loose"} and len(said) >= LEAST_RUNS else []
+        cases = [(run.case, run.fits.values()) for run in self._runs]
+        drifting = [any(reader.drifts for reader in readers_of(case, list(fits))) for case, fits in cases]
+        told = first.case.explanation((loose(_error_m(first)),), _error_m(first), 0.0, 0.0)
+        return [told] * (len(drifting) > LEAST_RUNS and all(drifting))
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""

@@ -180,6 +180,18 @@ class Reader:
                 least[kind] = min(least[kind], math.inf if extended is None else extended.rest)
         return least[True] < min(HALVED * reading.rest, least[False])
 
+    @property
+    def drifts(self) -> bool:
+        """Whether phase and amplitude drift, and neither explains the other: no input does that, but an integrator."""
+        off, free = self._off(self.right), list(self.fit.free)
+        pull, drag = free.index(5), free.index(6)
+
+        def left(*columns: int) -> float:
+            slopes = self._triangle[:, columns]
+            return float(np.linalg.norm(off - slopes @ best_change(slopes, off)))
+
+        return left(pull, drag) <= self.floor < min(left(pull), left(drag))
+
     def uncertainty(self, reading: Reading, cause: Cause) -> float:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
         value = reading.value(cause)
