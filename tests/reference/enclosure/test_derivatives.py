@@ -21,7 +21,6 @@ from boxes import (
 from reference.enclosure.shapes import Box
 
 
-
 def narrow_box_of(name):
     """A box whose flattening is exact, as scenes give its inverse."""
     box, times = box_of(name)
