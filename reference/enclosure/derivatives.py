@@ -201,9 +201,10 @@ class Derivatives:
             )
             own = self.scan.finish() if self.scan else []
             transits = []
-            for z, row in zip(found, self.zeros, strict=False):
-                # of the scene's own transits, that in the interval in which each pendulum has one
-                ones = [y.t for y in own if row and y.parity == "one" and self.holds(z, y.t)]
+            in_scaled_time = self.course.scan.found if self.course.scan else []
+            for z, q, row in zip(found, in_scaled_time, self.zeros, strict=False):
+                # each pendulum has one zero there, and the scene's own clock is that of the course
+                ones = [y.t for y in own if row and y.parity == "one" and q.t.low <= y.t.low and y.t.high <= q.t.high]
                 transits.append(replace(z, t=within(z.t, ones[0], ways, row)) if ones else z)
         derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
         of_times = tuple(tuple(map(interval, row)) if all(x.is_finite() for x in row) else () for row in self.zeros)
@@ -211,10 +212,6 @@ class Derivatives:
         FINISHED.add(narrow)
         FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, of_times[: len(found)]))
         return result
-
-    def holds(self, z: EnclosedTransit, own: Interval) -> bool:
-        """Return whether a transit's interval contains one of the scene's own, whose time is that of the course."""
-        return z.t.low <= own.low and own.high <= z.t.high
 
 
 def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) -> Interval:
