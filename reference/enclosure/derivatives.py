@@ -107,15 +107,10 @@ def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vect
 def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g: arb) -> list[arb]:
     """Return bounds of |ρ - P|, |χ - Q|, |ρ' - P'| on a step, where |r - p| <= e and |H - K| <= g (Lemma 12.2)."""
     k, d, (P, Q, r1, r2, along, across) = piece.k, piece.sizes, sizes
-    w, span, turn, slow = (
-        k.w,
-        ball(piece.step.high - piece.step.low),
-        size(times(k.h, way.turn)),
-        upper(abs(k.h * way.slow)),
-    )
-    omega, W = times(k.h, balls.omega), k.omega_size
+    w, span, omega = k.w, ball(piece.step.high - piece.step.low), times(k.h, balls.omega)
+    turn, slow = size(times(k.h, way.turn)), upper(abs(k.h * way.slow))
     off, gap = size(add(k.omega, times(-1, omega))), upper(abs(k.h * balls.damping - k.drag))
-    W = W.max(size(omega))
+    W = k.omega_size.max(size(omega))
     s1 = (Q + turn) * e + (g + off) * P
     s2 = Q * off + g * turn + gap * (Q + turn * (1 + d.p**2) + 2 * W * d.p * P)
     s2 += k.drag_size * (turn * e * (1 + d.p) + 2 * P * (off + W * e)) + slow * (g + 2 * off + W * e * (1 + d.p))
