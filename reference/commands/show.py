@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 import typer
 
 from ..errors import FoucaultError, InputError, UnreachableError
-from ..scenes.scene import Scene, load_scene
+from ..scenes.scene import Scene, load_scene, unit_of
 from ..scenes.shipped import WITHOUT_FUNCTION, flag_meanings, scene_ids
 from ..scenes.template import template as as_template
 from .terminal import AsJson, Assignments, Uncertain, emit, option, refuse, scene_argument, widths_by_name
@@ -100,7 +101,8 @@ def command(
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
     typer.echo(_motion_line(document["motion"]))
     if widths:
-        typer.echo(_ranges_line(document["ranges"]))
+        for line in _ranges_lines(document["ranges"]):
+            typer.echo(line)
     if sensitivity:
         lost = document["digits_lost"]
         typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
@@ -204,10 +206,11 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
         UnreachableError: the box is too wide.
     """
     from ..dataset.ranges import ends, period_texts
+    from ..numbers.precision import rounded_up
     from ..solver.solve import solve
 
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
-    ranges = solve(scene, uncertain=widths)
+    ranges = solve(scene, uncertain=widths, derivatives=True)
     tables = {"transit": ranges.transits, **{word: found.table for word, found in ranges.sections.items()}}
     first = {
         word: [list(ends(*interval)) for interval in table.exact("t")[:FIRST] if len(table)]
@@ -220,11 +223,19 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
         "first_transits_s": first.pop("transit"),
         "first_passages_s": first,
         "possible": len(ranges.possible),
+        "limits": {
+            name: {
+                "moves_period_s": rounded_up(far),
+                "share": share,
+                "s_per_unit": list(ends(*ranges.derivative(name).period or (far, far))),
+            }
+            for name, (far, share) in ranges.shares().items()
+        },
     }
 
 
-def _ranges_line(ranges: dict[str, Any]) -> str:
-    """Return in a line what holds for all values of uncertain inputs."""
+def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
+    """Yield what holds for all values of uncertain inputs, and which of them limits the period."""
     box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
     told = ["period_s = {} to {}".format(*ranges["period_s"])] if ranges["period_s"] else []
     zeros = {"transit {}": ranges["first_transits_s"]}
@@ -232,9 +243,15 @@ def _ranges_line(ranges: dict[str, Any]) -> str:
     told += [
         f"{words.format(k)} = {low} to {high} s" for words, ends in zeros.items() for k, (low, high) in enumerate(ends, 1)
     ]
-    return f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (
-        ", ".join(told) or "no transit is decided"
-    )
+    yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
+    limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
+    if limits:
+        yield "which input limits you: what each alone moves the period by at most, and its share"
+    for name, limit in limits:
+        moved, (low, high) = f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %", limit["s_per_unit"]
+        unit = unit_of(name)
+        slope = f"the period changes by {low} to {high} s{unit and ' per '}{unit}"
+        yield f"  {name} {ranges['uncertain'][name]}: {moved} ({slope})"
 
 
 def _motion_line(motion: dict[str, Any]) -> str:

@@ -84,9 +84,10 @@ def plumb(wide: dict[str, Any]) -> tuple[Any, Any]:
     push = rate * rate * (radius / (1 - f * (2 - f) * (1 - cos) / 2).sqrt() + altitude)
     push *= 0 if wide["gravity_is"] == "effective" else 1
     aside, down = push * sin / 2, gravity - push * (1 + cos) / 2
-    strength, series = (aside * aside + down * down).sqrt(), isinstance(aside / down, arb_series)
-    angle = arb.atan2(*((x[0] if isinstance(x, arb_series) else x) for x in (aside, down)))
-    return arb_series([angle, (aside / down).atan()[1]], 2) if series else angle, strength
+    lean: Any = aside / down
+    angle = arb.atan2(*(x[0] if isinstance(x, arb_series) else x for x in (aside, down)))  # its derivative: of atan
+    full = arb_series([angle, lean.atan()[1]], 2) if isinstance(lean, arb_series) else angle
+    return full, (aside * aside + down * down).sqrt()
 
 
 class BoxRadius(Radius):

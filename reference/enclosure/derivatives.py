@@ -107,15 +107,10 @@ def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vect
 def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g: arb) -> list[arb]:
     """Return bounds of |ρ - P|, |χ - Q|, |ρ' - P'| on a step, where |r - p| <= e and |H - K| <= g (Lemma 12.2)."""
     k, d, (P, Q, r1, r2, along, across) = piece.k, piece.sizes, sizes
-    w, span, turn, slow = (
-        k.w,
-        ball(piece.step.high - piece.step.low),
-        size(times(k.h, way.turn)),
-        upper(abs(k.h * way.slow)),
-    )
-    omega, W = times(k.h, balls.omega), k.omega_size
+    w, span, omega = k.w, ball(piece.step.high - piece.step.low), times(k.h, balls.omega)
+    turn, slow = size(times(k.h, way.turn)), upper(abs(k.h * way.slow))
     off, gap = size(add(k.omega, times(-1, omega))), upper(abs(k.h * balls.damping - k.drag))
-    W = W.max(size(omega))
+    W = k.omega_size.max(size(omega))
     s1 = (Q + turn) * e + (g + off) * P
     s2 = Q * off + g * turn + gap * (Q + turn * (1 + d.p**2) + 2 * W * d.p * P)
     s2 += k.drag_size * (turn * e * (1 + d.p) + 2 * P * (off + W * e)) + slow * (g + 2 * off + W * e * (1 + d.p))
@@ -201,9 +196,10 @@ class Derivatives:
             )
             own = self.scan.finish() if self.scan else []
             transits = []
-            for z, row in zip(found, self.zeros, strict=False):
-                # of the scene's own transits, that in the interval in which each pendulum has one
-                ones = [y.t for y in own if row and y.parity == "one" and self.holds(z, y.t)]
+            in_scaled_time = self.course.scan.found if self.course.scan else []
+            for z, q, row in zip(found, in_scaled_time, self.zeros, strict=False):
+                # each pendulum has one zero there, and the scene's own clock is that of the course
+                ones = [y.t for y in own if row and y.parity == "one" and q.t.low <= y.t.low and y.t.high <= q.t.high]
                 transits.append(replace(z, t=within(z.t, ones[0], ways, row)) if ones else z)
         derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
         of_times = tuple(tuple(map(interval, row)) if all(x.is_finite() for x in row) else () for row in self.zeros)
@@ -211,10 +207,6 @@ class Derivatives:
         FINISHED.add(narrow)
         FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, of_times[: len(found)]))
         return result
-
-    def holds(self, z: EnclosedTransit, own: Interval) -> bool:
-        """Return whether a transit's interval contains one of the scene's own, whose time is that of the course."""
-        return z.t.low <= own.low and own.high <= z.t.high
 
 
 def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) -> Interval:

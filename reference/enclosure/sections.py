@@ -1,4 +1,4 @@
-"""TRUSTED. Sections of a motion: zeros of affine forms of position and velocity (THEOREM.md, section 12)."""
+"""TRUSTED. Sections of a motion: zeros of affine forms of position and velocity (THEOREM.md, section 13)."""
 
 from fractions import Fraction
 from json import loads

@@ -68,6 +68,8 @@ BOXES: dict[str, tuple[dict[str, Any], int, dict[str, str]]] = {
     "no turning": ({"rotation_rate": "0"}, 100, {"length": "0.01", "rotation_rate": "1e-5"}),
     "1 mm": ({"length": "0.001", "x": "0.0001", "y": "0.00002"}, 1, {"length": "1e-8", "x": "1e-9"}),
     "10 km": ({"length": "10000", "x": "100", "y": "50"}, 1000, {"length": "1", "gravity": "1e-4", "vy": "0.01"}),
+    # a transit may be later than the next one of another
+    "late": ({"rotation_rate": "0", "x": "0.01", "y": "0.003"}, 400, {"length": "1.5"}),
     "tiny box": ({}, 100, {"length": "1e-25", "latitude": "1e-24"}),
 }
 

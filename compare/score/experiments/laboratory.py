@@ -11,7 +11,7 @@ import numpy as np
 from reference import FoucaultError, Scene
 
 from ...candidates.candidate import Candidate, Deviation
-from ...methods.external import SETTING
+from ...candidates.external import SETTING
 from ..explanation.explain import RENAMED, Problem
 from ..explanation.findings import UNCORRECTED, Explanation
 from ..explanation.fitted import readers_of

@@ -27,8 +27,13 @@ def test_generate_writes_ranges(tmp_path):
 def test_show_tells_period_and_first_transits():
     done = run("show", "paris", "--set", "run.t_end=120", *BOX)
     assert "proved for every pendulum.length ±0.001, site.latitude ±0.001] period_s = 16.43" in done.output
-    assert "transit 1 = 8.2176" in done.output
+    assert "transit 1 = 8.2177" in done.output
+    assert "which input limits you: what each alone moves the period by at most, and its share" in done.output
+    assert "  pendulum.length ±0.001: 1.3e-04 s, 99.6 % (the period changes by 0.1226" in done.output
     ranges = json.loads(run("show", "paris", "--set", "run.t_end=120", *BOX, "--json").stdout)["ranges"]
+    low, high = map(float, ranges["limits"]["pendulum.length"]["s_per_unit"])
+    assert low < 16.4356 / 2 / 67 < high < low + 1e-4  # of small swings
+    assert sum(limit["share"] for limit in ranges["limits"].values()) == pytest.approx(1)
     assert [float(end) for end in ranges["first_transits_s"][0]] == pytest.approx([8.2178, 8.2178], abs=3e-4)
 
 

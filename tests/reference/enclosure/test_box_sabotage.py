@@ -129,20 +129,20 @@ def runs_hold(module, names=SHORT_RUNS):
             assert outside(proved, run) == [], name
 
 
-def sabotaged(old, new):
+def sabotaged(old, new, source=SOURCE):
     """The module with a place of its source replaced."""
-    text = Path(SOURCE).read_text(encoding="utf-8")
+    text = Path(source).read_text(encoding="utf-8")
     assert text.count(old) == 1, old
-    module = ModuleType("reference.enclosure.box")
+    module = ModuleType(f"reference.enclosure.{Path(source).stem}")
     module.__package__ = "reference.enclosure"
-    exec(compile(text.replace(old, new), SOURCE, "exec"), module.__dict__)
+    exec(compile(text.replace(old, new), source, "exec"), module.__dict__)
     return module
 
 
 FAULTS = [
     ("ball(low).union(ball(high))", "ball(low)"),
     ("ball(low).union(ball(high))", "ball(high)"),
-    ("latitude / 90", "latitude / 180"),
+    ('wide["latitude"] / 90', 'wide["latitude"] / 180'),
     ("(1 - cos) / 2).sqrt()", "(1 + cos) / 2).sqrt()"),
     (" + altitude)", ")"),
     ("push * sin / 2", "push * sin"),
@@ -156,7 +156,7 @@ FAULTS = [
     ("arb.atan2(-w, m) - lean", "arb.atan2(-w, m) + lean"),
     ('(turn - ball(wide["latitude"])', '(turn.mid() - ball(wide["latitude"]).mid()'),
     ('(turn - ball(wide["latitude"])', '(turn + ball(wide["latitude"])'),
-    ("times(self.omega[2] / self.pace, ", "times(own.omega[2] / self.pace, "),
+    ('times(ball(wide["rotation_rate"]) / self.pace, ', "times(self.own.omega[2] / self.pace, "),
     ("times(1 / self.pace, self.turned(self.release[1], 1))", "self.turned(self.release[1], 1)"),
     ('ball(wide["drag"]) / self.pace', "own.drag"),
     ("self.omega, self.drag = own.omega, own.drag", "self.drag = own.drag"),
@@ -187,7 +187,7 @@ FAULTS = [
     ("(z.vy, pace)", "(z.vy, 1)"),
     ("(z.ax, pace**2)", "(z.ax, pace)"),
     ("(z.ax, pace**2)", "(z.ax, 1)"),
-    ("(s - middle)", "0"),
+    ("(s - s.mid())", "0"),
     ("q + arb(0, eta)", "q"),
     ("(q + arb(0, u))", "q"),
 ]

@@ -40,7 +40,7 @@ TRUTHS = {}
 
 
 def forms_hold(module):
-    """Lemma 12.1 at a made-up motion: p + δ cos and sin of every size, whose tube is known to be tight."""
+    """Lemma 13.1 at a made-up motion: p + δ cos and sin of every size, whose tube is known to be tight."""
     balls = SceneBalls(scene(rotation_rate="0"), BITS + 64)
     unit = 1 << BITS
     for a, b, d in (

@@ -124,3 +124,48 @@ def test_a_box_without_a_pull_is_refused():
     floating = {"id": "a", "site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "0", "vx": "1"}}
     with pytest.raises(reference.UnreachableError, match="too wide: it holds up to t = 0"):
         reference.solve(floating, t_end="10", uncertain={"length": "±0.001"})
+
+
+def test_derivatives_are_those_of_the_period_of_small_swings_and_of_neighbours():
+    scene = {"id": "a", "site": {"rotation_rate": "0"}, "release": {"x": "0.02", "y": "0.01"}, "run": {"t_end": "60"}}
+    widths = {"pendulum.length": "±1e-4", "site.gravity": "±1e-5", "release.x": "±1e-4"}
+    ranges = reference.solve(scene, uncertain=widths, derivatives=True)
+    period = sum(map(float, ranges.period)) / 2
+    inputs = ranges.scene.exact
+    for name, slope in (
+        ("length", period / 2 / float(inputs.length)),
+        ("gravity", -period / 2 / float(inputs.gravity)),
+    ):
+        low, high = map(float, ranges.derivative(name).period)
+        assert low < slope < high
+        assert high - low < 0.01 * abs(slope)
+    beyond, within = (
+        reference.solve({**scene, "pendulum": {"length": str(67 + step)}}, level="computed", digits=12)
+        for step in (1e-4, -1e-4)
+    )
+    slopes = (beyond.grid["x"] - within.grid["x"]) / 2e-4
+    found = ranges.derivative("pendulum.length").grid
+    assert (found.low("x") - 1e-6 <= slopes).all() and (slopes <= found.high("x") + 1e-6).all()
+    shares = ranges.shares()
+    assert list(shares) == ["pendulum.length", "site.gravity", "release.x"]
+    assert sum(share for _, share in shares.values()) == pytest.approx(1)
+    assert len(ranges.derivative("release.x").transits) == len(ranges.transits)
+
+
+def test_derivatives_that_are_not_there_are_told(paris):
+    with pytest.raises(reference.InputError, match="derivatives=True"):
+        paris.derivative("length")
+    ranges = reference.solve("paris", t_end="60", uncertain={"length": "±0.001"}, derivatives=True)
+    with pytest.raises(reference.InputError, match=r"There are pendulum\.length"):
+        ranges.derivative("gravity")
+    with pytest.raises(reference.InputError, match="uncertain inputs, to which"):
+        reference.solve("paris", t_end="60", derivatives=True)
+
+
+def test_a_wide_swing_is_followed_by_its_derivatives():
+    wide = {"id": "a", "pendulum": {"length": "1"}, "release": {"angle": "110", "azimuth": "30"}}
+    wide |= {"run": {"t_end": "3", "grid_step": "1"}}
+    ranges = reference.solve(wide, uncertain={"pendulum.length": "±1e-7"})
+    width = (ranges.grid.high("x") - ranges.grid.low("x")).max()
+    assert ranges.proof.derivatives is not None
+    assert width < 1e-5
