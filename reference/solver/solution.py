@@ -21,6 +21,7 @@ from ..numbers.precision import decimals_for
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
+from .swing import Swing, swing_of
 
 SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
@@ -162,6 +163,12 @@ class Solution(GridColumns):
     def level(self) -> Level:
         """Level of trust in the numbers, one of `scene.LEVELS`."""
         return self.scene.run.level
+
+    @cached_property
+    def swing(self) -> Swing | None:
+        """Frequency and precession as intervals, with the section `highest`; None without it, or where it is open."""
+        passages = self.sections.get("highest")
+        return None if passages is None or passages.possible else swing_of(passages.table, self.scene.exact)
 
     @cached_property
     def function(self) -> GoldenFunction | None:
