@@ -127,7 +127,12 @@ def command(
     proving["--no-tables"] = no_tables
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {"--set": set_, "--uncertain": uncertain, "--engine": engine if engine != AUTO else None}
+        unused |= {
+            "--set": set_,
+            "--section": section,
+            "--uncertain": uncertain,
+            "--engine": engine if engine != AUTO else None,
+        }
         refuse(unused, "with --all")
         _generate_all(replacements(None, options), out, workers, cluster, as_json)
         return
@@ -136,7 +141,7 @@ def command(
         raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
     chosen("--engine", engine, ENGINES)
     if widths := widths_by_name(uncertain):
-        refuse({"--digits": digits, **proving}, "together with --uncertain")
+        refuse({"--digits": digits, "--section": section, **proving}, "together with --uncertain")
         _generate_ranges(load_scene(scene_word, replacements(set_, options)), level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder

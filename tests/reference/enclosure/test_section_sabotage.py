@@ -3,12 +3,13 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
 import mpmath as mp
 import pytest
-from enclosure_oracle import constants, acceleration, scene, truth
+from enclosure_oracle import acceleration, constants, scene, truth
 from enclosure_recurrence import Recurrence
 from flint import arb, ctx
 from passages import WAYS, form, value
@@ -50,7 +51,8 @@ def forms_hold(module):
         ([0, 0, 1], [0, 0, 2], 1),
     ):
         for h in (1, Fraction(1, 4), 3):
-            rows = tuple([int(x * unit / 8) for x in row] for row in ([1, 2, 3], [3, -1, 2], [-2, 4, 1])) + ([0],)
+            made_up = [1, 2, 3], [3, -1, 2], [-2, 4, 1], [0]
+            rows = tuple([int(x * unit / 8) for x in row] for row in made_up)
             piece = Piece(balls, TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH))
             axis = next(i for i, x in enumerate([p or q for p, q in zip(a, b, strict=True)]) if x)
             for part in range(3):  # which of the three bounds is used up: position, velocity or acceleration
@@ -108,7 +110,7 @@ def passages_hold(module, names=CASES):
 def check(inputs, word, zeros, states, end, name):
     parts, pars, way = form(inputs, word), constants(inputs), WAYS.get(word)
     signs = [int(mp.sign(value(parts, state))) for state in states]
-    changes = [q for p, q in zip(signs, signs[1:], strict=False) if p != q and way in (None, q)]
+    changes = [q for p, q in pairwise(signs) if p != q and way in (None, q)]
     ones = [z for z in zeros if z.parity == "one"]
     possible = [z for z in zeros if z.parity != "one"]
     assert [z.direction for z in ones] == changes, (name, word, len(ones), len(changes))
@@ -163,8 +165,8 @@ def forged(texts):
     yield texts | {"sections.csv": table.replace(row + "\n", "")}
     yield texts | {"sections.csv": table.replace("section,k", "sections,k")}
     yield said(lambda s: s["possible"]["gate 30@0"].pop())
-    for key, value in (("parity", "odd"), ("from_s", "0.001"), ("to_s", "0")):
-        yield said(lambda s, key=key, value=value: s["possible"]["gate 30@0"][0].update({key: value}))
+    for key, other in (("parity", "odd"), ("from_s", "0.001"), ("to_s", "0")):
+        yield said(lambda s, key=key, other=other: s["possible"]["gate 30@0"][0].update({key: other}))
     yield said(lambda s: s["bounds"].update({"x": "1e-30"}))
     manifest["scene"]["run"]["sections"] = "highest"
     yield texts | {"manifest.json": json.dumps(manifest)}
