@@ -84,7 +84,7 @@ LINE = {  # what is typed, and what the message has to say
     "methods all": "unexpected extra argument",
 }
 ROWS = {"t": [0, 60], "x": [0.3, -0.1763], "y": [0.4, -0.4158]}
-FLOAT = {"id": "a", "pendulum": {"length": 12.3}, "release": {"angle": "5", "azimuth": "0"}}
+INFINITE = {"id": "a", "pendulum": {"length": float("inf")}, "release": {"angle": "5", "azimuth": "0"}}
 TYPO = {"id": "a", "pendulum": {"lenght": "12.3"}, "release": {"angle": "5", "azimuth": "0"}}
 PYTHON = {
     'reference.solve("pari")': "Did you mean paris?",
@@ -95,7 +95,7 @@ PYTHON = {
     'reference.solve("paris", t_end="1h")': "a decimal number such as 67",
     "reference.solve(None)": "a Scene, an id, the path of a TOML file, or nested mappings",
     'reference.solve("missing.toml")': "`foucault scenes` lists the ids.",
-    "reference.solve(FLOAT)": "write it as a string",
+    "reference.solve(INFINITE)": "NaN and inf are not numbers here",
     "reference.solve(TYPO)": "Did you mean pendulum.length?",
     'reference.load("pari")': "Did you mean paris?",
     'reference.load_scene("paris", "site.latitude")': "section.key=value",
@@ -150,7 +150,15 @@ def test_a_first_mistake_on_the_command_line_ends_with_2_and_what_to_do(desk, fo
 
 @pytest.mark.parametrize("expression", PYTHON)
 def test_a_first_mistake_in_python_is_an_input_error_that_says_what_to_do(desk, expression):
-    names = {"reference": reference, "compare": compare, "np": np, "pd": pd, "ROWS": ROWS, "FLOAT": FLOAT, "TYPO": TYPO}
+    names = {
+        "reference": reference,
+        "compare": compare,
+        "np": np,
+        "pd": pd,
+        "ROWS": ROWS,
+        "INFINITE": INFINITE,
+        "TYPO": TYPO,
+    }
     with pytest.raises(InputError) as error:
         eval(expression, names)
     assert PYTHON[expression] in str(error.value)

@@ -128,7 +128,12 @@ def command(
     proving["--no-tables"] = no_tables
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {"--set": set_, "--uncertain": uncertain, "--engine": engine if engine != AUTO else None}
+        unused |= {
+            "--set": set_,
+            "--section": section,
+            "--uncertain": uncertain,
+            "--engine": engine if engine != AUTO else None,
+        }
         refuse(unused, "with --all")
         _generate_all(replacements(None, options), out, workers, cluster, as_json)
         return

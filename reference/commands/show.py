@@ -20,12 +20,14 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
 }
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
 FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
+PROVED_DIGITS = 15  # of the highest points from which period and precession follow
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
 SCENE = scene_argument("A scene's id, or the path of a TOML file; may be left out with --template.")
 TEMPLATE = option("--template", "Print the scene as a TOML file to begin with, each field explained.")
 EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
+PROVED = option("--proved", "Also prove intervals of period and precession over the run, which takes as long as that.")
 SENSITIVITY = option("--sensitivity", "Also show how many digits the flow costs between release and end.")
 
 
@@ -48,6 +50,7 @@ def command(
     template: Annotated[bool, TEMPLATE] = False,
     equations: Annotated[bool, EQUATIONS] = False,
     sensitivity: Annotated[bool, SENSITIVITY] = False,
+    proved: Annotated[bool, PROVED] = False,
     set_: Assignments = None,
     uncertain: Uncertain = None,
     as_json: AsJson = False,
@@ -58,7 +61,7 @@ def command(
     """
     if template:
         unused = {"--equations": equations, "--sensitivity": sensitivity, "--uncertain": uncertain, "--json": as_json}
-        refuse(unused, "together with --template")
+        refuse({**unused, "--proved": proved}, "together with --template")
         if scene_word is None:
             refuse({"--set": set_}, "without SCENE")
         typer.echo(as_template(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
@@ -81,6 +84,8 @@ def command(
         from ..solver.sensitivity import digits_lost
 
         document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
+    if proved:
+        document["proved"] = _proved(scene)
     if widths := widths_by_name(uncertain, scene):
         document["ranges"] = _ranges(scene, widths)
     if as_json:
@@ -100,6 +105,8 @@ def command(
         typer.echo("[uncertain] " + ", ".join(f"{key} = {width}" for key, width in scene.uncertain.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
     typer.echo(_motion_line(document["motion"]))
+    if proved:
+        typer.echo(_proved_line(document["proved"]))
     if widths:
         for line in _ranges_lines(document["ranges"]):
             typer.echo(line)
@@ -198,6 +205,28 @@ def _motion(scene: Scene) -> dict[str, Any]:
     return found if len(found) > 1 else {"reason": row["reason"] or "the bob does not swing to and fro"}
 
 
+def _proved(scene: Scene) -> dict[str, Any]:
+    """Return proven intervals of frequency, period, precession and full turn over the run, from its highest points.
+
+    Raises:
+        UnreachableError: the level enclosed is out of reach.
+    """
+    from ..dataset.ranges import ends
+    from ..solver.solve import solve
+
+    scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "false"})
+    swing = solve(scene, level="enclosed", digits=PROVED_DIGITS, sections="highest").swing
+    names = {"swing_hz": "hz", "period_s": "period", "precession_deg_per_h": "precession", "full_turn_h": "full_turn"}
+    told = {name: getattr(swing, of, None) for name, of in names.items()}
+    return {"over_s": scene.run.t_end} | {name: found and list(ends(*found)) for name, found in told.items()}
+
+
+def _proved_line(proved: dict[str, Any]) -> str:
+    """Return in a line what is proved of the swing."""
+    told = [f"{name} = {value[0]} to {value[1]}" for name, value in proved.items() if isinstance(value, list)]
+    return f"[proved, over {proved['over_s']} s] " + (", ".join(told) or "no swing is decided")
+
+
 def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
     """Return proven intervals of the period, the first transits and passages, for every value of uncertain inputs.
 
@@ -241,7 +270,9 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     zeros = {"transit {}": ranges["first_transits_s"]}
     zeros |= {f"passage {{}} of {word}": ends for word, ends in ranges["first_passages_s"].items()}
     told += [
-        f"{words.format(k)} = {low} to {high} s" for words, ends in zeros.items() for k, (low, high) in enumerate(ends, 1)
+        f"{words.format(k)} = {low} to {high} s"
+        for words, ends in zeros.items()
+        for k, (low, high) in enumerate(ends, 1)
     ]
     yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
     limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])

@@ -24,9 +24,8 @@ class Slope:
     """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
 
     def __init__(self, covered: Covered) -> None:
-        self.covered, (piece, tube) = covered, covered
-        self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
-        self.slow, self.flat = piece.balls.slow, piece.balls.flat
+        self.covered, self.piece, self.tube, (piece, tube) = covered, *covered, covered
+        self.centre, self.slow, self.flat = ball(piece.step.centre), piece.balls.slow, piece.balls.flat
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> Any:

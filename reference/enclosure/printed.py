@@ -15,8 +15,8 @@ from .shapes import Interval
 
 PLAIN = "length drag latitude altitude gravity rotation_rate equatorial_radius t_end grid_step"
 RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
-GRID = "t,x,y,z,vx,vy,vz"
-TRANSITS = "k,t,direction,x,y,z,vy,ax,bound"
+GRID, TRANSITS = "t,x,y,z,vx,vy,vz", "k,t,direction,x,y,z,vy,ax,bound"
+OTHERS = ("digits", "level", "transits", "sections")  # of these nothing follows here; `sections` checks its own
 DECIMAL, APART = frozenset("+-.0123456789"), str.maketrans(",:[]()", " " * 6)
 
 
@@ -57,9 +57,7 @@ def asked(said: Any) -> tuple[Inputs, tuple[Fraction, ...]]:
     numbers |= {kind: tuple(map(exact, RELEASES[kind])), "gravity_is": texts.pop("gravity_is")}
     flat = texts["inverse_flattening"] == "inf"
     inputs = Inputs(**numbers, flattening=Fraction(0) if flat else 1 / exact("inverse_flattening"))
-    demand(
-        texts.keys() <= {"digits", "level", "transits", "sections", "inverse_flattening"}, "misprint: unknown inputs"
-    )
+    demand(texts.keys() <= {*OTHERS, "inverse_flattening"}, "misprint: unknown inputs")
     count = inputs.t_end // inputs.grid_step + 1
     # doubles may miss t_end by their rounding alone
     count -= 0 < (count - 1) * inputs.grid_step > inputs.t_end - inputs.grid_step / (1 << 30)

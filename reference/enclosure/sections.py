@@ -6,7 +6,7 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
-from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, size, times, upper
+from .balls import UNIT, Vector, add, ball, cross, demand, dot, size, times, upper
 from .bound import SceneBalls, state
 from .course import FINISHED, Course
 from .enclosed_transits import Scan, Slope
@@ -41,16 +41,9 @@ class Form(Slope):
         f = sum((arb_poly(g) * x for x, g in terms if not x.is_zero()), -h * d * arb_poly([piece.unit]))
         off, more = (arb(0, upper(size(a) * h * x + size(b) * y)) for x, y in ((eta, u), (u, bend)))
         self.covered, self.piece, self.centre = covered, piece, ball(piece.step.centre)
-        self.long, self.tube = ((f, off), (f.derivative(), more)), covered.tube._replace(u=off.rad())
-        with ctx.workprec(SHORT):  # most leaves are sorted with coefficients rounded to that
-            self.short = tuple((g * arb(1), x) for g, x in self.long)
+        self.forms, self.tube = ((f, off), (f.derivative(), more)), covered.tube._replace(u=off.rad())
         # at rest, of a velocity alone
         self.slow, self.flat = all(x.is_zero() for x in [*a, d, *piece.balls.release[1]]), False
-
-    @property
-    def forms(self) -> Any:  # type: ignore[override]
-        """The form and its rate, each with its radius, in the precision at work."""
-        return self.short if ctx.prec == SHORT else self.long
 
     def row(self, s: arb) -> Vector:
         """Return the state over the length."""

@@ -1,4 +1,4 @@
-"""Bernstein's form of a polynomial on [0, 1], whose changes of sign are as many as its zeros there, or 2, 4, ... more."""
+"""Bernstein's form of a polynomial on [0, 1]: it changes sign as often as it has zeros, or 2, 4, ... times more."""
 
 from __future__ import annotations
 

@@ -2,8 +2,9 @@
 
 The zeros of a step's polynomial are counted by Descartes' rule: in Bernstein's form its coefficients change sign as
 often as it has zeros, or 2, 4, ... times oftener. One change at most is certain. A convex piece has one zero if its
-ends differ in sign; else two or none, and the form at its minimum says which. Any other piece is halved. Signs at places
-are those of integers, and that at a step's start is that at the end of the step before. All engines are served alike.
+ends differ in sign; else two or none, and the form at its minimum says which. Any other piece is halved. Signs at
+places are those of integers, and that at a step's start is that at the end of the step before. All engines are served
+alike.
 
 A zero at the release that no digit of the run tells from it, as that of every velocity at rest, does not count.
 """
@@ -12,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from ..errors import IntegrationError
 from ..model.sections import Form, form_of
 from ..model.start import Start
 from ..numbers.columns import SECTION
-from ..numbers.precision import GUARD_BITS, Array, to_fraction
+from ..numbers.precision import GUARD_BITS, to_fraction
 from ..numbers.table import Table
 from ..numbers.taylor_step import LOCAL, TaylorStep
 from .bernstein import MOST_TERMS, ROUNDING, bernstein, signs_of
@@ -43,9 +43,8 @@ class Search:
         """Find the passages in a step whose polynomials are x, y, z over l."""
         unit, h = 1 << self.bits, step.h
         a, b = ([int(to_fraction(x) * f * unit) for x in v] for v, f in ((self.form.a, h), (self.form.b, 1)))
-        g = [
-            sum(p * row[k] + (k + 1) * q * row[k + 1] for p, q, row in zip(a, b, rows)) for k in range(len(rows[0]) - 1)
-        ]
+        three, orders = list(zip(a, b, rows, strict=True)), range(len(rows[0]) - 1)
+        g = [sum(p * row[k] + (k + 1) * q * row[k + 1] for p, q, row in three) for k in orders]
         g[0] -= int(to_fraction(self.form.d) * h * unit) << step.bits
         least = (sum(map(abs, a)) + sum(map(abs, b))) << step.bits >> self.noise
         if not self.left:  # at the release

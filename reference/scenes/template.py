@@ -37,7 +37,8 @@ def _lines(table: SceneTable) -> Iterator[str]:
         value = getattr(table, name)
         if isinstance(value, SceneTable | dict):
             continue
-        written = f"{'# ' if value is None else ''}{name} = {_toml(value)}"
+        example = ["highest", "gate 30"] if name == "sections" else "0"
+        written = f"{'# ' if value is None else ''}{name} = {_toml(example if value is None else value)}"
         extra: Any = info.json_schema_extra or {}
         unit = f"{extra['unit']}; " if extra else ""
         yield f"{written:{COLUMN}}  # {unit}{info.description}"
@@ -45,4 +46,4 @@ def _lines(table: SceneTable) -> Iterator[str]:
 
 def _toml(value: Any) -> str:
     """Return a value as TOML writes it, which of texts, lists, whole numbers and truth values is what JSON writes."""
-    return json.dumps("0" if value is None else value, ensure_ascii=False)
+    return json.dumps(value, ensure_ascii=False)

@@ -21,6 +21,7 @@ from ..numbers.precision import decimals_for
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
+from .swing import Swing, swing_of
 
 SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
@@ -76,8 +77,8 @@ class Source:
 class Proof:
     """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
 
-    `proved`, `function` and `sections` are what trusted code returned, and compares with what is written; `audited`: FLINT alone
-    proves it too;
+    `proved`, `function` and `sections` are what trusted code returned, and compares with what is written; `audited`:
+    FLINT alone proves it too;
     `confirmed`: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
     transit, or a sample: a tenth of the grid's intervals, each from its first row.
     """
@@ -131,8 +132,8 @@ class Solution(GridColumns):
         guard: at the level enclosed, where no run confirms every transit, one with event detection that found them
             all, in the cheapest type that serves; it goes into no dataset.
         sections: the passages of each section that the scene asks for, by its word.
-        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest on it, and a run that finds other transits is an
-            error.
+        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest on it, and a run
+            that finds other transits is an error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,), `solution.exact("x")` are
     fractions; both tables have `table["x"]`, `table.exact("x")`, the same, and `table.bound("x")`. With a golden
@@ -162,6 +163,12 @@ class Solution(GridColumns):
     def level(self) -> Level:
         """Level of trust in the numbers, one of `scene.LEVELS`."""
         return self.scene.run.level
+
+    @cached_property
+    def swing(self) -> Swing | None:
+        """Frequency and precession as intervals, with the section `highest`; None without it, or where it is open."""
+        passages = self.sections.get("highest")
+        return None if passages is None or passages.possible else swing_of(passages.table, self.scene.exact)
 
     @cached_property
     def function(self) -> GoldenFunction | None:

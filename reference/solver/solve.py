@@ -112,7 +112,7 @@ def solve(
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
     if uncertain is not None:
-        wanted: dict[str, Any] = {"digits": digits, "audit": audit, "function": function, "sections": sections}
+        wanted: dict[str, Any] = {"digits": digits, "audit": audit, "function": function}
         wanted["confirm"] = confirm != "none"
         for wish in (name for name, asked in wanted.items() if asked):
             raise InputError(
@@ -134,6 +134,8 @@ def solve(
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
+        if settings.sections:
+            raise InputError("run.sections", ", ".join(settings.sections), "none, together with uncertain inputs")
         from .ranges import solve_ranges  # nor that of a box
 
         return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)

@@ -25,7 +25,7 @@ from ..system.documents import MAX_JSON_BYTES, regular
 from .parquet import need_pyarrow, read_columns
 
 TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
-_FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits")
+_FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits", "run.sections")
 MOST_ROWS = 10**8
 MOST_VALUES = 10**7  # of a field: they are held as text
 MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan

@@ -1,8 +1,6 @@
-"""Passages of sections by another code: the equations of motion of `enclosure_oracle`, scipy's DOP853, Brent's method."""
+"""Passages of sections by another code: the equations of `enclosure_oracle`, scipy's DOP853, Brent's method."""
 
 from __future__ import annotations
-
-from fractions import Fraction
 
 import mpmath as mp
 import numpy as np

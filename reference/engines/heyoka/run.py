@@ -22,7 +22,6 @@ from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, real, to_mpf
 from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep
-from ...scenes.inputs import Inputs
 from ..plan import MOST_TURN, Pace, Plan, Report, Run
 from .events import march, quiet_start
 from .model import Numbers
