@@ -191,7 +191,7 @@ def methods(as_json: AsJson = False) -> None:
         {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}
         for method in METHODS.values()
     ]
-    analytic = [{"id": each.id, "title": each.title} for each in APPROXIMATIONS.values()]
+    analytic: list[dict[str, str | None]] = [{"id": each.id, "title": each.title} for each in APPROXIMATIONS.values()]
     if as_json:
         emit({"methods": integrators, "approximations": analytic})
         return

@@ -267,13 +267,9 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     """Yield what holds for all values of uncertain inputs, and which of them limits the period."""
     box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
     told = ["period_s = {} to {}".format(*ranges["period_s"])] if ranges["period_s"] else []
-    zeros = {"transit {}": ranges["first_transits_s"]}
-    zeros |= {f"passage {{}} of {word}": ends for word, ends in ranges["first_passages_s"].items()}
-    told += [
-        f"{words.format(k)} = {low} to {high} s"
-        for words, ends in zeros.items()
-        for k, (low, high) in enumerate(ends, 1)
-    ]
+    told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
+    for word, passages in ranges["first_passages_s"].items():
+        told += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
     yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
     limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
     if limits:

@@ -16,7 +16,7 @@ from .balls import SHORT, Vector, add, ball, cross, demand, interval, size, time
 from .bound import Piece, Radius, SceneBalls, tube
 from .course import FINISHED, Course
 from .printed import RELEASES
-from .shapes import Box, Covered, EnclosedTransit, ProvedBox, Sizes
+from .shapes import Box, Covered, ProvedBox, Sizes
 
 PARTS = 16  # of a unit of s, over which a state is bounded at once
 

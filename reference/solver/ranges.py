@@ -75,7 +75,7 @@ class Intervals(Framed):
 
 
 @dataclass(frozen=True)
-class Zeros:
+class ZeroRanges:
     """The transits of a box, or the passages of one of its sections.
 
     Attributes:
@@ -90,7 +90,7 @@ class Zeros:
     possible: tuple[tuple[Fraction, Fraction, str], ...]
 
     @classmethod
-    def of(cls, found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> Zeros:
+    def of(cls, found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> ZeroRanges:
         """Return what a proof found up to `end`."""
         ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
         return cls(
@@ -140,7 +140,7 @@ class Ranges:
     directions: list[int] = field(repr=False)
     possible: tuple[tuple[Fraction, Fraction, str], ...]
     engine: str
-    sections: Mapping[str, Zeros] = field(default_factory=dict, repr=False)
+    sections: Mapping[str, ZeroRanges] = field(default_factory=dict, repr=False)
     proof: Any = field(default=None, repr=False)
 
     @property
@@ -243,7 +243,7 @@ def solve_ranges(
     finally:
         for feed in feeds:
             feed.stop()
-    transits = Zeros.of(proof.proved.transits or (), TRANSITS, end)
+    transits = ZeroRanges.of(proof.proved.transits or (), TRANSITS, end)
     return Ranges(
         scene,
         texts,
@@ -253,7 +253,7 @@ def solve_ranges(
         transits.directions,
         transits.possible,
         feeds[-1].begun,
-        {word: Zeros.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
+        {word: ZeroRanges.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
         proof,
     )
 

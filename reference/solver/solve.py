@@ -134,8 +134,6 @@ def solve(
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
-        if settings.sections:
-            raise InputError("run.sections", ", ".join(settings.sections), "none, together with uncertain inputs")
         from .ranges import solve_ranges  # nor that of a box
 
         return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)
