@@ -14,6 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from string import Template
 from typing import Any
 
 from reference.errors import plain_lines
@@ -114,18 +115,15 @@ def page(title: str, sections: Sequence[str], *, lead: str = "", script: str = "
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))
     links = "\n".join(f'<a href="#{target}">{heading}</a>' for target, heading in headings if len(headings) > 1)
-    policy = f"{_POLICY}\n" if script else ""
-    return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n{policy}'
-        f"<title>{text(title)}</title>\n<style>\n{_styles()}{styles}</style>\n</head>\n<body>\n<header>\n<h1>{text(title)}</h1>\n"
-        f"{text(lead)}\n</header>\n<nav>\n{links}\n</nav>\n<main>\n{join(sections)}\n</main>\n{script}</body>\n</html>\n"
-    )
+    return Template(_source("page.html")).substitute(
+        mark=MARK, policy=f"{_POLICY}\n" if script else "", title=text(title), styles=_source("page.css") + styles,
+        lead=text(lead), links=links, sections=join(sections), script=script,
+    )  # fmt: skip
 
 
 @cache
-def _styles() -> str:
-    return files(__package__).joinpath("page.css").read_text(encoding="utf-8")
+def _source(name: str) -> str:
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,9 @@ import math
 import os
 from collections.abc import Sequence
 from html import escape
+from importlib.resources import files
 from pathlib import Path
+from string import Template
 from typing import Any
 from xml.etree import ElementTree
 
@@ -88,14 +90,9 @@ def badge(outcomes: Sequence[Outcome]) -> str:
         f'<text x="{x}" y="14" textLength="{width}">{escape(words)}</text>'
         for x, width, words in ((_MARGIN, widths[0], LABEL), (first + _MARGIN, widths[1], right))
     )
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{whole}" height="20" role="img" '
-        f'aria-label="{title}">\n<title>{title}</title>\n'
-        f'<clipPath id="r"><rect width="{whole}" height="20" rx="3"/></clipPath>\n<g clip-path="url(#r)">'
-        f'<rect width="{first}" height="20" fill="#444"/><rect x="{first}" width="{whole - first}" height="20" '
-        f'fill="{colour}"/></g>\n<g fill="#fff" font-family="Verdana,DejaVu Sans,sans-serif" font-size="11">{texts}</g>'
-        "\n</svg>\n"
-    )
+    places = {"first": first, "second": whole - first, "whole": whole}
+    drawing = files(__package__).joinpath("badge.svg").read_text(encoding="utf-8")
+    return Template(drawing).substitute(places, title=title, colour=colour, texts=texts)
 
 
 def page_text(outcomes: Sequence[Outcome]) -> str:
