@@ -104,6 +104,8 @@ def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
     assert said["max_error_m"] < 1e-16 * 100
     assert said["transits"]["matched"] == 10514
     assert said["reference"]["level"] == golden.manifest.level
+    assert said["problem"]["release"] == {"x": "0.3", "y": "0.4"}
+    assert (said["problem"]["pendulum"], len(said["problem"])) == ({"length": "67", "drag": "0"}, 3)
     assert 4e-13 < said["input_floor_m"] < 6e-13  # rounding the inputs of Paris moves the bob by 5e-13 m in a day
 
 

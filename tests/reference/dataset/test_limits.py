@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from small_scenes import make_scene
 
 import reference
+from reference.dataset.checks.manifest_check import _bounds
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.golden import read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest, differences
@@ -194,3 +195,18 @@ def test_where_two_documents_differ_is_told_with_both_values(old, new, told):
     """A whole section or list stands there where the other document has none, or has a longer one."""
     assert [*differences(old, new)] == told
     assert [*differences(new, old)] == [(place, two, one) for place, one, two in told]
+
+
+@pytest.mark.parametrize(
+    ("kind", "proved", "right", "wrong"),
+    [
+        ("grid", None, ["5e-4", "1e-3"], ["4.9e-4", "1.1e-3"]),
+        ("transits", None, ["5e-4", "1e-3", "9"], ["4.9e-4"]),  # whose states two runs know less closely
+        ("transits", "a proof", ["5e-4", "1e-3"], ["4.9e-4", "1.1e-3"]),
+    ],
+)
+def test_a_bound_is_from_half_a_unit_to_one_of_the_last_digit(kind, proved, right, wrong):
+    for bound in (*right, *wrong):
+        bounds = {"grid": {}, "transits": {}} | {kind: {"x": bound}}
+        claims = SimpleNamespace(bounds=SimpleNamespace(**bounds), decimals={kind: {"x": 3}}, enclosure=proved)
+        assert bool([*_bounds(claims)]) is (bound in wrong), bound
