@@ -36,7 +36,7 @@ FLOORS = {
         ["registry", "trajectory"],
         ["octet"],
         [*engine_names()],
-        ["row_zeros"],
+        ["row_zeros", "passages"],
         ["plan", "batch_interface"],
     ],
     "compare": [

@@ -13,6 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from functools import cache
+from math import comb
+from typing import Any
 
 import numpy as np
 
@@ -20,15 +23,16 @@ from ..errors import IntegrationError
 from ..model.sections import Form, form_of
 from ..model.start import Start
 from ..numbers.columns import SECTION
-from ..numbers.precision import GUARD_BITS, to_fraction
+from ..numbers.precision import GUARD_BITS, Array, to_fraction
 from ..numbers.table import Table
 from ..numbers.taylor_step import LOCAL, TaylorStep
-from .bernstein import MOST_TERMS, ROUNDING, bernstein, signs_of
 from .plan import Plan, Report
 
 SPARE_BITS = 64  # of forms, places and states beyond the run's own
 NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
 MOST_PIECES = 200  # that a step is cut into
+ROUNDING = 2.0**-46  # of Bernstein's form in double, against the sum of the coefficients' sizes
+MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
 GRAZING = "Ask for more digits, or leave this section out (run.sections)."
 
 
@@ -143,6 +147,21 @@ def horner(g: list[int], s: int, bits: int) -> tuple[int, int]:
         rate = value + (rate * s >> bits)
         value = c + (value * s >> bits)
     return value, rate
+
+
+def signs_of(form: Array, left: Any, right: Any) -> Array:
+    """Return the signs of Bernstein forms, at the ends as given; where rounding decides 0, which makes two changes."""
+    signs = np.sign(np.trunc(form))
+    signs[..., 0], signs[..., -1] = left, right
+    return signs
+
+
+@cache
+def bernstein(terms: int) -> tuple[Array, Array]:
+    """Return the matrices from coefficients to Bernstein's form, and from that to the form on the first half."""
+    n = range(terms)
+    form = np.array([[comb(j, i) / comb(terms - 1, i) for i in n] for j in n])
+    return form, np.array([[comb(j, i) / 2**j for i in n] for j in n])
 
 
 def _shifted(value: int, bits: int) -> int:

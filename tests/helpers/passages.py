@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import mpmath as mp
 import numpy as np
-from enclosure_oracle import constants, doubles, truth
+from enclosure_oracle import acceleration, constants, doubles, truth
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
 PER_SWING = 300  # samples between which a sign is looked for
 WAYS = {"highest": -1, "lowest": 1}
+SLACK = 1 + 1e-3  # of bounds: a zero is found by one step of Newton's method
 
 
 def plumb(inputs):
@@ -78,38 +79,37 @@ def found(inputs, words, end):
     return passages
 
 
-def outside(inputs, word, times, bounds, states):
-    """Return the passages whose true time, by heyoka in the plain form at 400 bits, is not within its bound.
+def outside(inputs, tables):
+    """Return the passages whose true time or state, by heyoka in the plain form at 400 bits, is not within its bound.
 
-    `times` and `bounds` are exact; `states` are rows of pairs (value, bound) for x to vz, at the passage.
+    `tables` are those of each section, by its word.
     """
-    if not times:
+    rows = [(word, *row) for word, table in tables.items() for row in rows_of(table)]
+    if not rows:
         return []
+    wrong, pars = [], None
     with mp.workprec(400):
-        parts, wrong = form(inputs, word), []
-        pars = constants(inputs)
-        order = sorted(range(len(times)), key=lambda i: times[i])
-        for i, state in zip(order, truth(inputs, [times[i] for i in order]), strict=True):
-            numbers = [mp.mpf(x.numerator) / x.denominator for x in state]
-            from enclosure_oracle import acceleration
+        rows.sort(key=lambda row: row[1])
+        pars, forms = constants(inputs), {word: form(inputs, word) for word in tables}
+        for (word, _, bound, *state), true in zip(rows, truth(inputs, [row[1] for row in rows]), strict=True):
+            numbers, parts = list(map(number, true)), forms[word]
+            rates = [*numbers[3:], *acceleration(pars, numbers)]
+            late = -value(parts, numbers) / value((*parts[:2], 0), rates)
+            if abs(late) > number(bound) * SLACK:
+                wrong.append((word, "t", float(late), float(bound)))
+            for x, rate, (q, e) in zip(numbers, rates, state, strict=True):
+                if abs(x + late * rate - number(q)) > number(e) * SLACK:
+                    wrong.append((word, "state"))
+    return wrong
 
-            rate = value((*parts[:2], 0), [*numbers[3:], *acceleration(pars, numbers)])
-            late = -value(parts, numbers) / rate
-            bound = mp.mpf(bounds[i].numerator) / bounds[i].denominator
-            if abs(late) > bound * (1 + mp.mpf(10) ** -3):
-                wrong.append((word, "t", i, float(late), float(bound)))
-            moved = [x + late * v for x, v in zip(numbers, [*numbers[3:], *acceleration(pars, numbers)], strict=True)]
-            for x, (q, e) in zip(moved, states[i], strict=True):
-                if abs(x - mp.mpf(q.numerator) / q.denominator) > mp.mpf(e.numerator) / e.denominator * (
-                    1 + mp.mpf(10) ** -3
-                ):
-                    wrong.append((word, "state", i))
-        return wrong
+
+def number(x):
+    """Return a fraction as mpmath's number."""
+    return mp.mpf(x.numerator) / x.denominator
 
 
 def rows_of(table):
-    """Return times, their bounds and the states with theirs, of a table of passages."""
-    columns = [
-        list(zip(table.exact(name), table.bound(name), strict=True)) for name in ("x", "y", "z", "vx", "vy", "vz")
-    ]
-    return table.exact("t"), table.bound("t"), list(zip(*columns, strict=True))
+    """Yield of each passage its time, the bound on that, and x to vz, each with its bound."""
+    columns = [zip(table.exact(name), table.bound(name), strict=True) for name in ("x", "y", "z", "vx", "vy", "vz")]
+    for t, bound, *state in zip(table.exact("t"), table.bound("t"), *columns, strict=True):
+        yield t, bound, *state

@@ -34,7 +34,7 @@ from numpy.polynomial.polynomial import polyval
 
 from ...errors import IntegrationError
 from ...numbers.precision import Array
-from ..bernstein import MOST_TERMS, ROUNDING, bernstein, signs_of
+from ..passages import MOST_TERMS, ROUNDING, bernstein, signs_of
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
