@@ -162,7 +162,7 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
     bits, rows = table.bits + GUARD_BITS, list(zip(*table.values, strict=True)) or [()] * len(SECTION)
     start = Start.of(run.plan.inputs, bits)
     form, k = form_of(word, start), start.k.converted(lambda x: FixedPoint.of(x, bits))
-    a, b = (tuple(0 if is_zero(x) else FixedPoint.of(x, bits) for x in part) for part in (form.a, form.b))
+    a, b = (_vector(0 if is_zero(x) else FixedPoint.of(x, bits) for x in part) for part in (form.a, form.b))
     state = [FixedPoint.column(integers(column), 1 << table.bits, bits) / k.length for column in rows[1:]]
     n, v, step = _vector(state[:3]), _vector(state[3:]), FixedPoint.of(INSTANT / Fraction(start.fastest_rate), bits)
     acc = acceleration(n, v, k)
@@ -251,7 +251,7 @@ def _in_units(values: list[int], bits: int) -> Array:
     return np.array([(value << top) / bottom for value in values], dtype=np.float64)
 
 
-def _vector(parts: Iterable[Array]) -> tuple[Array, Array, Array]:
+def _vector(parts: Iterable[Any]) -> Vector:
     x, y, z = parts
     return x, y, z
 
