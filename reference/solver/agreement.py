@@ -21,18 +21,19 @@ import numpy as np
 
 from ..engines.plan import Run
 from ..errors import IntegrationError
-from ..model.algebra import dot
-from ..model.constants import Vector
+from ..model.algebra import add, dot, plus, scale
+from ..model.constants import Vector, is_zero
 from ..model.force import acceleration, force
 from ..model.sections import form_of
 from ..model.start import Start
 from ..numbers.columns import GRID, POSITION, SECTION, STATE, TRANSITS, VELOCITY
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, Array, decimals_for, to_fraction
-from ..numbers.table import Table, bits_in, decimals_of, resolved
+from ..numbers.table import FixedPoint, Table, bits_in, decimals_of, integers, resolved
 from .pilot import MARGIN_BITS
 
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
+INSTANT = Fraction(1, 1 << 20)  # of the fastest rate's radian: a form's second rate is a difference over it
 ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here
 
 
@@ -154,31 +155,42 @@ def passages_lacking(
 def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None) -> Table:
     """Return a section's passages in a run with the errors of each number, as `with_transit_errors` does for transits.
 
-    With the form's error e, its rate f and its second rate at most g, the time is off by at most 2 e/f if g (2 e/f) is
-    at most f; that of the motion's third rate is taken from its fastest rate.
+    With the form's error e, its rate f and its second rate g, the time is off by at most 2 e/f where g (2 e/f) is far
+    below f. These are computed in the run's own bits: in double the height of a small swing is nothing but rounding.
     """
-    start = Start.of(run.plan.inputs, DOUBLE_BITS + GUARD_BITS)
-    k, form, (table, _) = start.k.converted(float), form_of(word, start), run.passages[word]
-    size_a, size_b = (sum(abs(float(x)) for x in part) for part in (form.a, form.b))
-    n, v = (_vector(table[name] / k.length for name in kind) for kind in (POSITION, VELOCITY))
-    a = _vector(np.broadcast_arrays(*acceleration(n, v, k), n[0])[:3])
-    power = bits_in(max(errors.values()))
+    table, _ = run.passages[word]
+    bits, rows = table.bits + GUARD_BITS, list(zip(*table.values, strict=True)) or [()] * len(SECTION)
+    start = Start.of(run.plan.inputs, bits)
+    form, k = form_of(word, start), start.k.converted(lambda x: FixedPoint.of(x, bits))
+    a, b = (_vector(0 if is_zero(x) else FixedPoint.of(x, bits) for x in part) for part in (form.a, form.b))
+    state = [FixedPoint.column(integers(column), 1 << table.bits, bits) / k.length for column in rows[1:]]
+    n, v, step = _vector(state[:3]), _vector(state[3:]), FixedPoint.of(INSTANT / Fraction(start.fastest_rate), bits)
+    acc = acceleration(n, v, k)
+    later = acceleration(add(n, scale(step, v)), add(v, scale(step, acc)), k)
+    f, after = plus(dot(a, v), dot(b, acc)), plus(dot(a, add(v, scale(step, acc))), dot(b, later))
+    power, length = bits_in(max(errors.values())), float(start.k.length)
     parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    off = size_a * sum(parts[name] for name in POSITION) + size_b * sum(parts[name] for name in VELOCITY)
-    f = abs(sum(float(p) * q + float(r) * s for p, q, r, s in zip(form.a, v, form.b, a, strict=True))) * k.length
-    g = (size_a * _norm(a) + size_b * (_norm(v) + _norm(a) / start.fastest_rate) * 4 * start.fastest_rate**2) * k.length
+    off = sum(
+        parts[name] * abs(float(x))
+        for kind, part in ((POSITION, form.a), (VELOCITY, form.b))
+        for name, x in zip(kind, part, strict=True)
+    )
+    slope, bend = (np.abs(_floats(x)) * length for x in (f, (after - f) / step))
     with np.errstate(divide="ignore", invalid="ignore"):
-        late = 2 * off / f
-        late = np.where(g * np.ldexp(late, power) <= f, late, np.inf) + np.ldexp(
-            table["t"], -run.plan.number.prec - power
-        )
-        rates = dict(zip(STATE, (*v, *a), strict=True))
-        columns = {"t": late} | {name: parts[name] + abs(rates[name]) * k.length * late for name in STATE}
+        late = 2 * off / slope
+        late = np.where(bend * np.ldexp(late, power) <= slope / 4, late, np.inf)
+        late += np.ldexp(table["t"], -run.plan.number.prec - power)
+        rates = dict(zip(STATE, (*v, *acc), strict=True))
+        columns = {"t": late} | {name: parts[name] + np.abs(_floats(rates[name])) * length * late for name in STATE}
     for i, name in enumerate(SECTION if apart is not None else ()):
         assert apart is not None
         columns[name] = np.maximum(columns[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))
     fixed = [_fixed(columns[name] * ROUNDED_UP, power, table.bits) for name in SECTION]
     return Table(SECTION, table.bits, table.values, list(zip(*fixed, strict=True)))
+
+
+def _floats(numbers: FixedPoint) -> Array:
+    return np.array([float(x) for x in numbers.fractions()], dtype=np.float64)
 
 
 def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table | None) -> Table:
@@ -239,7 +251,7 @@ def _in_units(values: list[int], bits: int) -> Array:
     return np.array([(value << top) / bottom for value in values], dtype=np.float64)
 
 
-def _vector(parts: Iterable[Array]) -> tuple[Array, Array, Array]:
+def _vector(parts: Iterable[Any]) -> Vector:
     x, y, z = parts
     return x, y, z
 

@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
 PER_SWING = 300  # samples between which a sign is looked for
+SOON = 1e-7  # of the run: the first of them, as a velocity is zero at rest
 WAYS = {"highest": -1, "lowest": 1}
 SLACK = 1 + 1e-3  # of bounds: a zero is found by one step of Newton's method
 
@@ -54,19 +55,19 @@ def found(inputs, words, end):
     run = solve_ivp(
         rates, (0, end), first, method="DOP853", rtol=1e-13, atol=1e-13 * max(map(abs, first)), dense_output=True
     )
-    times = np.linspace(0, end, int(PER_SWING * max(end / swing, 5)))
+    times = np.linspace(SOON * end, end, int(PER_SWING * max(end / swing, 5)))
     states, passages = run.sol(times), {}
     for word in words:
         a, b, d = ([float(x) for x in p] if isinstance(p, tuple) else float(p) for p in form(inputs, word))
         at = lambda t: float(np.dot([*a, *b], run.sol(t)) - d)  # noqa: B023, E731
         values = np.dot([*a, *b], states) - d
         zeros = []
-        for i in range(1, len(times) - 1):
+        for i in range(len(times) - 1):
             low, high = values[i], values[i + 1]
             if low * high < 0:
                 zeros.append((brentq(at, times[i], times[i + 1], xtol=1e-15), int(np.sign(high))))
             elif (
-                i > 1 and values[i - 1] * low > 0 and abs(low) < min(abs(values[i - 1]), abs(high))
+                i and values[i - 1] * low > 0 and abs(low) < min(abs(values[i - 1]), abs(high))
             ):  # a dip, which may hold a close pair
                 side = np.sign(low)
                 dip = minimize_scalar(lambda t: side * at(t), bounds=(times[i - 1], times[i + 1]), method="bounded")  # noqa: B023
