@@ -20,6 +20,7 @@ from .shapes import Covered, EnclosedTransit, Interval, ProvedDerivatives, State
 from .six_columns import cut
 
 TINY = arb(2) ** -4096  # more than nothing
+TERMS = 32  # of p and K in the residuals, which are compared with proposals in doubles
 
 
 class Way:
@@ -56,15 +57,16 @@ class Tangents(BoxRadius):
         self.scene, sizes, polynomials = [self.point.advance(own)], list[list[arb]](), list[Any]()
         with ctx.workprec(2 * SHORT):
             omega = times(piece.k.h, self.balls.omega)
-            p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit))) for f in part] for part in (piece.p, piece.v))
-            K = [cut(f) for f in cross(p, add(v, cross(omega, p)))]
+            p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in part] for part in (piece.p, piece.v))
+            K = [cut(f, TERMS) for f in cross(p, add(v, cross(omega, p)))]
             for way, (rows, bits) in zip(self.ways, proposal, strict=True):
                 f, unit, inverse = [fmpz_poly(row) for row in rows], fmpz(1) << bits, 1 / piece.k.h
                 start, end = ([g(ball(s)) / unit for g in f] for s in (piece.step.low, piece.step.high))
                 start, end = ([*x[:3], *times(inverse, x[3:])] for x in (start, end))
                 jump = [(a - b).abs_upper() for a, b in zip(start, way.last, strict=True)]
                 way.error, way.last = way.error + size(jump[:3]) + size(jump[3:]) / self.balls.w0, end
-                sizes.append(residuals(whole, omega, p, K, way, [arb_poly(g) * (1 / arb(unit)) for g in f]))
+                with ctx.workprec(SHORT):
+                    sizes.append(residuals(whole, omega, p, K, way, [arb_poly(g) * (1 / arb(unit)) for g in f]))
                 polynomials.append((f[:3], unit))
         with ctx.workprec(SHORT):
             k, near_by = whole.k, self.scene[0].tube.eta

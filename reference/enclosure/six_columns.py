@@ -45,9 +45,9 @@ def matrix(columns: list[Vector], s: arb, h: arb) -> arb_mat:
     return arb_mat(6, 6, [*values[:18], *times(1 / h, values[18:])])
 
 
-def cut(f: arb_poly) -> arb_poly:
+def cut(f: arb_poly, terms: int = CUT) -> arb_poly:
     """Return a short polynomial that contains f at every |s| <= 1."""
-    return f.truncate(CUT) + arb(0, f.right_shift(CUT)(UNIT).abs_upper())
+    return f.truncate(terms) + arb(0, f.right_shift(terms)(UNIT).abs_upper())
 
 
 def residuals(piece: Piece, columns: list[Vector]) -> list[list[arb]]:
