@@ -21,6 +21,7 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
 FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
 PROVED_DIGITS = 15  # of the highest points from which period and precession follow
+CLOSER = 6  # powers of ten by which inputs are less uncertain where the derivatives to them are taken
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -235,7 +236,6 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
         UnreachableError: the box is too wide.
     """
     from ..dataset.ranges import ends, period_texts
-    from ..numbers.precision import rounded_up
     from ..solver.solve import solve
 
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
@@ -252,14 +252,24 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
         "first_transits_s": first.pop("transit"),
         "first_passages_s": first,
         "possible": len(ranges.possible),
-        "limits": {
-            name: {
-                "moves_period_s": rounded_up(far),
-                "share": share,
-                "s_per_unit": list(ends(*ranges.derivative(name).period or (far, far))),
-            }
-            for name, (far, share) in ranges.shares().items()
-        },
+        "limits": _limits(scene, ranges.uncertain),
+    }
+
+
+def _limits(scene: Scene, uncertain: dict[str, str]) -> dict[str, Any]:
+    """Return how far each input moves the period, to first order: by derivatives close to the scene's own inputs."""
+    from ..dataset.ranges import ends
+    from ..numbers.precision import rounded_up
+    from ..solver.solve import solve
+
+    near = solve(scene, uncertain={name: f"±{width}e-{CLOSER}" for name, width in uncertain.items()}, derivatives=True)
+    return {
+        name: {
+            "moves_period_s": rounded_up(far * 10**CLOSER),
+            "share": share,
+            "s_per_unit": list(ends(*near.derivative(name).period or (far, far))),
+        }
+        for name, (far, share) in near.shares().items()
     }
 
 
@@ -273,7 +283,7 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
     limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
     if limits:
-        yield "which input limits you: what each alone moves the period by at most, and its share"
+        yield "which input limits you: what each alone moves the period by, to first order, and its share"
     for name, limit in limits:
         moved, (low, high) = f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %", limit["s_per_unit"]
         unit = unit_of(name)

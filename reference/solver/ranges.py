@@ -150,13 +150,19 @@ class Ranges:
 
     @property
     def period(self) -> tuple[Fraction, Fraction] | None:
-        """The mean time in s between transits in the same direction, the first to the last; None where it is open."""
-        times = self.transits.exact("t")
-        swings = (len(times) - 1) // 2
-        if swings < 1 or self.possible:
+        """The mean time in s between transits in the same direction, up to the first that is undecided; None if open."""
+        times, swings = self.transits.exact("t"), self._swings
+        if swings < 1:
             return None
         (low, high), (last_low, last_high) = times[0], times[2 * swings]
         return (last_low - high) / swings, (last_high - low) / swings
+
+    @property
+    def _swings(self) -> int:
+        """The number of whole swings before the first undecided transit."""
+        first = min((low for low, _, _ in self.possible), default=None)
+        decided = [t for t in self.transits.exact("t") if first is None or t[1] < first]
+        return (len(decided) - 1) // 2
 
     def derivative(self, name: str) -> Derivative:
         """Return the derivatives to an uncertain input; they hold for every pendulum of the box.
@@ -176,8 +182,8 @@ class Ranges:
         j = found.names.index(name)
         zeros = [row[j] for row, z in zip(found.transits, found.proved.transits or (), strict=True) if row]
         ones = len(zeros) == len(self.transits) and zeros
-        swings = (len(self.transits) - 1) // 2 if ones and self.period else 0
-        first, last = (zeros[0], zeros[2 * swings]) if swings else (None, None)
+        swings = self._swings if ones else 0
+        first, last = (zeros[0], zeros[2 * swings]) if swings > 0 else (None, None)
         period = Ends((last.low - first.high) / swings, (last.high - first.low) / swings) if first and last else None
         return Derivative(
             Intervals(GRID, tuple(row[j] for row in found.states)),
