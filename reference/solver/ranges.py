@@ -150,7 +150,7 @@ class Ranges:
 
     @property
     def period(self) -> tuple[Fraction, Fraction] | None:
-        """The mean time in s between transits in the same direction, up to the first that is undecided; None if open."""
+        """Mean time in s between transits in the same direction, up to the first that is undecided; None if open."""
         times, swings = self.transits.exact("t"), self._swings
         if swings < 1:
             return None
