@@ -136,11 +136,7 @@ def varied_names() -> list[str]:
 
 
 def _check_key(option: str, key: str) -> None:
-    """Refuse what is no field of a scene, or none that a sweep can vary.
-
-    Raises:
-        InputError: it is not.
-    """
+    """Raise InputError for what is no field of a scene, or none that a sweep can vary."""
     if key not in varied_names():
         raise unknown(option, key, "a field that a sweep can vary", varied_names(), "`foucault show SCENE` lists them.")
 
@@ -179,7 +175,7 @@ def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
         for text in (texts[0], texts[-1]):
             checked_value(key, text, reading)  # between these lie the others
         return key, typed, texts
-    listed = _column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
+    listed: Iterable[str] = _column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
     texts = tuple(text.strip() for text in listed)
     seen = set()
     for text in texts:
@@ -226,20 +222,23 @@ def listed(path: Path) -> Table:
     Raises:
         InputError: it cannot be read, has no rows, or a column is no field that can be varied.
     """
-    values = _columns_of_parquet(path) if path.suffix.lower() in PARQUET else _columns_of_csv(path)
-    for key in values:
-        _check_key("--rows", key)
-    if not values or not len(next(iter(values.values()))):
+    columns = _columns_of_parquet(path) if path.suffix.lower() in PARQUET else _columns_of_csv("--rows", path)
+    names = [name for name, _ in columns]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("--rows", name, "each field once")
+        _check_key("--rows", name)
+    if not columns or not columns[0][1]:
         raise InputError("--rows", str(path), "a line of names of fields, and rows below it")
-    return Table(values)
+    return Table(dict(columns))
 
 
-def _columns_of_parquet(path: Path) -> dict[str, tuple[str, ...]]:
+def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
     need_pyarrow("--rows", str(path), "the package pyarrow")
     with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
         columns = read_columns(stream, _check_size)
-    return {key: tuple(map(_text, column)) for key, column in columns.items()}
+    return [(key, tuple(map(_text, column))) for key, column in columns.items()]
 
 
 def _check_size(names: Iterable[str], rows: int) -> None:
@@ -254,31 +253,25 @@ def _text(value: Any) -> str:
     return format(Decimal(value), "f") if isinstance(value, float | int) else str(value)
 
 
-def _columns_of_csv(path: Path) -> dict[str, tuple[str, ...]]:
-    names, *lines = _lines("--rows", path)
-    keys = [name.strip() for name in names]
-    for key in keys:
-        if keys.count(key) > 1:
-            raise InputError("--rows", key, "each field once")
-    columns = zip(*lines, strict=True)
-    return {key: tuple(text.strip() for text in column) for key, column in zip(keys, columns, strict=False)}
+def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]]:
+    """Return the columns of a CSV file: of each its name, which may be a value, and the values below it."""
+    names, *lines = _lines(option, path)
+    return [(name.strip(), tuple(line[i].strip() for line in lines)) for i, name in enumerate(names)]
 
 
-def _column_of_csv(path: Path, key: str) -> list[str]:
+def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
     """Return the values of one field from a CSV file: its column of that name, or the only one.
 
     Raises:
         InputError: it cannot be read, or there is no such column.
     """
-    table = _lines("--over", path)
-    if key in table[0]:
-        at = table[0].index(key)
-        table = table[1:]
-    elif len(table[0]) == 1:
-        at = 0
-    else:
-        raise InputError("--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(table[0])}.")
-    return [line[at] for line in table]
+    columns = _columns_of_csv("--over", path)
+    for name, values in columns:
+        if name == key:
+            return values
+    if len(columns) > 1:
+        raise InputError("--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(dict(columns))}.")
+    return (columns[0][0], *columns[0][1])
 
 
 def _lines(option: str, path: Path) -> list[list[str]]:
@@ -290,9 +283,8 @@ def _lines(option: str, path: Path) -> list[list[str]]:
         raise InputError(option, str(path), f"a CSV file of 1 to {MOST_VALUES:,} rows")
     for number, line in enumerate(lines, 1):
         if len(line) != len(lines[0]):
-            raise InputError(
-                option, f"{path}, row {number}", f"{len(lines[0])} values as in the first", f"It has {len(line)}."
-            )
+            expected = f"{len(lines[0])} values as in the first"
+            raise InputError(option, f"{path}, row {number}", expected, f"It has {len(line)}.")
     return lines
 
 
