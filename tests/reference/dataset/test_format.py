@@ -15,7 +15,7 @@ from compare.studies.row import Row
 from compare.studies.stability import Cell
 from reference import errors
 from reference.dataset import function, manifest, vectors
-from reference.dataset.sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER
+from reference.dataset.sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER
 from reference.scenes.fields import LEVELS
 from reference.scenes.shipped import DATA_VERSION
 
@@ -42,6 +42,7 @@ PARTS = {
     "bounds": own(manifest.Bounds),
     "counts": own(manifest.Counts),
     "possible": own(manifest.Possible),
+    "sections": own(manifest.SectionsRecord),
     "invariant": own(manifest.Invariant),
     "equations": own(manifest.Equations),
     "run": own(manifest.RunRecord),
@@ -55,6 +56,7 @@ PARTS = {
     "function.json": own(function.FunctionRecord),
     "grid.csv": list(GRID_HEADER),
     "transits.csv": list(TRANSITS_HEADER),
+    "sections.csv": list(SECTIONS_HEADER),
 }
 
 

@@ -192,22 +192,23 @@ def courses_hold(module):
     inputs = scene(t_end="5")
     balls = SceneBalls(inputs, BITS + 64)
     steps = list(until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(5)))
-    courses = [Course(balls, [Fraction(0), Fraction(5)], False, True) for _ in range(2)]
-    mine, other = (module.Sections(course, ("highest",)) for course in courses)
+    courses = [Course(balls, [Fraction(0), Fraction(5)], False, True) for _ in range(3)]
+    mine, like, other = (module.Sections(course, ("highest",)) for course in courses)
     covered = []
     courses[0].followers.append(SimpleNamespace(advance=covered.append))
     for step in steps:
         courses[0].advance(step)
-    with pytest.raises(ArithmeticError):
-        mine.advance(covered[0])
-    with pytest.raises(ArithmeticError):
-        other.advance(covered[0])
-    proved = courses[0].finish()
-    for wrong in (replace(proved), SimpleNamespace(times=proved.times)):
+        courses[1].advance(step)
+    for sections in (mine, other):
+        with pytest.raises(ArithmeticError):
+            sections.advance(covered[0])
+    proved, others = courses[0].finish(), courses[1].finish()
+    for wrong in (replace(proved), others, SimpleNamespace(times=proved.times)):
         with pytest.raises((ArithmeticError, TypeError)):
             mine.finish(wrong)
     with pytest.raises(ArithmeticError):
         other.finish(proved)
+    assert like.finish(others) in module.FINISHED
     late = module.Sections(courses[0], ("highest",))
     with pytest.raises(ArithmeticError):
         late.finish(proved)
