@@ -54,12 +54,6 @@ class Measured:
     section: str | None = None
 
     @property
-    def kind(self) -> str:
-        """What its `transits` are."""
-        several = "" if self.transits == 1 else "s"
-        return f"passage{several} of {self.section}" if self.section else f"transit{several}"
-
-    @property
     def verdict(self) -> str:
         """'cannot be told apart', or 'disagrees'."""
         return APART if self.outside else INSIDE
@@ -67,13 +61,14 @@ class Measured:
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
-        counted = [f"{self.rows} rows"] if self.rows else []
-        counted += [] if self.transits is None else [f"{self.transits} {self.kind}"]
+        counted = [_counted(self.rows, "row")] if self.rows else []
+        zero, of = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
+        counted += [] if self.transits is None else [f"{_counted(self.transits, zero)}{of}"]
         scene, what = self.ranges.scene.id, " and ".join(counted)
         if not self.outside:
             yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved"
         else:
-            numbers = "1 number is" if len(self.outside) == 1 else f"{len(self.outside)} numbers are"
+            numbers = _counted(len(self.outside), "number")
             yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
         for column, t, got, low, high, by in self.outside[:TOLD]:
             at, unit = (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m") if column in STATE else ("", "s")
@@ -149,7 +144,7 @@ def measured(
     off.sort(key=lambda z: (z.by < first[z.column], z.column not in STATE, -z.by))
     notes = (
         *(candidate.notes if candidate else ()),
-        *([f"{late} rows after {float(end):g} s are left out"] if late else []),
+        *([f"after {float(end):g} s {_counted(late, 'time')} left out"] if late else []),
     )
     return Measured(name, ranges, len(kept), len(seen) if transits is not None else None, tuple(off), notes, section)
 
@@ -193,6 +188,10 @@ def _zeros(
             yield Outside(word, *map(float, (t, t, *ends, gap(t, ends))))
         elif nearest[1]:
             free.remove(nearest)
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def _exact(candidate: Candidate, name: str, k: int) -> Fraction:

@@ -36,7 +36,7 @@ def residuals_hold(module):
     for kind in range(60):
         p, K, P, Q = (rng.normal(size=(2, 3)) for _ in range(4))
         omega, turn, c = rng.normal(size=(3, 3)) * rng.choice([0, 1], size=(3, 1))
-        drag, slow, h = rng.choice([0, 0.5]), rng.choice([0, 0.25]), rng.choice([1, 0.5])
+        drag, slow, h = rng.choice([0, 0.5]), rng.choice([0, 0.25]), rng.choice([1, 0.5, 3])
         k = SimpleNamespace(h=arb(h), c=balls(c), drag=arb(drag))
         way = SimpleNamespace(turn=balls(turn), slow=arb(slow))
         poly = [[arb_poly(balls(column)) for column in rows.T] for rows in (p, K, P, Q)]
@@ -69,14 +69,19 @@ def sources_hold(module):
         on = rng.choice([0, 1], size=7, p=[0.6, 0.4])
         if kind % 2:
             on = np.zeros(7)
-            on[rng.integers(7)] = on[rng.integers(7)] = 1
+            on[rng.integers(7, size=3)] = 1
         e, g, off = 0.01 * on[0] * unit(rng), 0.01 * on[1] * unit(rng), 0.01 * on[2] * unit(rng)
         P, Q, turn = (n * unit(rng) for n in rng.choice([0, 1], size=3))
-        r = unit(rng)
+        r, W0 = unit(rng), on[3] * unit(rng) * rng.choice([1, 5])
         if kind % 3 == 0:  # where vectors stand well to each other
-            frame = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-            r, e, g, off, P, Q, turn = (frame[rng.integers(3)] * np.linalg.norm(x) for x in (r, e, g, off, P, Q, turn))
-        W0, K = on[3] * unit(rng) * rng.choice([1, 5]), np.cross(r, unit(rng))
+            frame = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+            r, e, g, off, P, Q, turn, W0 = (
+                frame[rng.integers(2)] * np.linalg.norm(x) for x in (r, e, g, off, P, Q, turn, W0)
+            )
+        if kind == 0:  # drag alone, with all of the others along one axis
+            r, e, P, W0 = np.array([[1, 0, 0]] * 4) * [[1], [0.01], [1], [5]]
+            g, off, Q, turn, on = 0 * r, 0 * r, 0 * r, 0 * r, np.array([1, 0, 0, 1, 1, 0, 0])
+        K = np.cross(r, unit(rng))
         gamma, gap, slow = 0.5 * on[4], 0.01 * on[5], on[6] * rng.choice([0, 1])
         H, p, W = K + g, r - e, W0 + off
         w = 0.7
