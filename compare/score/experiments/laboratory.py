@@ -100,7 +100,7 @@ class Laboratory:
                 if changed > first.case.enough:
                     return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
         cases = [(run.case, run.fits.values()) for run in self._runs]
-        drifting = [any(reader.drifts for reader in readers_of(case, list(fits))) for case, fits in cases]
+        drifting = [any(reader.drifts(reader.right) for reader in readers_of(case, list(fits))) for case, fits in cases]
         told = first.case.explanation((loose(_error_m(first)),), _error_m(first), 0.0, 0.0)
         return [told] * (len(drifting) > LEAST_RUNS and all(drifting))
 
