@@ -92,17 +92,22 @@ class Laboratory:
             return []
 
     def _of_integrator(self) -> list[Explanation]:
-        """Return that an integrator is too loose, where another step shows it, or files that say nothing else."""
+        """Return that an integrator is too loose, where another step shows it, or every file's drift does."""
         first = self._runs[0]
         for run in self._runs:
             if run.setting != 1 and len(run.case.rows.times) == len(first.case.rows.times):
                 changed = largest(run.case.rows.positions - first.case.rows.positions)
                 if changed > first.case.enough:
                     return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
-        cases = [(run.case, run.fits.values()) for run in self._runs]
-        drifting = [any(reader.drifts for reader in readers_of(case, list(fits))) for case, fits in cases]
-        told = first.case.explanation((loose(_error_m(first)),), _error_m(first), 0.0, 0.0)
-        return [told] * (len(drifting) > LEAST_RUNS and all(drifting))
+        try:
+            readers = [readers_of(run.case, list(run.fits.values())) for run in self._runs]
+        except UNSOLVED:
+            return []
+        spheres = [[one for one in found if one.right.kind == "sphere"] for found in readers]
+        drifting = all(any(one.drifts(one.right) for one in found) for found in spheres)
+        error_m = _error_m(first)
+        told = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
+        return [told] if drifting and len(self._runs) > LEAST_RUNS else []
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
@@ -215,11 +216,22 @@ def clock(rows: Rows, release: Array) -> Rows:
     first, last = (is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
     if last and not first and len(rows.times) > 2:
         return replace(_reversed(rows), starts=True)
-    if first and rows.times[0] > 0:
-        text = f"starts its clock at {rows.times[0]:.10g} s and not at 0"
-        convention = Deviation("clock_offset", text, float(np.hypot(*release[:2])))
-        return rows.changed(convention, times=rows.times - rows.times[0], starts=True)
-    return rows
+    return _from_zero(rows, release) if first and rows.times[0] > 0 else rows
+
+
+def _from_zero(rows: Rows, release: Array) -> Rows:
+    """Return the rows with a clock that starts at 0, and what is said of that."""
+    text = f"starts its clock at {rows.times[0]:.10g} s and not at 0"
+    convention = Deviation("clock_offset", text, float(np.hypot(*release[:2])))
+    return rows.changed(convention, times=rows.times - rows.times[0], starts=True)
+
+
+def other_ways(rows: Rows, release: Array) -> Iterator[Rows]:
+    """Yield rows that were made right as those of other conventions between which row 0 does not decide."""
+    if rows.times[0] > 0:  # a clock that starts late, and a release that is off
+        yield _from_zero(rows, release)
+    if abs(abs(release[0]) - abs(release[1])) <= NEAR * abs(release[0]):
+        yield _renamed(rows, (1, 0), (1, 1) if release[0] * release[1] > 0 else (-1, -1))
 
 
 def _reversed(rows: Rows) -> Rows:

@@ -14,7 +14,7 @@ from reference.numbers.precision import Array
 from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
 from .causes import NAMED
-from .conventions import ROUGHLY, made_right
+from .conventions import ROUGHLY, made_right, other_ways
 from .findings import HARMLESS, Explanation, Model
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
@@ -95,11 +95,13 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     problem = Problem.of(scene)
     rows = problem.rows(times, columns)
     best = explanation_of_case(problem.case(rows, allowed_m), scene)
+    others = list(other_ways(rows, problem.start)) if best.corrected_m > allowed_m else []
     if any(convention.id in RENAMED for convention in rows.conventions):
-        # the release may be at fault, and not the names of the columns
-        other = explanation_of_case(problem.case(problem.rows(times, columns, rename=False), allowed_m), scene)
-        if other.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in other.causes):
-            best = min(best, other, key=lambda explanation: explanation.score)
+        others.append(problem.rows(times, columns, rename=False))  # the release may be at fault, and not the names
+    for other in others:
+        told = explanation_of_case(problem.case(other, allowed_m), scene)
+        if told.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in told.causes):
+            best, rows = min((best, rows), (told, other), key=lambda pair: pair[0].score)
     unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
         allowed_m, 1.5 * rows.noise
     )

@@ -140,7 +140,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
         left = case.left(program)
         corrected = largest(left)
     more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
-    if more and reader.like_a_step(reading, causes_of(case, kind)):
+    if more and reader.drifts(reading.program):
         causes.append(loose(corrected))
     model = None
     simple = {cause.stage for cause in causes} <= {"gravity", "model"}

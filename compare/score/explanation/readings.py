@@ -9,7 +9,7 @@ one that contains the other loses.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,7 +28,6 @@ ASIDE = 5  # and beside them, of those that leave least
 MOST = 5  # causes at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
 PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
-HALVED = 0.5  # of what is left: a cause that leaves more does not count
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
 GAIN = 0.99  # of what was left: a step that leaves more is not taken
@@ -164,26 +163,9 @@ class Reader:
         values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN)
         return self._judged(together, program.with_inputs(free, values))
 
-    def like_a_step(self, reading: Reading, causes: Iterable[Cause]) -> bool:
-        """Return whether what a reading leaves is an integrator's, too little for its method to be named.
-
-        A drag or a step halves it then, and no input does as well.
-        """
-        groups = {cause.group for cause in reading.causes}
-        if "integrator" in groups:
-            return False
-        least = {True: math.inf, False: math.inf}
-        for cause in causes:
-            if cause.group not in groups and not _clash(reading.causes, cause):
-                extended = self._with(reading, cause)
-                kind = cause.stage == "integrator" or cause.free == "drag"
-                least[kind] = min(least[kind], math.inf if extended is None else extended.rest)
-        return least[True] < min(HALVED * reading.rest, least[False])
-
-    @property
-    def drifts(self) -> bool:
-        """Whether phase and amplitude drift, and neither explains the other: no input does that, but an integrator."""
-        off, free = self._off(self.right), list(self.fit.free)
+    def drifts(self, program: Program) -> bool:
+        """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
+        off, free = self._off(program), list(self.fit.free)
         pull, drag = free.index(5), free.index(6)
 
         def left(*columns: int) -> float:
