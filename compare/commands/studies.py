@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -196,9 +197,9 @@ def methods(as_json: AsJson = False) -> None:
         emit({"methods": integrators, "approximations": analytic})
         return
     width = max(map(len, (*METHODS, *APPROXIMATIONS)))
-    used_by = {"Methods (study, stability)": integrators}
-    used_by |= {"Approximations (score --approximation, study --approximations)": analytic}
-    for heading, listed_there in used_by.items():
+    lists: dict[str, Sequence[Mapping[str, str | None]]] = {"Methods (study, stability)": integrators}
+    lists["Approximations (score --approximation, study --approximations)"] = analytic
+    for heading, listed_there in lists.items():
         typer.echo(f"{heading}:")
         for each in listed_there:
             missing = f"  [{each['missing']}]" if each.get("missing") else ""
