@@ -202,6 +202,20 @@ def runs_hold(module, names=RUNS, kinds=("box", "point", "poor")):
                         assert row[j].low - slack <= near[0] <= row[j].high + slack, (name, kind, key)
 
 
+def widths_hold(module):
+    """A width that is missing, or another one, is refused."""
+    box = widened(scene(t_end="1"), {"length": "0.001", "gravity": "1e-4"})
+    wrong = [{"pendulum.length": "0.001"}, {"pendulum.length": "0.001", "site.gravity": "1e-5"}]
+    for widths in wrong:
+        halves = {key: Fraction(half) for key, half in widths.items()}
+        windows, refused = Windows(box, BITS, [Fraction(0), Fraction(1)], True), False
+        try:
+            module.Derivatives(windows, halves, dict.fromkeys(halves, 0))
+        except ArithmeticError:
+            refused = True
+        assert refused, widths
+
+
 FAULTS = [
     ("self.twin = ball(half) / self.scale, ", "self.twin = ball(half), "),
     ("add(self.twin.v, cross(self.twin.turning, self.twin.r))", "self.twin.v"),
@@ -331,6 +345,7 @@ OF_BOXES = [
 
 
 def found_by(module):
+    widths_hold(module)
     residuals_hold(module)
     sources_hold(module)
     runs_hold(module)
