@@ -342,3 +342,10 @@ def test_a_possible_transit_is_refuted_by_a_zero_that_xdot_surely_crosses(files,
         SimpleNamespace(manifest=manifest), plan, Table(("t", "ax"), 4, [(3 << 4, slope)])
     )
     assert (outside, bool(problems)) == ([], refuted)
+
+
+def test_vz_follows_from_the_others_where_z_is_deep_in_a_row_and_where_it_is_not_0_in_a_transit():
+    z = np.array([0, 1, 250, 251, -1000], dtype=object)
+    for transits, follows in ((None, [False, False, False, True, True]), ("a sheet", [False, True, True, True, True])):
+        made = physics._Moments(None, [], [None, None, z], 1, [], 1000, transits)
+        assert made._follows.tolist() == follows
