@@ -1,9 +1,7 @@
 """Faults in the trusted lines of a box, one at a time in a copy of the module: each has to be found."""
 
 from fractions import Fraction
-from pathlib import Path
 from random import Random
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -11,6 +9,7 @@ from boxes import drawn, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb
+from sabotage import sabotaged
 from sampled import one_in
 
 import reference.enclosure.box
@@ -129,16 +128,6 @@ def runs_hold(module, names=SHORT_RUNS):
             assert outside(proved, run) == [], name
 
 
-def sabotaged(old, new, source=SOURCE):
-    """The module with a place of its source replaced."""
-    text = Path(source).read_text(encoding="utf-8")
-    assert text.count(old) == 1, old
-    module = ModuleType(f"reference.enclosure.{Path(source).stem}")
-    module.__package__ = "reference.enclosure"
-    exec(compile(text.replace(old, new), source, "exec"), module.__dict__)
-    return module
-
-
 FAULTS = [
     ("ball(low).union(ball(high))", "ball(low)"),
     ("ball(low).union(ball(high))", "ball(high)"),
@@ -194,14 +183,14 @@ FAULTS = [
 
 
 def test_without_a_fault_nothing_is_found():
-    module = sabotaged("PARTS = 16", "PARTS = 16 ")
+    module = sabotaged("PARTS = 16", "PARTS = 16 ", SOURCE)
     defects_hold(module)
     runs_hold(module)
 
 
 @pytest.mark.parametrize("old, new", one_in(8, FAULTS))
 def test_a_fault_is_found(old, new):
-    module = sabotaged(old, new)
+    module = sabotaged(old, new, SOURCE)
     with pytest.raises((AssertionError, ArithmeticError, TypeError, AttributeError)):
         defects_hold(module)
         runs_hold(module)

@@ -10,9 +10,10 @@ from boxes import drawn, inputs_of, moved, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb, arb_poly, ctx
+from sabotage import sabotaged
 from sampled import one_in
-from test_box_sabotage import BITS, sabotaged, unit
 
+import reference.enclosure.box
 import reference.enclosure.derivatives
 from reference.enclosure.approximant import pair
 from reference.enclosure.bound import SceneBalls
@@ -22,12 +23,18 @@ from reference.enclosure.shapes import Box, Sizes
 from reference.enclosure.tangents import TangentSource, scales_of
 from reference.numbers.columns import GRID
 
-SOURCE = reference.enclosure.derivatives.__file__
+SOURCE, BOX = reference.enclosure.derivatives.__file__, reference.enclosure.box.__file__
+BITS = 96
 SLACK = 1 + 1e-9
 
 
 def balls(a):
     return [arb(float(x)) for x in a]
+
+
+def unit(rng):
+    a = rng.normal(size=3)
+    return a / np.linalg.norm(a)
 
 
 def residuals_hold(module):
@@ -364,7 +371,7 @@ def test_a_fault_is_found(old, new):
 
 @pytest.mark.parametrize("old, new", one_in(8, OF_BOXES))
 def test_a_fault_in_the_chain_rule_is_found(old, new, monkeypatch):
-    box = sabotaged(old, new)
-    monkeypatch.setattr("test_derivatives_sabotage.Windows", box.Windows)
+    box = sabotaged(old, new, BOX)
+    monkeypatch.setitem(globals(), "Windows", box.Windows)
     with pytest.raises((AssertionError, ArithmeticError, TypeError, AttributeError, ValueError)):
         runs_hold(reference.enclosure.derivatives)
