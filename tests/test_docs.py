@@ -49,7 +49,7 @@ LANGUAGES = {
     CONTRIBUTING: {"sh"},
     TUTORIAL: {"sh", "console", "python", "toml"},
     SCENE: {"console", "toml"},
-    MEASURED: {"console", "csv", "pycon", "toml"},
+    MEASURED: {"console", "pycon", "text", "toml"},
     ORACLE: {"python", "console"},
     SWEEPS: {"console", "sh", "bash"},
     STUDIES: {"sh"},
@@ -127,7 +127,7 @@ def test_the_page_on_scenes_has_every_field_with_its_default_unit_and_meaning():
         rows |= {f"{name}.{key}": field for key, field in inside.items()} if inside else {name: info}
     page = (ROOT / SCENE).read_text(encoding="utf-8")
     for name, info in rows.items():
-        default = "" if info.is_required() or info.default in (None, "", ()) else str(info.default)
+        default = "" if info.is_required() or info.default in (None, "", (), {}) else str(info.default)
         default = {"True": "true"}.get(default, default)
         unit = (info.json_schema_extra or {}).get("unit", "")
         assert f"| `{name}` | {default} | {unit} | {info.description} |" in page
@@ -196,7 +196,7 @@ def test_the_lines_of_python_on_a_page_print_what_it_shows(page):
 
 
 def test_the_programs_and_the_test_of_the_page_on_python_pass(tmp_path):
-    program, box, limits, name = write_files(API, tmp_path)
+    program, gates, box, limits, name = write_files(API, tmp_path)
     assert -67 < float(output(f"python {program}", tmp_path)) < -66.99
     low, high = map(float, output(f"python {box}", tmp_path).split())
     assert low < 599.898 < high < low + 0.01  # what the point's own transit is: 599.8984 s

@@ -60,7 +60,9 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
     return model
 
 
-def gauss_newton(model: Model, start: Numbers, *, steps: int, gain: float) -> tuple[Numbers, float]:
+def gauss_newton(
+    model: Model, start: Numbers, *, steps: int, gain: float, strays: bool = False
+) -> tuple[Numbers, float]:
     """Return the numbers that leave least, and the norm of what they leave; infinity where the first leave no numbers.
 
     Args:
@@ -68,8 +70,8 @@ def gauss_newton(model: Model, start: Numbers, *, steps: int, gain: float) -> tu
             are those of numbers that the model fits itself, because it is linear in them.
         start: first numbers.
         steps: that are taken at most.
-        gain: share of what was left that a step has to come below, or it is not taken and the search ends; after a step
-            that leaves plainly more, as one along a bent valley does, another one may.
+        gain: share of what was left that a step has to come below, or it is not taken and the search ends.
+        strays: whether another step may follow one that leaves plainly more, as one along a bent valley does.
     """
     best = numbers = start
     left, slopes = model(start)
@@ -85,7 +87,7 @@ def gauss_newton(model: Model, start: Numbers, *, steps: int, gain: float) -> tu
         size = float(np.linalg.norm(left))
         if size < gain * least:
             best, least, strayed = numbers, size, False
-        elif strayed or not least < gain * size < math.inf:
+        elif strayed or not (strays and least < gain * size < math.inf):
             break
         else:
             strayed = True

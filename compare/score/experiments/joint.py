@@ -236,6 +236,8 @@ class JointCase(Case):
 class _JointReader(Reader):
     """A reader that puts no name in place of a number that follows the scene."""
 
+    strays = True
+
     def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
         return reading
 

@@ -48,7 +48,7 @@ def dataset(solution, tmp_path):
 
 
 def test_a_dataset_has_the_files_of_the_contract(dataset):
-    assert {path.name for path in dataset.iterdir()} == NAMES
+    assert {path.name for path in dataset.iterdir()} == NAMES - {"sections.csv"}
     assert problems_of(dataset) == []
     for path in dataset.iterdir():
         data = path.read_bytes()
