@@ -13,6 +13,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 
 import causes_page
@@ -198,6 +199,7 @@ def test_the_lines_of_python_on_a_page_print_what_it_shows(page):
 def test_the_programs_and_the_test_of_the_page_on_python_pass(tmp_path):
     program, gates, box, limits, name = write_files(API, tmp_path)
     assert -67 < float(output(f"python {program}", tmp_path)) < -66.99
+    assert 8.21 < Fraction(output(f"python {gates}", tmp_path)) < 8.22  # half a swing
     low, high = map(float, output(f"python {box}", tmp_path).split())
     assert low < 599.898 < high < low + 0.01  # what the point's own transit is: 599.8984 s
     assert output(f"python {limits}", tmp_path).startswith("pendulum.length moves the period by 1.2e-04 s at most: 93.")
