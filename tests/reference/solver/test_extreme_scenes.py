@@ -21,7 +21,9 @@ from reference.scenes.inputs import Inputs
 MP = mpmath.mp.clone()
 MP.dps = 60
 
-ORDINARY = {"paris", "paris_measured", "pantheon", "pole", "equator", "southern", "spherical", "laboratory", "museum"}
+ORDINARY = {"paris", "paris_measured", "pantheon", "pole", "equator", "southern", "spherical"} | {
+    "laboratory", "laboratory_drag", "museum", "museum_gate",
+}  # fmt: skip
 EXTREME = [name for name in scene_ids() if name not in ORDINARY]
 LONG = {"paris_30d"}
 UNDAMPED = [name for name in EXTREME if name not in LONG and not load_scene(name).exact.drag]
