@@ -122,8 +122,8 @@ PUBLIC = {
     "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution Swept "
     "UnreachableError integrate load load_ranges load_scene parse_scene scene_ids solve trajectory write",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Uncertain Workers check_workers "
-    "chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
+    "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Uncertain Workers "
+    "check_workers chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
     "reference.dataset.render": "MEANING",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
@@ -147,9 +147,10 @@ PUBLIC = {
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",
     "reference.scenes.fields": "LEVELS RunTable",
-    "reference.solver.ranges": "Intervals exact_texts solve_ranges widths_of",
+    "reference.solver.ranges": "Intervals solve_ranges",
     "reference.solver.sensitivity": "digits_lost sensitivity",
     "reference.solver.solve": "roughly",
+    "reference.solver.widths": "exact_texts widths_of",
     "reference.status": "Status",
     "reference.sweeps.axes": "TEXTS",
     "reference.sweeps.request": "Request worth_compiling",

@@ -11,7 +11,8 @@ from reference import InputError, Ranges, Scene, load_ranges
 from reference.commands.progress import progress
 from reference.commands.terminal import emit, refuse, stoppable
 from reference.dataset.place import RANGES, golden_folder
-from reference.solver.ranges import Intervals, exact_texts, widths_of
+from reference.solver.ranges import Intervals
+from reference.solver.widths import exact_texts, widths_of
 
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_transits

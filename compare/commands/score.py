@@ -10,6 +10,7 @@ import typer
 
 from reference import InputError, load_scene
 from reference.commands.terminal import (
+    BESIDE_RANGES,
     AsJson,
     Assignments,
     Uncertain,
@@ -190,7 +191,7 @@ def command(
                 "--covers": covers,
             }
             unused |= {"--plot": plot, "--junit": junit, "--github": github, "--as-model": as_model}
-            refuse({**unused, "--no-diagnosis": no_diagnosis}, "where inputs are uncertain")
+            refuse({**unused, "--no-diagnosis": no_diagnosis}, BESIDE_RANGES)
             hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
             return
         refuse({"--section": section}, "where all inputs are certain")

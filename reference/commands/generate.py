@@ -18,6 +18,7 @@ from ..scenes.shipped import scene_ids
 from ..status import Status
 from .progress import progress
 from .terminal import (
+    BESIDE_RANGES,
     AsJson,
     Assignments,
     Cluster,
@@ -143,7 +144,7 @@ def command(
     chosen("--engine", engine, ENGINES)
     scene = load_scene(scene_word, replacements(set_, options))
     if widths := widths_by_name(uncertain, scene):
-        refuse({"--digits": digits, **proving}, "where inputs are uncertain")
+        refuse({"--digits": digits, **proving}, BESIDE_RANGES)
         _generate_ranges(scene, level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder

@@ -52,6 +52,7 @@ Uncertain = Annotated[
         "KEY=±WIDTH",
     ),
 ]
+BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"  # why an option is refused
 EndTime = Annotated[str | None, option("--t-end", "End each run at this time, in s (default: the scene's).", "S")]
 Workers = Annotated[int | None, option("--workers", "Number of cores of this machine to use (default: all).", "N")]
 Cluster = Annotated[str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")]

@@ -14,20 +14,11 @@ from ..engines import AUTO
 from ..engines.plan import Report
 from ..errors import InputError, unknown
 from ..numbers.columns import GRID, SECTION, TRANSITS, Framed, data_frame
-from ..numbers.precision import Array, double_below, fixed_decimal
-from ..scenes.inputs import Inputs
-from ..scenes.scene import Scene, checked_value, full_name
+from ..numbers.precision import Array, double_below
+from ..scenes.scene import Scene, full_name
 from .proof_steps import COEFFICIENT_BITS, Feed
 from .reach import check_reach
-from .solution import exact_decimals
-
-RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
-SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
-PLAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in SITE)]
-UNCERTAIN = [*PLAIN, "site.inverse_flattening", *(f"release.{name}" for names in RELEASES.values() for name in names)]
-SIGNS = ("±", "+-", "+/-")
-EXAMPLE = "a width with its sign, such as ±0.001 or +-0.001"
-MOST_DECIMALS = 20  # of an end of an interval
+from .widths import exact_texts, widths_of
 
 
 class Ends(NamedTuple):
@@ -262,77 +253,3 @@ def solve_ranges(
         {word: ZeroRanges.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
         proof,
     )
-
-
-def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]:
-    """Return half of the width of each uncertain input by its full name, as given by words such as ±0.001.
-
-    Raises:
-        InputError: an unknown input, one that the scene does not have, a wrong width, or one that leaves the range of
-            values that the input may have.
-    """
-    found: dict[str, Fraction] = {}
-    have = _numbers(scene.exact)
-    for word, text in uncertain.items():
-        name, width, field_name = full_name(word), str(text).strip(), f"--uncertain {word}"
-        if name not in UNCERTAIN:
-            raise unknown(field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES)
-        if name not in have:
-            raise InputError(field_name, text, "an input that this scene has", f"It has {', '.join(have)}.")
-        if name in found:
-            raise InputError(field_name, text, f"{name} once", "Give one width for each input.")
-        sign = next((sign for sign in SIGNS if width.startswith(sign)), None)
-        try:
-            found[name] = Fraction(checked_value("site.altitude", width.removeprefix(sign or "").strip(), "decimal"))
-        except InputError:
-            sign = None
-        if sign is None:
-            raise InputError(field_name, text, EXAMPLE)
-        if found[name] <= 0:
-            raise InputError(field_name, text, "a width above 0", "Leave out an input that is certain.")
-    if not found:
-        raise InputError("--uncertain", "nothing", "an input with its width, length=±0.001", _NAMES)
-    low, high = _ends(scene, found)
-    for name, half in found.items():
-        for end in (low[name], high[name]):
-            try:
-                checked_value(name, decimal(end), "decimal")
-            except InputError as error:
-                reached = f"±{decimal(half)}, up to {decimal(end)}"
-                raise InputError(f"--uncertain {name}", reached, error.expected, "Take a smaller width.") from None
-    if scene.exact.position:
-        far = [max(abs(low[name]), abs(high[name])) for name in ("release.x", "release.y")]
-        if far[0] ** 2 + far[1] ** 2 >= low["pendulum.length"] ** 2:
-            reached = f"x up to {decimal(far[0])}, y up to {decimal(far[1])}"
-            raise InputError("--uncertain", reached, "a release below the suspension", "Take smaller widths.")
-    return found
-
-
-_NAMES = f"Inputs are {', '.join(UNCERTAIN)}."
-
-
-def decimal(value: Fraction) -> str:
-    """Return a number with its decimals, 20 at most."""
-    whole = value * 10**MOST_DECIMALS
-    return fixed_decimal(value, exact_decimals((value,)) if whole.denominator == 1 else MOST_DECIMALS)
-
-
-def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
-    """Return widths as decimals, with all of their digits."""
-    return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
-
-
-def _numbers(inputs: Inputs) -> dict[str, Fraction]:
-    """Return the inputs that may be uncertain, by their full names."""
-    plain = {name: getattr(inputs, name.partition(".")[2]) for name in UNCERTAIN[: len(PLAIN)]}
-    if inputs.flattening:  # not a sphere
-        plain["site.inverse_flattening"] = 1 / inputs.flattening
-    kind = "position" if inputs.position else "angles"
-    release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
-    return plain | {f"release.{name}": value for name, value in release}
-
-
-def _ends(scene: Scene, widths: Mapping[str, Fraction]) -> list[dict[str, Fraction]]:
-    """Return the lower and the upper ends of all inputs."""
-    have = _numbers(scene.exact)
-    return [{name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)]

@@ -215,3 +215,16 @@ def widths_over_hulls(proved: ProvedBox, runs: Sequence[Run]) -> dict[str, float
 def ordered(proved: ProvedBox) -> bool:
     """Return whether transits follow each other."""
     return all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in pairwise(proved.transits or ()))
+
+
+def check_runs(name: str, box: Box, proved: ProvedBox, count: int) -> None:
+    """Hold runs that are drawn from a box against what is proved for it, and print how wide that is."""
+    rng = Random(name)
+    assert proved.transits
+    assert ordered(proved)
+    runs = [truth(drawn(box, rng, corner=k % 2 == 0), proved.times) for k in range(count)]
+    for run in runs:
+        assert outside(proved, run) == []
+    ratios = widths_over_hulls(proved, runs)
+    print(f"\n{name}: {len(runs)} runs, {len(proved.transits)} transits; widths over hulls", end=" ")
+    print(", ".join(f"{column} {ratio:.2f}" for column, ratio in ratios.items()))

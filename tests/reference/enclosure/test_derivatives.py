@@ -4,19 +4,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
-from boxes import (
-    BOXES,
-    box_of,
-    drawn,
-    inputs_of,
-    ordered,
-    outside,
-    proof_of,
-    truth,
-    widened,
-    widths_over_hulls,
-    wrong_derivatives,
-)
+from boxes import BOXES, box_of, check_runs, drawn, inputs_of, proof_of, widened, wrong_derivatives
 
 from reference.enclosure.shapes import Box
 
@@ -32,15 +20,7 @@ def narrow_box_of(name):
 def test_every_pendulum_lies_in_what_follows_from_derivatives(name, size):
     box, times = narrow_box_of(name)
     halves = {key: half for key, half in inputs_of(box).items() if half}
-    proved, rng = proof_of(box, times, halves).proved, Random(name)
-    assert proved.transits
-    assert ordered(proved)
-    runs = [truth(drawn(box, rng, corner=k % 2 == 0), times) for k in range(size(4, 1000))]
-    for run in runs:
-        assert outside(proved, run) == []
-    ratios = widths_over_hulls(proved, runs)
-    print(f"\n{name}: {len(runs)} runs, {len(proved.transits)} transits; widths over hulls", end=" ")
-    print(", ".join(f"{column} {ratio:.2f}" for column, ratio in ratios.items()))
+    check_runs(name, box, proof_of(box, times, halves).proved, size(4, 1000))
 
 
 @pytest.mark.parametrize("name", BOXES)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import reference
-from reference.solver.ranges import UNCERTAIN
+from reference.solver.widths import UNCERTAIN
 
 MEASURED = {"pendulum.length": "±0.001", "site.gravity": "+-1e-5", "latitude": "+/-0.001"}
 
