@@ -60,6 +60,7 @@ def golden_of(
     for folder in shipped(scene):
         golden = _loaded(folder)
         fits = solves(golden, scene) and golden.manifest.digits >= digits and not golden.manifest.alone
+        fits = fits and {*(scene.run.sections or ())} <= golden.sections.keys()
         if fits and not (grid and _grid_until(golden.scene, scene.exact.t_end) != scene.exact.grid):
             return golden
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
@@ -203,6 +204,8 @@ def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, rep
 
 def _why_solved(scene: Scene) -> str:
     """Return why no dataset that ships serves."""
+    if scene.run.sections:
+        return f"no dataset that ships has the passages of {', '.join(scene.run.sections)} of {scene.id}"
     if scene.inputs == "binary64" and with_function(scene):
         return f"the golden function of {scene.id} is in doubles, and does not decide"
     if scene.id in WITHOUT_FUNCTION and _same_problem(load_scene(scene.id), scene):

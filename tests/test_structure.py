@@ -138,6 +138,7 @@ PUBLIC = {
     "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero",
     "reference.model.force": "acceleration energy invariant rates tension",
     "reference.model.formulations": "FORMULATIONS",
+    "reference.model.sections": "form_of",
     "reference.model.start": "Start scaled",
     "reference.numbers.columns": "POSITION STATE VELOCITY",
     "reference.numbers.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType "

@@ -1,4 +1,4 @@
-"""`foucault score` where inputs are uncertain: files are held against what is proved for all of their values."""
+"""`foucault score` of what is measured: passages of a section; and files, where inputs are uncertain."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from reference.solver.widths import exact_texts, widths_of
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_transits
 from ..score.measured import APART, measured
+from ..score.passages import passed
+from .options import announce
 
 
 def ranges_named(word: str | None) -> Ranges | None:
@@ -47,11 +49,7 @@ def hold(
     if not files and transits is None:
         raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
     if section is not None:
-        if transits is None:
-            refuse({"--section": section}, "without --transits")
-        (section, *more) = ranges.scene.with_values({"run.sections": section}).run.sections or ("",)
-        if more or not section:
-            raise InputError("--section", section, "one section", "Score the passages of each by themselves.")
+        section = _word(section, transits, ranges.scene)
     times, found = None if transits is None else read_transits(transits, naming.units), []
     names: list[str | None] = [*files] or [None]
     for file in names:
@@ -66,3 +64,31 @@ def hold(
             typer.echo(line)
     if any(one.verdict == APART for one in found):
         raise typer.Exit(1)
+
+
+def hold_passages(
+    transits: str | None, section: str, scene: Scene, naming: Naming, tolerance: float | None, as_json: bool
+) -> None:
+    """Score the passages of a section, and print what comes of it; exit status 1 where they disagree."""
+    section = _word(section, transits, scene)
+    times = read_transits(str(transits), naming.units)
+    with stoppable("nothing was written"), progress() as show:
+        report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
+        found = passed(str(transits), times, scene, section, tolerance, announce, report)
+    if as_json:
+        emit(found.document())
+    else:
+        for line in found.lines():
+            typer.echo(line)
+    if not found.agrees:
+        raise typer.Exit(1)
+
+
+def _word(section: str, transits: str | None, scene: Scene) -> str:
+    """Return the word of the one section that transits are passages of, as scenes write it."""
+    if transits is None:
+        refuse({"--section": section}, "without --transits")
+    words = scene.with_values({"run.sections": section}).run.sections or ()
+    if len(words) != 1:
+        raise InputError("--section", section, "one section", "Score the passages of each by themselves.")
+    return words[0]

@@ -69,7 +69,7 @@ COLUMNS = option("--columns", "Names of a file's columns in order; - for one tha
 UNITS = option("--units", "Units of times and lengths, such as ms,cm (default: s,m).", "A,B")
 TRANSITS = option("--transits", "Score transits too, or alone: a file with times of xdot = 0 in a column t.", "FILE")
 SECTION = option(
-    "--section", "Of uncertain inputs: --transits are passages of this section, such as 'gate 30'.", "WORD"
+    "--section", "--transits are passages of this section, such as 'gate 30', and not of xdot = 0.", "WORD"
 )
 RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
 NAME = option("--name", "Name of the program of --run (default: the program).", "WORD")
@@ -159,7 +159,7 @@ def command(
     {azimuth_rate} {t_end} {grid_step} {setting}.
     """
     from ..candidates.layout import Naming
-    from .measuring import hold, ranges_named, ranges_to_prove
+    from .measuring import hold, hold_passages, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
@@ -183,18 +183,18 @@ def command(
         scene = ranges.scene if ranges else load_scene(scene_word, replacements(set_, options, UNUSED, announce))
         if ranges is None and (widths := widths_by_name(uncertain, scene)):
             ranges = ranges_to_prove(scene, widths)
-        if ranges is not None:
-            unused: dict[str, object] = {
-                "--run": run,
-                "--approximation": approximation,
-                "--baseline": baseline,
-                "--covers": covers,
-            }
-            unused |= {"--plot": plot, "--junit": junit, "--github": github, "--as-model": as_model}
-            refuse({**unused, "--no-diagnosis": no_diagnosis}, BESIDE_RANGES)
-            hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
+        if ranges is not None or section is not None:
+            unused: dict[str, object] = {"--run": run, "--approximation": approximation, "--covers": covers}
+            unused |= {"--baseline": baseline, "--plot": plot, "--junit": junit, "--github": github}
+            unused |= {"--as-model": as_model, "--no-diagnosis": no_diagnosis}
+            if ranges is not None:
+                refuse(unused, BESIDE_RANGES)
+                hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
+                return
+            refuse({"CANDIDATE": list(candidates or ()), **unused}, "together with --section")
+            read_as = scene if reading else scene.with_values(["inputs=binary64"])  # as programs in double have them
+            hold_passages(transits, str(section), read_as, naming, tolerance, as_json)
             return
-        refuse({"--section": section}, "where all inputs are certain")
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
         refuse(

@@ -87,7 +87,7 @@ def judge(
         raise InputError(
             "scene", f"columns {', '.join(map(str, scene))}", "a scene", "The rows stand before the scene."
         )
-    scene = as_scene(scene)
+    scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
     if not 0 <= covers <= 1:
         raise InputError("covers", f"{covers:g}", "a share of the scene's span, from 0 to 1")
     if candidate is None:

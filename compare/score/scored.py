@@ -192,10 +192,8 @@ class Scored:
     @property
     def agrees(self) -> bool:
         """True if nothing is off by more than `allowed_m`, missed, extra or left out."""
-        transits = self.transits
-        return not (self.off_path or self.falls_short) and (
-            transits is None or not (transits.missed or transits.extra or transits.max_conditioned_m > self.allowed_m)
-        )
+        met = self.transits is None or self.transits.within(self.allowed_m)
+        return met and not (self.off_path or self.falls_short)
 
     @property
     def verdict(self) -> str:

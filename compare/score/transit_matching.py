@@ -8,14 +8,17 @@ as undecided, not as missed or extra.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from reference.numbers.precision import Array
 
+NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 MOST_EXTRA = 1000  # extra transits at which the truth is evaluated; if there are more, none is excused
 
 
@@ -61,6 +64,50 @@ class TransitErrors:
         """Return times and errors in s of the transits whose weighted error is above a tolerance."""
         off = np.abs(self.conditioned_m) > tolerance_m
         return list(zip(self.at[off].tolist(), self.errors_s[off].tolist(), strict=True))
+
+    def within(self, tolerance_m: float) -> bool:
+        """Return whether nothing is missed, extra, or off by more than a tolerance."""
+        return not (self.missed or self.extra or self.max_conditioned_m > tolerance_m)
+
+    def lines(self, tolerance_m: float, name: str = "transits", weighted: str = "weighted by |ax|") -> Iterator[str]:
+        """Yield the lines for people."""
+        worst = f"largest error {self.max_error_s:.3g} s, {weighted}: {self.max_conditioned_m:.3g} m"
+        counted = f"{self.matched} matched, {len(self.missed)} missed, {len(self.extra)} extra"
+        yield entry(name, counted, worst)
+        for word, times in (("missed", self.missed), ("extra", self.extra)):
+            if times:
+                yield entry(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s")
+        if self.undecided:
+            text = _listed(f"{t:.6f}" for t in self.undecided)
+            yield entry("  undecided at", f"{text} s", "a motion within the tolerance may or may not have them")
+        if shifted := self.shifted(tolerance_m):
+            text = _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted)
+            yield entry("  shifted", text, f"{len(shifted)} in all")
+
+    def document(self, tolerance_m: float) -> dict[str, Any]:
+        """Return the JSON document."""
+        return {
+            "matched": self.matched,
+            "missed": len(self.missed),
+            "extra": len(self.extra),
+            "shifted": len(self.shifted(tolerance_m)),
+            "max_error_s": self.max_error_s,
+            "max_conditioned_error_m": self.max_conditioned_m,
+            "missed_at": self.missed,
+            "extra_at": self.extra,
+            "undecided_at": self.undecided,
+        }
+
+
+def entry(name: str, value: str, remark: str = "") -> str:
+    """Return a line of a score: what it is, how much, and a remark."""
+    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
+
+
+def _listed(texts: Iterable[str]) -> str:
+    """Join the first few, with … if there are more."""
+    first = list(islice(texts, NAMED + 1))
+    return ", ".join(first[:NAMED]) + (" …" if len(first) > NAMED else "")
 
 
 def transit_errors(

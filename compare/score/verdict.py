@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from html import escape
-from itertools import islice
 from typing import Any
 
 from reference import Solution
@@ -14,8 +13,7 @@ from reference import Solution
 from ..candidates.candidate import Deviation
 from .explanation.findings import Explanation
 from .scored import Scored
-
-NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
+from .transit_matching import entry
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,33 +57,34 @@ def lines(score: Scored) -> Iterator[str]:
     if score.since is not None:
         yield f"{score.since.text}."
     if not score.covered:
-        yield _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
+        yield entry("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
     elif score.falls_short:
-        yield _row("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
-    yield _row("largest error", f"{errors.max_m:.3g} m", _largest(score))
-    yield _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
+        yield entry("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
+    yield entry("largest error", f"{errors.max_m:.3g} m", _largest(score))
+    yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
     scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
-    yield _row("digits", _one_decimal(errors.digits), scale)
+    yield entry("digits", _one_decimal(errors.digits), scale)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
-    yield _row("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
+    yield entry("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
-    yield _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
+    yield entry("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
     each = (f"{name} {abs(row.difference):.2g} {_unit(name)}" for name, row in score.worst_of_each.items())
-    yield _row("worst of each", ", ".join(each))
+    yield entry("worst of each", ", ".join(each))
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
-        yield _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
+        yield entry("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
     if score.drifts:
         words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
-        yield _row("drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items()))
-    yield from _transit_lines(score)
+        yield entry("drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items()))
+    if score.transits is not None:
+        yield from score.transits.lines(score.allowed_m)
     if score.timing is not None:
         timing = score.timing
         how = f"median of {timing.runs} after a warm-up" if timing.warm else "one run, no warm-up"
-        yield _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
-    yield _row("inputs read as", score.scene.inputs, score.why_inputs)
-    yield _row("reference", score.golden.level, f"within {errors.bound_m:.2g} m at these times")
+        yield entry("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
+    yield entry("inputs read as", score.scene.inputs, score.why_inputs)
+    yield entry("reference", score.golden.level, f"within {errors.bound_m:.2g} m at these times")
     if score.experiments is not None:
         yield from score.experiments.lines()
     told = score.explanation
@@ -104,10 +103,6 @@ def _verdict(score: Scored) -> str:
     would_pass = not score.passes and replace(score, as_model=True).passes
     enough = "; --as-model takes that as enough" if would_pass else ""
     return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}{enough}"
-
-
-def _row(name: str, value: str, remark: str = "") -> str:
-    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
 
 
 def _unit(component: str) -> str:
@@ -151,32 +146,6 @@ def _growth(exponent: float | None) -> str:
     return "" if exponent is None else f"grows like t^{exponent:.2f}"
 
 
-def _transit_lines(score: Scored) -> Iterator[str]:
-    transits = score.transits
-    if transits is None:
-        return
-    worst = f"largest error {transits.max_error_s:.3g} s, weighted by |ax|: {transits.max_conditioned_m:.3g} m"
-    yield _row(
-        "transits", f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra", worst
-    )
-    for word, times in (("missed", transits.missed), ("extra", transits.extra)):
-        if times:
-            yield _row(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s")
-    if transits.undecided:
-        text = _listed(f"{t:.6f}" for t in transits.undecided)
-        yield _row("  undecided at", f"{text} s", "a motion within the tolerance may or may not have them")
-    shifted = transits.shifted(score.allowed_m)
-    if shifted:
-        text = _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted)
-        yield _row("  shifted", text, f"{len(shifted)} in all")
-
-
-def _listed(texts: Iterable[str]) -> str:
-    """Join the first few, with … if there are more."""
-    first = list(islice(texts, NAMED + 1))
-    return ", ".join(first[:NAMED]) + (" …" if len(first) > NAMED else "")
-
-
 def document(score: Scored) -> dict[str, Any]:
     """Return a score as a JSON document; its keys are part of the command line's contract."""
     errors, transits = score.errors, score.transits
@@ -208,7 +177,7 @@ def document(score: Scored) -> dict[str, Any]:
         "length_drift_m": score.drifts.get("length_m"),
         "worst": score.worst._asdict(),
         "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
-        "transits": None,
+        "transits": None if transits is None else transits.document(score.allowed_m),
         "reference": {"level": score.golden.level, "bound_m": errors.bound_m},
         "grade": score.grade,
         "conventions": [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions],
@@ -221,18 +190,6 @@ def document(score: Scored) -> dict[str, Any]:
         "problem": score.problem,
         "notes": list(score.notes),
     }
-    if transits is not None:
-        fields["transits"] = {
-            "matched": transits.matched,
-            "missed": len(transits.missed),
-            "extra": len(transits.extra),
-            "shifted": len(transits.shifted(score.allowed_m)),
-            "max_error_s": transits.max_error_s,
-            "max_conditioned_error_m": transits.max_conditioned_m,
-            "missed_at": transits.missed,
-            "extra_at": transits.extra,
-            "undecided_at": transits.undecided,
-        }
     if score.timing is not None:
         fields["timing"] = vars(score.timing)
     if score.experiments is not None:

@@ -113,3 +113,22 @@ def test_what_cannot_be_held_is_told(score, file, tmp_path, words, told):
     box = [] if "length=±70" in words else WORDS
     status, said = score("paris", *(places.get(word, word) for word in words), *box)
     assert status != 0 and told in said
+
+
+def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, file, tmp_path):
+    solution = reference.solve("paris", t_end="20", digits=18, sections="gate 30", transits=False)
+    times = solution.sections["gate 30"].table["t"]
+    np.savetxt(tmp_path / "gate.csv", times, header="t", comments="", fmt="%.17g")
+    words = ("paris", "--transits", tmp_path / "gate.csv", "--t-end", "20", "--section", "gate 30")
+    status, told = score(*words)
+    assert status == 0, told
+    assert f"agrees with paris ({len(times)} passages of gate 30" in told
+    assert f"{len(times)} matched, 0 missed, 0 extra" in told
+    status, told = score(*words[:-1], "gate 31", "--json")
+    document = json.loads(told)
+    assert (status, document["verdict"], document["section"]) == (1, "disagrees", "gate 31")
+    assert document["transits"]["matched"] == document["transits"]["shifted"] == len(times)
+    status, told = score(*words, file()[0])
+    assert status == 2 and "no such option together with --section" in told
+    status, told = score("paris", "--section", "gate 30")
+    assert status == 2 and "no such option without --transits" in told

@@ -26,6 +26,7 @@ from compare.score.judge import (
     judge,
     unjudged_transits,
 )
+from compare.score.transit_matching import TransitErrors
 from reference import InputError, Solution, load, load_scene, solve, trajectory
 from reference.engines.heyoka.model import Numbers
 from reference.engines.trajectory import Variants
@@ -112,7 +113,7 @@ def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
 def test_what_is_allowed_is_allowed_to_the_last_bit(good, golden):
     score = judge(good, "paris", transits=golden.transits["t"], explain=False)
     for transit_m, agrees in ((score.allowed_m, True), (np.nextafter(score.allowed_m, 1), False)):
-        transits = SimpleNamespace(missed=[], extra=[], max_conditioned_m=transit_m)
+        transits = TransitErrors(np.zeros(1), np.array([transit_m]), [], [], np.ones(1))
         assert replace(score, transits=transits).agrees is agrees
     assert replace(score, tolerance_m=score.errors.max_m - score.errors.bound_m).agrees
     assert not replace(score, tolerance_m=score.errors.max_m / 2 - score.errors.bound_m).agrees

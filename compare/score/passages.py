@@ -1,0 +1,157 @@
+"""Score the passages of a section, such as those of a light gate, where all inputs are certain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reference import InputError, Scene
+from reference.model.constants import constants_in_double
+from reference.model.force import rates
+from reference.model.sections import form_of
+from reference.model.start import Start
+from reference.numbers.columns import STATE
+from reference.numbers.precision import DOUBLE_BITS, Array
+
+from ..observed.position_error import distance
+from ..truth import DIGITS, Report, golden_of, truth_at
+from .errors import swing_rate
+from .judge import TOLERANCE
+from .transit_matching import TransitErrors, entry, transit_errors
+
+
+@dataclass(frozen=True)
+class Passed:
+    """The errors of passages, and what was allowed.
+
+    Attributes:
+        name: of the candidate.
+        scene: the problem, its inputs read as they were.
+        section: the word of the section.
+        times: its passages in s, up to the end of the scene.
+        errors: of these times, weighted by how fast the bob passes.
+        tolerance_m: largest weighted error allowed, in m.
+        bound_m: how well the truth is known, as a distance in m.
+        level: that of the truth.
+    """
+
+    name: str
+    scene: Scene
+    section: str
+    times: Array
+    errors: TransitErrors
+    tolerance_m: float
+    bound_m: float
+    level: str
+
+    @property
+    def allowed_m(self) -> float:
+        """Tolerance in m plus the truth's own bound."""
+        return self.tolerance_m + self.bound_m
+
+    @property
+    def agrees(self) -> bool:
+        """True if no passage is missed, extra, or off by more than `allowed_m`."""
+        return self.errors.within(self.allowed_m)
+
+    @property
+    def verdict(self) -> str:
+        """'agrees' or 'disagrees'."""
+        return "agrees" if self.agrees else "disagrees"
+
+    def lines(self) -> Iterator[str]:
+        """Yield the lines for people, the verdict first."""
+        span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} of {self.scene.run.t_end} s"
+        counted = f"{len(self.times)} passage{'s' if len(self.times) > 1 else ''} of {self.section}"
+        yield f"{self.name} {self.verdict} with {self.scene.id} ({counted}, {span})"
+        yield from self.errors.lines(self.allowed_m, "passages", "as a distance")
+        yield entry("tolerance", f"{self.tolerance_m:.3g} m")
+        yield entry("inputs read as", self.scene.inputs)
+        yield entry("reference", self.level, f"within {self.bound_m:.2g} m")
+
+    def document(self) -> dict[str, Any]:
+        """Return the JSON document."""
+        return {
+            "scene": self.scene.id,
+            "candidate": self.name,
+            "verdict": self.verdict,
+            "section": self.section,
+            "inputs": self.scene.inputs,
+            "tolerance_m": self.tolerance_m,
+            "transits": self.errors.document(self.allowed_m),
+            "reference": {"level": self.level, "bound_m": self.bound_m},
+        }
+
+
+def passed(
+    name: str,
+    times: Array,
+    scene: Scene,
+    section: str,
+    tolerance: float | None = None,
+    announce: Callable[[str], None] | None = None,
+    report: Report | None = None,
+) -> Passed:
+    """Score the passages of a section.
+
+    Args:
+        name: of the candidate.
+        times: its passages in s, in order; those after the scene's end are not judged.
+        scene: the problem.
+        section: its word, such as "gate 30".
+        tolerance: largest distance in m by which the motion may be off; if None, `TOLERANCE` times the amplitude.
+        announce: called with a message before the scene is solved.
+        report: called with the simulated time reached, in s.
+
+    Raises:
+        InputError: no time lies after t = 0 and before the scene's end.
+        UnreachableError: the scene cannot be solved.
+    """
+    scene = scene.with_values({"run.sections": section, "run.transits": "false"})
+    judged = times[(times > 0) & (times <= float(scene.exact.t_end))]
+    if not len(judged):
+        raise InputError(f"{name}: t", "no time in the scene's span", f"times above 0, up to {scene.run.t_end} s")
+    golden = golden_of(scene, DIGITS, announce, report, float(judged[-1]))
+    truth = golden.sections[section]
+    speed = float(distance((golden.vx, golden.vy, golden.vz)).max())
+    away = _distances(section, scene, swing_rate(scene, speed))
+    _, slopes = away(np.column_stack([truth[column] for column in STATE]))
+    allowed = TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
+    errors = transit_errors(
+        judged,
+        truth["t"],
+        slopes,
+        1.0,
+        float(judged[-1]),
+        tolerance_m=allowed,
+        xdot=lambda at: away(truth_at(golden, at).states)[0],
+    )
+    bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
+    return Passed(name, scene, section, judged, errors, allowed, bound, golden.level)
+
+
+def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tuple[Array, Array]]:
+    """Return a function of states, shape (rows, 6), that gives how far the bob is from passing, in m, and its rate.
+
+    A velocity is `omega` times a distance. Where a passage of the other direction is near, it is infinitely far.
+    """
+    form = form_of(section, Start.of(scene.exact, DOUBLE_BITS))
+    k, (a, b) = constants_in_double(scene.exact), (np.array([*map(float, part)]) for part in (form.a, form.b))
+
+    def away(states: Array) -> tuple[Array, Array]:
+        position, velocity = states[:, :3], states[:, 3:]
+        force = np.column_stack(rates([*states.T], k)[3:])
+        if a.any():
+            size = np.linalg.norm(a)
+            return (position @ a - float(form.d) * float(k.length)) / size, velocity @ a / size
+        size = omega * np.linalg.norm(b)
+        if form.direction:  # only what is along the sphere counts, and where that points changes with the place
+            aside, down = distance(np.cross(b, position).T), np.abs(position @ b)
+            size = (omega * aside + distance(velocity.T) * down / float(k.length)) / float(k.length)
+        far, rate = velocity @ b / size, force @ b / size
+        return np.where(rate * form.direction < 0, np.inf, far), rate
+
+    return away
