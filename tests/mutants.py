@@ -42,7 +42,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION}",
     "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
-    "compare/score: transit_matching": f"{SCORE}transit_errors.py",
+    "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
     "compare/score: errors": f"{SCORE}errors.py",
     "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING}",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
