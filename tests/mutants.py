@@ -39,7 +39,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
     "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {VERIFY}",
     "reference/dataset/checks: manifest_check": f"{LIMITS} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
-    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION}",
+    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION} {SOLVER}sections.py",
     "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
@@ -47,7 +47,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING}",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
     "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
-    "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}solve.py",
+    "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}sections.py {SOLVER}solve.py",
     "reference/solver: solve": f"{BITS} {SOLVER}solve.py {SOLVER}pilot.py",
 }
 SLOW = "ships few_digits killed two_processes script same_command ten_times picture collinear 1000000 recomputing "

@@ -9,7 +9,7 @@ import pytest
 from small_scenes import make_scene
 
 from compare.score import scored as module
-from compare.score.scored import input_floor
+from compare.score.scored import _span, input_floor
 from reference import load, load_scene
 
 
@@ -58,3 +58,10 @@ def test_inputs_that_are_doubles_have_no_floor():
     site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0.0001220703125", "equatorial_radius": "6378137",
             "inverse_flattening": "256"}  # fmt: skip
     assert input_floor(make_scene("exact", site=site, release=release, run={"t_end": "20"}), 20.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("until", "span"), [(1000.0, 1000.0), (501.0, 1000.0), (500.0, 500.0), (125.5, 250.0), (2000.0, 2000.0)]
+)
+def test_the_span_is_halved_as_long_as_it_reaches_the_end(until, span):
+    assert _span(1000.0, until) == span

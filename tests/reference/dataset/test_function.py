@@ -65,11 +65,15 @@ def test_it_is_written_sealed_and_verified(whole):
 
 def test_it_leaves_the_other_files_as_they_are(whole, solution, tmp_path):
     proof = replace(solution.proof, function=None)
-    other = read_files(reference.write(replace(solution, proof=proof), tmp_path / "paris"))
+    folder = reference.write(replace(solution, proof=proof), tmp_path / "paris")
+    other = read_files(folder)
     files = read_files(whole)
     assert {name: text for name, text in files.texts.items() if name not in FUNCTION} == other.texts
     assert "--function" not in other.manifest.command
     assert other.function is None
+    with_function, without = reference.load(whole), reference.load(folder)
+    assert [with_function.grid.decimals(name) for name in STATE] == [without.grid.decimals(name) for name in STATE]
+    assert with_function.transits.decimals("t") == without.transits.decimals("t")
 
 
 def test_solution_and_dataset_have_the_same_motion_at_times_of_any_shape(whole, solution):
