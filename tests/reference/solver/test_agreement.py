@@ -16,11 +16,11 @@ from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.force import acceleration, force, tension
 from reference.model.start import Start
-from reference.numbers.columns import GRID, TRANSITS
+from reference.numbers.columns import GRID, SECTION, TRANSITS
 from reference.numbers.precision import DOUBLE, real
 from reference.numbers.table import Table
 from reference.solver import solve as solver
-from reference.solver.agreement import Agreement, bits_lacking, with_transit_errors
+from reference.solver.agreement import Agreement, bits_lacking, with_passage_errors, with_transit_errors
 from reference.solver.pilot import MARGIN_BITS
 
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
@@ -170,6 +170,18 @@ def test_no_error_of_a_transit_is_below_twice_the_difference_of_two_runs(error, 
     apart = Table(TRANSITS, bits, [[int(x * 2**bits) for x in row] for row in differences])
     table = with_transit_errors(rough, dict.fromkeys(GRID, error), apart)
     for name in TRANSITS:
+        for bound, gap in zip(table.bound(name), apart.exact(name), strict=True):
+            assert 2 * gap <= bound < 2 * gap * (1 + Fraction(1, 10**9)), name
+
+
+@pytest.mark.parametrize("error", [Fraction(1, 2**200), Fraction(1, 2**60)])
+def test_no_error_of_a_passage_is_below_twice_the_difference_of_two_runs(paris, error):
+    plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=False, sections=("gate 30",))
+    found = run(plan)
+    passages, _ = found.passages["gate 30"]
+    apart = Table(SECTION, 90, [[2**60 * (1 + k) for k in range(len(SECTION))]] * len(passages))
+    table = with_passage_errors(found, dict.fromkeys(GRID, error), "gate 30", apart)
+    for name in SECTION:
         for bound, gap in zip(table.bound(name), apart.exact(name), strict=True):
             assert 2 * gap <= bound < 2 * gap * (1 + Fraction(1, 10**9)), name
 
