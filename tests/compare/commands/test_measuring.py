@@ -115,7 +115,7 @@ def test_what_cannot_be_held_is_told(score, file, tmp_path, words, told):
     assert status != 0 and told in said
 
 
-def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, file, tmp_path):
+def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, foucault, file, tmp_path):
     solution = reference.solve("paris", t_end="20", digits=18, sections="gate 30", transits=False)
     times = solution.sections["gate 30"].table["t"]
     np.savetxt(tmp_path / "gate.csv", times, header="t", comments="", fmt="%.17g")
@@ -124,8 +124,8 @@ def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, fi
     assert status == 0, told
     assert f"agrees with paris ({len(times)} passages of gate 30" in told
     assert f"{len(times)} matched, 0 missed, 0 extra" in told
-    status, told = score(*words[:-1], "gate 31", "--json")
-    document = json.loads(told)
+    status, out, _ = foucault("score", *words[:-1], "gate 31", "--json")  # that it is solved is told on stderr
+    document = json.loads(out)
     assert (status, document["verdict"], document["section"]) == (1, "disagrees", "gate 31")
     assert document["transits"]["matched"] == document["transits"]["shifted"] == len(times)
     status, told = score(*words, file()[0])
