@@ -40,7 +40,7 @@ class Measured:
         name: of the candidate.
         ranges: what was proved, at the times of its rows.
         rows: the number of rows up to the end of the scene.
-        transits: the number of its transits or passages, None if it has none.
+        transits: the number of its transits or passages at times where the proof decides; None if it has none.
         outside: every number that contradicts the proof, the farthest of a column first.
         notes: remarks that a reader ought to know.
     """
@@ -113,10 +113,10 @@ def measured(
         section: the word of the section that `transits` are passages of.
 
     Raises:
-        InputError: no row or transit lies within the scene's span.
+        InputError: no row or transit lies within the scene's span, or the proof decides nothing at any of the times.
         UnreachableError: the box is too wide.
     """
-    end = ranges.scene.exact.t_end
+    end, asked = ranges.scene.exact.t_end, ranges.scene.run.sections or ()
     times = [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
     zeros = [] if transits is None else sorted(_decimal(t) for t in transits if t > 0)
     kept, seen = [t for t in times if t <= end], [t for t in zeros if t <= end]
@@ -138,15 +138,25 @@ def measured(
     if seen and not _intervals(ranges, section):
         none = f"none: {section or 'xdot'} has no single zeros in this scene"
         raise InputError(name, "transits", none, "Give positions instead.")
+    free, word = _intervals(ranges, section), section or TRANSIT
+    decided = [t for t in seen if not _undecided(t, free)]
+    if seen and not decided and not kept:
+        (low, high) = next(ends for ends, one in free if not one and ends[0] <= seen[0] <= ends[1])
+        advice = f"The proof leaves {float(low):g} to {float(high):g} s open. Take smaller widths, or another section."
+        raise InputError(f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice)
     off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
-    off += _zeros(seen, _intervals(ranges, section), section or TRANSIT)
+    off += _zeros(decided, free, word)
     first = {column: max(z.by for z in off if z.column == column) for column in {z.column for z in off}}
+    notes = list(candidate.notes if candidate else ())
+    if late:
+        notes.append(f"after {float(end):g} s {_counted(late, 'time')} left out")
+    if open_ := len(seen) - len(decided):
+        notes.append(f"{_counted(open_, 'time')} left out, at which the proof does not decide {word}")
+    if TRANSIT in first and asked:
+        notes.append(f"for passages of {asked[0]} write --section '{asked[0]}'")
     off.sort(key=lambda z: (z.by < first[z.column], z.column not in STATE, -z.by))
-    notes = (
-        *(candidate.notes if candidate else ()),
-        *([f"after {float(end):g} s {_counted(late, 'time')} left out"] if late else []),
-    )
-    return Measured(name, ranges, len(kept), len(seen) if transits is not None else None, tuple(off), notes, section)
+    count = len(decided) if transits is not None else None
+    return Measured(name, ranges, len(kept), count, tuple(off), tuple(notes), section)
 
 
 def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float) -> Iterator[Outside]:
@@ -170,6 +180,12 @@ def _intervals(ranges: Ranges, section: str | None) -> list[tuple[tuple[Fraction
     table, possible = (found.table, found.possible) if found else (ranges.transits, ranges.possible)
     ones = [(ends, True) for ends in table.exact("t")] if len(table) else []
     return [*ones, *(((low, high), False) for low, high, _ in possible)]
+
+
+def _undecided(t: Fraction, free: list[tuple[tuple[Fraction, Fraction], bool]]) -> bool:
+    """Return whether a time lies in an interval that may hold zeros, and in none that holds just one."""
+    inside = [one for (low, high), one in free if low <= t <= high]
+    return bool(inside) and not any(inside)
 
 
 def _zeros(

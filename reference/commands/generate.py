@@ -222,6 +222,9 @@ def _generate_ranges(
     typer.echo(f"{folder}: {counts['grid']} grid times, {counts['transits']} transits, for every {box}: enclosed")
     if ranges.possible:
         typer.echo(f"intervals that may hold more transits: {counts['possible']}")
+    for word, found in ranges.sections.items():
+        left = f", intervals that are left open: {len(found.possible)}" if found.possible else ""
+        typer.echo(f"passages of {word}: {len(found.table)}{left}")
     if period:
         typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")
 

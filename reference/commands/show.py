@@ -280,6 +280,7 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
     for word, passages in ranges["first_passages_s"].items():
         told += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
+        told += [] if passages else [f"no passage of {word} is decided"]
     yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
     limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
     if limits:

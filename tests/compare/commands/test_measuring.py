@@ -10,6 +10,7 @@ from reference.dataset.ranges import write_ranges
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 WORDS = [word for name, width in BOX.items() for word in ("--uncertain", f"{name}={width}")]
+CHANGES = ("release.x=0.4", "release.y=0", "site.gravity_is=effective")  # it swings along the gate of azimuth 0
 TIMES = [0.0, 10.0, 16.4, 30.0]
 
 
@@ -132,3 +133,24 @@ def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, fo
     assert status == 2 and "no such option together with --section" in told
     status, told = score("paris", "--section", "gate 30")
     assert status == 2 and "no such option without --transits" in told
+
+
+def test_times_at_which_a_section_is_not_decided_are_no_agreement(score, file, tmp_path):
+    """A gate along the swing: the bob passes it at no clear moment."""
+    box = ("--uncertain", "x0=±0.01", "--uncertain", "y0=±0.01", "--t-end", "60")
+    scene = ("paris", *(word for change in CHANGES for word in ("--set", change)), *box)
+    (tmp_path / "gate.csv").write_text("t\n20.5\n", encoding="utf-8")
+    words = ("--transits", tmp_path / "gate.csv", "--section", "gate 0")
+    status, told = score(*scene, *words)
+    assert status == 2 and "expected a time at which gate 0 is decided" in told
+    rows, _ = file()
+    status, told = score(*scene, rows, *words)
+    assert status == 1 and "0 passages of gate 0" in told
+    assert "Note: 1 time left out, at which the proof does not decide gate 0." in told
+
+
+def test_where_a_scene_asks_for_a_gate_times_that_disagree_as_transits_are_told_of_it(score, tmp_path):
+    (tmp_path / "gate.csv").write_text("t\n4.2\n", encoding="utf-8")
+    words = ("paris", "--set", "run.sections=gate 30", "--t-end", "60", "--transits", tmp_path / "gate.csv", *WORDS)
+    status, told = score(*words)
+    assert status == 1 and "Note: for passages of gate 30 write --section 'gate 30'." in told
