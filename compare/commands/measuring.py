@@ -17,7 +17,7 @@ from reference.solver.widths import exact_texts, widths_of
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_transits
 from ..score.measured import APART, measured
-from ..score.passages import passed
+from ..score.passages import score_passages
 from .options import announce
 
 
@@ -74,7 +74,7 @@ def hold_passages(
     times = read_transits(str(transits), naming.units)
     with stoppable("nothing was written"), progress() as show:
         report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-        found = passed(str(transits), times, scene, section, tolerance, announce, report)
+        found = score_passages(str(transits), times, scene, section, tolerance, announce, report)
     if as_json:
         emit(found.document())
     else:

@@ -299,5 +299,5 @@ def _transits(times: Array, golden: Golden | Solution, errors: TrajectoryErrors,
         swing_rate(golden.scene, errors.speed_m_s),
         min(float(errors.t[-1]), end),
         tolerance_m=tolerance_m,
-        xdot=lambda at: _truth(golden, at).states[:, 3],
+        away=lambda at: _truth(golden, at).states[:, 3],
     )

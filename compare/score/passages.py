@@ -24,7 +24,7 @@ from .transit_matching import TransitErrors, entry, transit_errors
 
 
 @dataclass(frozen=True)
-class Passed:
+class PassageScore:
     """The errors of passages, and what was allowed.
 
     Attributes:
@@ -86,7 +86,7 @@ class Passed:
         }
 
 
-def passed(
+def score_passages(
     name: str,
     times: Array,
     scene: Scene,
@@ -94,7 +94,7 @@ def passed(
     tolerance: float | None = None,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
-) -> Passed:
+) -> PassageScore:
     """Score the passages of a section.
 
     Args:
@@ -127,10 +127,10 @@ def passed(
         1.0,
         float(judged[-1]),
         tolerance_m=allowed,
-        xdot=lambda at: away(truth_at(golden, at).states)[0],
+        away=lambda at: away(truth_at(golden, at).states)[0],
     )
     bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
-    return Passed(name, scene, section, judged, errors, allowed, bound, golden.level)
+    return PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
 
 
 def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tuple[Array, Array]]:

@@ -118,18 +118,19 @@ def transit_errors(
     until: float,
     *,
     tolerance_m: float = 0.0,
-    xdot: Callable[[Array], Array] | None = None,
+    away: Callable[[Array], Array] | None = None,
 ) -> TransitErrors:
     """Match a candidate's transits with the truth's.
 
     Args:
         times: the candidate's, in order, in s; of equal ones all but one are extra.
         truth: the truth's times, increasing, in s.
-        ax: the truth's d²x/dt² at its transits, in m/s².
-        omega: angular frequency of the motion in rad/s.
+        ax: the truth's d²x/dt² at its transits, in m/s²; or the rate of `away` at passages of a section, in m/s.
+        omega: angular frequency of the motion in rad/s, which makes a distance of xdot; 1 for passages.
         until: end of the candidate's run in s: later transits are not missed.
         tolerance_m: largest weighted error that counts as none, in m.
-        xdot: returns the truth's xdot in m/s at increasing times; without it no extra transit is excused.
+        away: returns how far the truth is from a transit, in m/s if `omega` is not 1, at increasing times; without
+            it no extra transit is excused.
     """
     owner = _owners(times, truth)
     matched = owner >= 0
@@ -139,9 +140,9 @@ def transit_errors(
     extra = np.setdiff1d(np.arange(len(times)), owner[matched])
     excused = _vanishing(missed, truth, weight, until, tolerance_m)
     spurious = np.zeros(len(extra), dtype=bool)
-    if xdot is not None and 0 < len(extra) <= MOST_EXTRA and omega:
+    if away is not None and 0 < len(extra) <= MOST_EXTRA and omega:
         doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])  # no motion has a transit twice
-        spurious = (np.abs(_at(times[extra], xdot)) / omega <= tolerance_m) & ~doubled
+        spurious = (np.abs(_at(times[extra], away)) / omega <= tolerance_m) & ~doubled
     return TransitErrors(
         errors,
         errors * weight[matched],
@@ -152,10 +153,10 @@ def transit_errors(
     )
 
 
-def _at(times: Array, xdot: Callable[[Array], Array]) -> Array:
-    """Return xdot at times of which some may be equal."""
+def _at(times: Array, away: Callable[[Array], Array]) -> Array:
+    """Return what a function gives at times of which some may be equal."""
     once, back = np.unique(times, return_inverse=True)
-    return np.asarray(xdot(once)[back])
+    return np.asarray(away(once)[back])
 
 
 def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compare.score.passages import passed
+from compare.score.passages import score_passages
 from reference import InputError, load_scene, solve
 
 WORDS = ["gate 30", "gate 127@0", "turn 45", "highest", "lowest"]
@@ -24,21 +24,21 @@ def test_the_distance_of_a_passage_is_that_of_the_motion(name):
     _, there = swung(name, "9.8000001")
     apart = max(np.sqrt((here.x - there.x) ** 2 + (here.y - there.y) ** 2 + (here.z - there.z) ** 2))
     for word in WORDS if name == "planar" else WORDS[2:4]:
-        found = passed("other", there.sections[word].table["t"], scene, word)
+        found = score_passages("other", there.sections[word].table["t"], scene, word)
         assert found.errors.matched == len(here.sections[word].table)
         assert 0.05 * apart < found.errors.max_conditioned_m < 2 * apart
-        own = passed("own", here.sections[word].table["t"], scene, word)
+        own = score_passages("own", here.sections[word].table["t"], scene, word)
         assert own.errors.max_error_s < 1e-13  # the rounding of doubles
 
 
 def test_what_is_missed_extra_or_another_section_is_told():
     scene, here = swung("planar")
     times = here.sections["gate 30"].table["t"]
-    lost = passed("lost", np.delete(times, 1), scene, "gate 30")
+    lost = score_passages("lost", np.delete(times, 1), scene, "gate 30")
     assert not lost.agrees and lost.errors.missed == [pytest.approx(times[1], abs=1e-12)]
-    more = passed("more", np.sort([*times, times[0] + 1]), scene, "gate 30")
+    more = score_passages("more", np.sort([*times, times[0] + 1]), scene, "gate 30")
     assert not more.agrees and more.errors.extra == [times[0] + 1]
-    other = passed("other", here.sections["lowest"].table["t"], scene, "highest")
+    other = score_passages("other", here.sections["lowest"].table["t"], scene, "highest")
     assert not other.agrees and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
     with pytest.raises(InputError, match="no time in the scene's span"):
-        passed("none", np.array([31.0]), scene, "gate 30")
+        score_passages("none", np.array([31.0]), scene, "gate 30")

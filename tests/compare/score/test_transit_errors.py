@@ -45,9 +45,9 @@ def test_missed_and_extra_ones_are_named_and_the_others_keep_their_place(gone, m
 
 def test_one_that_is_listed_twice_is_extra_although_xdot_is_zero_there():
     twice = np.sort([*TRUTH, TRUTH[5]])
-    made = against(twice, tolerance_m=1e-6, xdot=np.zeros_like)
+    made = against(twice, tolerance_m=1e-6, away=np.zeros_like)
     assert (made.extra, made.missed) == ([TRUTH[5]], [])
-    made = against(np.sort([*TRUTH, 40.0]), tolerance_m=1e-6, xdot=np.zeros_like)
+    made = against(np.sort([*TRUTH, 40.0]), tolerance_m=1e-6, away=np.zeros_like)
     assert made.extra == []
 
 
@@ -100,10 +100,10 @@ def test_a_pair_that_appears_where_the_truth_nearly_stands_still_is_no_fault():
         asked.append(times)
         return np.full(len(times), 1e-8)
 
-    made = against(found, tolerance_m=1e-6, xdot=xdot)
+    made = against(found, tolerance_m=1e-6, away=xdot)
     assert (made.extra, made.undecided) == ([], [42.0, 42.002])
     assert np.array_equal(asked[0], [42.0, 42.002])
-    assert against(found, tolerance_m=1e-9, xdot=xdot).extra == [42.0, 42.002]
+    assert against(found, tolerance_m=1e-9, away=xdot).extra == [42.0, 42.002]
 
 
 def test_no_transits_at_all_are_all_missed_or_all_extra():
@@ -155,7 +155,7 @@ def test_a_motion_within_the_tolerance_and_no_more_excuses(part, excused):
     depth = 1e-5 * 0.002 / 4 / OMEGA  # of the parabola between the two zeros
     pair = against(TRUTH, PAIR, PAIR_AX, tolerance_m=part * depth)
     assert pair.undecided == ([42.0, 42.002] if excused else [])
-    one = against(np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8 / OMEGA, xdot=lambda t: np.full(len(t), -1e-8))
+    one = against(np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8 / OMEGA, away=lambda t: np.full(len(t), -1e-8))
     assert one.undecided == ([42.0] if excused else [])
     end = against(TRUTH[:5], until=TRUTH[5] + 1e-6, tolerance_m=part * 1e-6 * 0.05 / OMEGA)
     assert end.undecided == ([TRUTH[5]] if excused else [])
@@ -177,12 +177,12 @@ def test_too_many_extra_ones_are_no_grazing_zeros(count, excused):
         asked.append(len(times))
         return np.zeros(len(times))
 
-    made = against(np.sort([*TRUTH, *np.linspace(40.0, 40.5, count)]), xdot=xdot)
+    made = against(np.sort([*TRUTH, *np.linspace(40.0, 40.5, count)]), away=xdot)
     assert (len(made.undecided), len(made.extra)) == (excused, count - excused)
     assert asked == ([count] if excused else [])
 
 
 def test_without_any_swing_a_time_has_no_weight():
-    made = transit_errors(TRUTH + 0.1, TRUTH, AX, 0.0, END, xdot=lambda _: pytest.fail("nothing to compare with"))
+    made = transit_errors(TRUTH + 0.1, TRUTH, AX, 0.0, END, away=lambda _: pytest.fail("nothing to compare with"))
     assert (made.max_conditioned_m, made.max_error_s) == (0.0, pytest.approx(0.1))
-    assert transit_errors(np.append(TRUTH, 167.0), TRUTH, AX, 0.0, END, xdot=np.zeros_like).extra == [167.0]
+    assert transit_errors(np.append(TRUTH, 167.0), TRUTH, AX, 0.0, END, away=np.zeros_like).extra == [167.0]
