@@ -199,6 +199,7 @@ def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
     kind, got = details["type"], details["input"]
     cause = details.get("ctx", {}).get("error")
     if isinstance(cause, Refused):
+        got = ", ".join(map(str, got)) if isinstance(got, tuple) else got
         return InputError(field, got, cause.expected, cause.advice)
     if kind == "extra_forbidden":
         return InputError(
