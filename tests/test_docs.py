@@ -30,6 +30,7 @@ import reference
 from compare.score.explanation import conventions
 from foucault import commands as commands_of_foucault
 from reference.scenes.scene import Scene
+from reference.scenes.shipped import golden_root
 
 TUTORIAL, SCENE, MEASURED, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/tutorial.md",
@@ -107,8 +108,10 @@ def test_the_table_of_golden_functions_is_that_of_the_files():
     page = functions_page.page()
     assert page == functions_page.PAGE.read_text("utf-8"), "run: python tests/helpers/functions_page.py"
     table = page.partition(functions_page.BEFORE)[2].partition(functions_page.AFTER)[0].split("|---|\n")[1]
-    farthest = [line.split(" | ")[4] for line in table.splitlines()]
-    assert all(float(cell) <= 4e-15 for cell in farthest if cell != "at rest")
+    cells = {line.split(" | ")[0].removeprefix("| "): line.split(" | ") for line in table.splitlines()}
+    assert all(float(row[4]) <= 4e-15 for row in cells.values() if row[4] != "at rest")
+    pages = {name: json.loads((golden_root() / f"{name}.binary64/function.json").read_text("utf-8")) for name in cells}
+    assert all(float(row[6]) <= (1.1 if pages[name]["length_squared"] else 8) for name, row in cells.items())
 
 
 def test_the_table_of_causes_is_that_of_the_code():

@@ -18,6 +18,10 @@ ABOUT = """\
 What is proved of each (`bounds`), and the size of both files. The fifth column compares the bound on x and y with the
 largest distance from the vertical through the suspension. `python tests/helpers/functions_page.py` makes the table;
 `pytest --long tests/reference/enclosure/test_function.py` compares a million random times with runs to 40 digits.
+
+An ulp of the length is the distance to the next double. Where the bob stays within 16 degrees of rest, z comes from x
+and y and is at most 1.1 ulp off. In wider swings z moves as far as x and y do, and has a series of its own. Its bound
+is of their kind then, below 2e-15 of the length, but up to 8 ulp: to evaluate a series of some 20 terms rounds often.
 """
 
 
