@@ -7,9 +7,7 @@ there is a crossing in between, and if heyoka reports none, it has lost one.
 Signs alone do not show everything. If xdot is +0.3 mm/s and falling at the start, and +0.2 mm/s and rising at the end,
 it has a minimum in between. That may be +0.1 mm/s, with no transit, or -0.1 mm/s, with two close together, as happens
 when the swing plane passes through north-south. Two may be lost beside a crossing that was found, too. So the zeros of
-the step's polynomial are counted, by Descartes' rule: in Bernstein's form its coefficients change sign as often as it
-has zeros, or 2, 4, … times oftener. One change at most is certain. A convex piece has one zero if its ends differ in
-sign; else two or none, and xdot at its minimum says which. Any other piece is halved.
+the step's polynomial are counted, as those of any section are (`passages`).
 
 So a step is taken again, with its left edge moved, unless
 
@@ -33,18 +31,16 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from ...errors import IntegrationError
-from ...numbers.precision import Array
-from ..passages import MOST_TERMS, ROUNDING, bernstein, signs_of
+from ..passages import MOST_TERMS, ROUNDING, SPARE_BITS, Places, bernstein, signs_of
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
+    from .model import Numbers
     from .stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
 SHORTER = Fraction(79, 128)  # a step taken again is cut by this factor: no simple ratio, so that no edge returns
 AT_ONCE = 100  # steps that are checked together
-MOST_PIECES = 200  # that a step is cut into
-MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a piece
 
 
 class _Step(NamedTuple):
@@ -129,7 +125,7 @@ def march(
         zeros += found
         collect()
         if len(steps) > AT_ONCE or retries or stepper.time >= end:
-            if (wrong := _first_contradiction(steps)) is not None:
+            if (wrong := _first_contradiction(steps, stepper.numbers)) is not None:
                 i, contradiction = wrong
                 retries += 1
                 if retries > MAX_RETRIES:
@@ -147,7 +143,7 @@ def march(
     return np.array(states, dtype=stepper.numbers.dtype), zeros
 
 
-def _first_contradiction(steps: Sequence[_Step]) -> tuple[int, str] | None:
+def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int, str] | None:
     """Return the first of consecutive steps whose zeros fail a guard, as its index, and how; None if none does."""
     x = np.array([step.series[1:] for step in steps])
     x *= np.cumprod(np.broadcast_to([[step.length] for step in steps], x.shape), axis=1)
@@ -166,52 +162,17 @@ def _first_contradiction(steps: Sequence[_Step]) -> tuple[int, str] | None:
             return i, "two crossings in a row have the same direction"
         if signs[-1] != signs[-2]:
             return i, "the sign of xdot at the step's ends does not fit the crossings between"
-        if (count := _count_zeros(x[i] * k, forms[i], *ends[i : i + 2])) != found[i]:
-            times = "too closely to be counted" if count != count else f"{count} times"
+        if (count := _counted(x[i] * k, numbers, *ends[i : i + 2])) != found[i]:
+            times = "too closely to be counted" if count is None else f"{count} times"
             return i, f"xdot comes to zero {times}, and {found[i]} crossings were found"
     return None
 
 
-def _count_zeros(xdot: Any, form: Array, left: float, right: float) -> float:
-    """Return how many zeros a polynomial has between 0 and 1; NaN if more than two are too close to be counted.
-
-    Args:
-        xdot: its coefficients, in the run's type.
-        form: its Bernstein form, in units of its error.
-        left: its sign at 0.
-        right: its sign at 1.
-    """
-    count, (_, to_half) = 0.0, bernstein(len(form))
-    zero = 0 * xdot[0]
-    pieces = [(form, zero, zero + 1, left, right)]
-    for form, low, high, left, right in pieces:  # which grow
-        changes = np.count_nonzero(np.diff(signs_of(form, left, right)))
-        bends = np.sign(np.trunc(np.diff(form, 2) / 4))
-        if changes <= 1:
-            count += changes
-        elif abs(bends.sum()) == len(bends):
-            dips = left == right == bends[0] and _dips(xdot, low, high)
-            count += 2 * dips + (left != right)
-        elif len(pieces) < MOST_PIECES:
-            middle = (low + high) / 2
-            between = np.sign(float(polyval(middle, xdot)))
-            pieces.append((to_half @ form, low, middle, left, between))
-            pieces.append(((to_half @ form[::-1])[::-1], middle, high, between, right))
-        else:
-            return np.nan
-    return count
-
-
-def _dips(xdot: Any, low: Any, high: Any) -> bool:
-    """Return whether a polynomial has its minimum between two places, and another sign there; by bisection."""
-    slopes = xdot[1:] * np.arange(1, len(xdot))
-    sign, rising = float(polyval(low, xdot)), polyval(high, slopes) > 0
-    if (polyval(low, slopes) > 0) == rising:
-        return False
-    for _ in range(MINIMUM_BISECTIONS):
-        middle = (low + high) / 2
-        if (polyval(middle, slopes) > 0) == rising:
-            high = middle
-        else:
-            low = middle
-    return float(polyval(high, xdot)) * sign <= 0
+def _counted(xdot: Any, numbers: Numbers, left: float, right: float) -> int | None:
+    """Return how many zeros a polynomial has between 0 and 1, given its signs there; None if they are too close."""
+    bits = numbers.number.prec + SPARE_BITS
+    places = Places(numbers.fixed(xdot / max(map(abs, xdot)), bits), 0, bits, "xdot")
+    try:
+        return sum(1 for _ in places.isolated(int(left), int(right)))
+    except IntegrationError:
+        return None

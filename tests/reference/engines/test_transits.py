@@ -221,10 +221,11 @@ def step_of(zeros, rest, directions, dtype=float):
     return _Step((0.0, None), 0, 0, 1.0, series, dtype(1), directions)
 
 
-@pytest.mark.parametrize("dtype", [np.float64, np.longdouble])
-def test_guard_the_zeros_of_any_polynomial_are_counted(dtype):
+@pytest.mark.parametrize("number", [DOUBLE, LONG_DOUBLE])
+def test_guard_the_zeros_of_any_polynomial_are_counted(number):
     """Up to four zeros in a step, some close together, others just outside it, or complex and near."""
-    rng = np.random.default_rng(31)
+    rng, numbers = np.random.default_rng(31), Numbers(number)
+    dtype = numbers.dtype
     for case in range(300):
         many = case % 5
         zeros = np.sort(rng.uniform(0.001, 0.999, many))
@@ -240,10 +241,10 @@ def test_guard_the_zeros_of_any_polynomial_are_counted(dtype):
         rest = np.polynomial.polynomial.polymul(rest, far)
         first = -np.sign(np.polynomial.polynomial.polyval(0, rest) * (-1) ** many)
         directions = [int(first) * (-1) ** k for k in range(many)]
-        assert _first_contradiction([step_of(zeros, rest, directions, dtype)]) is None, (case, zeros)
+        assert _first_contradiction([step_of(zeros, rest, directions, dtype)], numbers) is None, (case, zeros)
         for lost in range(1, 1 << many):
             kept = [d for k, d in enumerate(directions) if not lost >> k & 1]
-            assert _first_contradiction([step_of(zeros, rest, kept, dtype)]) is not None, (case, zeros, lost)
+            assert _first_contradiction([step_of(zeros, rest, kept, dtype)], numbers) is not None, (case, zeros, lost)
 
 
 def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
