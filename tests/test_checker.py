@@ -13,14 +13,16 @@ from checker import SOURCE
 from forgery import forge, seal
 from places import ROOT
 
+import reference
 from reference.dataset.golden import read_files
 from reference.dataset.manifest import MANIFEST
 
 GOLDEN = ROOT / "data/golden"
+WITH_SECTIONS = ("laboratory_drag", "museum_gate")
 QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "two_radians.binary64")
 FORGED = ("barely_over", "damped", "nanometre_paris", "vertical_picometre", "weightless")
 GENERIC = ("barely_over", "damped", "nanometre_paris")  # their motion depends on every input
-MOST_LINES = 1000  # without blanks, comments and includes
+MOST_LINES = 1000 + 125  # without blanks, comments and includes; the second is for sections
 
 
 def test_the_program_stays_readable_in_an_evening():
@@ -30,11 +32,20 @@ def test_the_program_stays_readable_in_an_evening():
     assert max(map(len, source.splitlines())) <= 130
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", QUICK + WITH_SECTIONS)
 def test_shipped_datasets_are_proved(check, name):
     done = check(GOLDEN / name)
     assert done.returncode == 0, done.stdout
     assert "every printed number is proved" in done.stdout
+
+
+def test_sections_of_every_kind_are_proved(check, tmp_path):
+    words = "highest; lowest; turn 0; turn 30; gate 12.5; gate -30@0"
+    scene = reference.load_scene("paris", ["run.t_end=30", "run.digits=25", f"run.sections={words}", "release.vy=0.05"])
+    done = check(reference.write(reference.solve(scene, confirm="none"), tmp_path / "paris"))
+    assert done.returncode == 0, done.stdout
+    rows = (tmp_path / "paris/sections.csv").read_text().splitlines()
+    assert {row.split(",")[0] for row in rows[1:]} == set(words.split("; "))
 
 
 def test_what_is_not_a_dataset_is_refused(check, tmp_path):
@@ -181,6 +192,49 @@ def another_file(folder, draw):
     seal(folder, json.loads((folder / MANIFEST).read_text()), {k: v for k, v in texts.items() if k != MANIFEST})
 
 
+def section_digit(folder, draw):
+    def change(rows, header):
+        row, column = draw.choice(rows), header.index(draw.choice(("t", "x", "y", "z", "vx", "vy", "vz")))
+        row[column] = by_one_unit(row[column], draw)
+
+    forge(folder, sections=change)
+
+
+def section_direction(folder, draw):
+    def change(rows, header):
+        row = draw.choice(rows)
+        row[3] = "-1" if row[3] == "+1" else "+1"
+
+    forge(folder, sections=change)
+
+
+def passage_missing(folder, draw):
+    def change(rows, header):
+        word = rows.pop(draw.randrange(len(rows)))[0]
+        for k, row in enumerate((row for row in rows if row[0] == word), 1):
+            row[1] = str(k)
+
+    forge(folder, sections=change)
+
+
+def passage_of_another(folder, draw):
+    """Say that the rows of a section are those of a gate a hundredth of a degree away, or of lowest points."""
+
+    def change(document):
+        old = draw.choice(list(document["sections"]["counts"]))
+        new = "lowest" if old == "highest" else f"{old}.01"
+        said = document["sections"]
+        for key in ("counts", "possible"):
+            said[key] = {new if word == old else word: value for word, value in said[key].items()}
+        run = document["scene"]["run"]
+        run["sections"] = run["sections"].replace(old, new)
+        renamed.update({old: new})
+
+    renamed: dict[str, str] = {}
+    forge(folder, manifest=change)
+    forge(folder, sections=lambda rows, header: [row.__setitem__(0, renamed.get(row[0], row[0])) for row in rows])
+
+
 KINDS = (
     grid_digit,
     transit_digit,
@@ -194,14 +248,19 @@ KINDS = (
     meaning_of_gravity,
     reading_of_inputs,
     another_file,
+    section_digit,
+    section_direction,
+    passage_missing,
+    passage_of_another,
 )
+OF_SECTIONS = (section_digit, section_direction, passage_missing, passage_of_another)
 OF_MOTION = (an_input, meaning_of_gravity, reading_of_inputs)
 
 
 def forgery(draw, number):
     """Return a kind of forgery, each in turn, and a dataset that it fits."""
     kind = KINDS[number % len(KINDS)]
-    return kind, draw.choice(GENERIC if kind in OF_MOTION else FORGED)
+    return kind, draw.choice(WITH_SECTIONS if kind in OF_SECTIONS else GENERIC if kind in OF_MOTION else FORGED)
 
 
 @pytest.mark.parametrize(("parity", "status"), [("odd", 0), ("even", 1), ("unknown", 0)])
@@ -228,7 +287,8 @@ def test_forgeries_are_found(check, tmp_path, size, tally):
         folder = shutil.copytree(GOLDEN / name, tmp_path / "forged")
         kind(folder, draw)
         done = check(folder)
-        if done.returncode != 1 or (kind in OF_MOTION and not re.search(r"(grid|transits)\.csv", done.stdout)):
+        where = r"sections\.csv" if kind in OF_SECTIONS else r"(grid|transits)\.csv" if kind in OF_MOTION else ""
+        if done.returncode != 1 or not re.search(where, done.stdout):
             missed.append((number, kind.__name__, name, done.returncode, done.stdout))
         shutil.rmtree(folder)
     assert not missed, missed

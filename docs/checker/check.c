@@ -53,9 +53,13 @@
    computed in balls from exact y_0 ... y_n; y_{n+1} is the ball's centre. So its radius, times n+1, bounds the
    coefficient n of the defect. Orders beyond the last are bounded by sums of products of norms (`beyond`).
 
-   5. ZEROS OF XDOT.  A printed time t stands for I = [t - u/2, t + u/2], u one unit of its last digit. If N =
-   t - v_x(t) / a_x(I) lies in I, and 0 is not in a_x(I), then xdot has exactly one zero in I, and it lies in N
-   (mean value theorem). Everywhere else `no_zero` shows that xdot has the sign that the rows before and after demand.  */
+   5. ZEROS OF XDOT, and of other forms F = a.r + b.v - d with constant a, b, d.  A printed time t stands for
+   I = [t - u/2, t + u/2], u one unit of its last digit. If N = t - F(t) / F'(I) lies in I, and 0 is not in F'(I), then F
+   has exactly one zero in I, and it lies in N (mean value theorem). Everywhere else `no_zero` shows that F has the sign
+   that the rows before and after demand; or, where zeros of one direction alone count, that F is not 0 or goes the other way.
+
+   6. REST.  Hanging at rest, r = G / |G| with G = c - Omega x (Omega x r). A ball that contains r contains it after this
+   map too, and begins as [-1, 1] in each direction.  */
 
 #if __has_include(<flint/arb.h>)
 #include <flint/arb.h>
@@ -80,6 +84,7 @@
 #define MOST_KEYS 5000
 #define COLUMNS 20        /* at most, of a table that is proved */
 #define TEXTS 8
+#define MOST_FORMS 40     /* xdot and sections */
 #define HAND_OVER 0.984375 /* s at which the next step begins: a printed time and its half unit lie in one step */
 _Static_assert(LDBL_MIN_EXP < -16000, "bounds are long doubles, and must not underflow");
 
@@ -195,7 +200,8 @@ static document *read_document(const char *name) {
 
 /* A table of texts, with that of its doubles, if any. */
 typedef struct table {
-    const char *name, *kind;          /* "grid.csv", "grid" */
+    const char *name;                 /* "grid.csv" */
+    const char *decimals, *bounds;    /* where the manifest has those of its columns */
     long rows, columns;
     char **head, **cells;
     struct table *doubles;
@@ -239,7 +245,8 @@ static table *read_tables(const char *kind, const char *header, const char *more
     table *t = read_table(strdup(text("%s.csv", kind)), header);
     if (t == NULL)
         no_dataset("no %s.csv\n", kind);
-    t->kind = kind;
+    t->decimals = strdup(text("decimals.%s", kind));
+    t->bounds = strdup(text("bounds.%s", kind));
     t->doubles = read_table(strdup(text("%s.binary64.csv", kind)), text("%s,%s", header, more));
     if (t->doubles && t->doubles->rows != t->rows)
         wrong("%s has %ld rows, and %s %ld\n", t->name, t->rows, t->doubles->name, t->doubles->rows);
@@ -330,7 +337,7 @@ static fmpq_t end, grid_step;                     /* of the run, in s */
 static arb_t length, radius, gravity, rate, drag, sine, cosine;
 static arb_struct omega[3], c[3], begin_r[3], begin_v[3];
 static double w;                                  /* a power of two */
-static int never, from_zero, from_double_zero;    /* xdot = 0 for ever; at the release; d xdot/dt = 0 there as well */
+static int at_rest, never;                        /* at the release; xdot = 0 for ever */
 
 static void ball(arb_t x, const char *key) {
     static fmpq_t value;
@@ -338,13 +345,17 @@ static void ball(arb_t x, const char *key) {
     arb_set_fmpq(x, value, bits + 64);
 }
 
-static void sine_cosine(arb_t s, arb_t k, const char *key) {
-    static fmpq_t degrees;
+static void sine_cosine(arb_t s, arb_t k, fmpq_t degrees) {
     static fmpz_t half_turn;
     fmpz_set_ui(half_turn, 180);
-    input(degrees, key);
     fmpq_div_fmpz(degrees, degrees, half_turn);
     arb_sin_cos_pi_fmpq(s, k, degrees, bits + 64);
+}
+
+static void sine_cosine_of(arb_t s, arb_t k, const char *key) {
+    static fmpq_t degrees;
+    input(degrees, key);
+    sine_cosine(s, k, degrees);
 }
 
 /* out += factor a x b. */
@@ -372,7 +383,7 @@ static void read_site(void) {
     ball(drag, "pendulum.drag");
     ball(gravity, "site.gravity");
     ball(rate, "site.rotation_rate");
-    sine_cosine(sine, cosine, "site.latitude");
+    sine_cosine_of(sine, cosine, "site.latitude");
     arb_zero(f);
     if (strcmp(get(manifest, "scene.site.inverse_flattening"), "inf") != 0) {
         ball(f, "site.inverse_flattening");
@@ -423,8 +434,8 @@ static void read_release(void) {
         _arb_vec_scalar_div(v, v, 3, length, p);
         return;
     }
-    sine_cosine(s, k, "release.angle");
-    sine_cosine(sa, ka, "release.azimuth");
+    sine_cosine_of(s, k, "release.angle");
+    sine_cosine_of(sa, ka, "release.azimuth");
     arb_mul(x, s, ka, p);
     arb_mul(x + 1, s, sa, p);
     arb_neg(x + 2, k);
@@ -441,18 +452,88 @@ static void read_release(void) {
     _arb_vec_scalar_mul(v, v, 3, t, p);
 }
 
-/* What the exact inputs say of xdot. It is 0 for ever in the plane x = 0 without rotation (reflect x: the solution is
-   unique), and at rest where the force, c - Omega x (Omega x r), is along the cord. */
-static void decide_zeros(void) {
+/* g = c - Omega x (Omega x r), the force at rest. */
+static void force_at(arb_ptr g, arb_srcptr r) {
+    static arb_struct a[3];
+    cross(a, omega, r, bits + 64);
+    _arb_vec_set(g, c, 3);
+    add_cross(g, -1, omega, a, bits + 64);
+}
+
+/* Whether xdot is 0 for ever, as the exact inputs say: in the plane x = 0 without rotation (reflect x: the solution is
+   unique), and at rest where the force is along the cord. */
+static void decide_never(void) {
     static arb_struct a[3], b[3];
-    int at_rest = _arb_vec_is_zero(begin_v, 3);
-    cross(a, omega, begin_r, bits);
-    _arb_vec_set(b, c, 3);
-    add_cross(b, -1, omega, a, bits);
+    at_rest = _arb_vec_is_zero(begin_v, 3);
+    force_at(b, begin_r);
     cross(a, begin_r, b, bits);
-    from_zero = arb_is_zero(begin_v);
-    from_double_zero = at_rest && arb_is_zero(begin_r);
-    never = (at_rest && _arb_vec_is_zero(a, 3)) || (arb_is_zero(rate) && arb_is_zero(begin_r) && from_zero);
+    never = (at_rest && _arb_vec_is_zero(a, 3)) || (arb_is_zero(rate) && arb_is_zero(begin_r) && arb_is_zero(begin_v));
+}
+
+/* A form F = a.r + b.v - d, and where it may be zero: around a printed time by half a unit of its last digit, or in a
+   printed interval. */
+typedef struct {
+    fmpq_t from, to;
+    long row;
+    const char *parity;                           /* NULL for a printed time */
+} event;
+
+typedef struct {
+    const char *word, *possible;                  /* "xdot", or that of a section; where the manifest has its intervals */
+    table *t;
+    long first, rows;                             /* of the table, from its row `first` on */
+    arb_struct a[3], b[3], d[1];
+    int one_way;                                  /* the direction of the zeros that count; 0 for both */
+    int from_zero, from_double_zero;              /* F = 0 at the release; dF/dt = 0 there as well */
+    event *events;
+    long all, next, intervals;                    /* events, those that are done, intervals among all */
+    int sign;                                     /* that F must have now; 0 where no row says it yet */
+    fmpq_t clear_from;                            /* what is before this time is done */
+} form;
+
+static form forms[MOST_FORMS];
+static int count_of_forms;
+
+/* a, b, d of a word, azimuths from east to north; and what the exact inputs say of F at the release. In the meridian plane
+   nothing at rest is pulled to the east. */
+static void make_form(form *f) {
+    static arb_struct along[3], rest[3];
+    static arb_t s;
+    static fmpq_t azimuth;
+    size_t kind = strcspn(f->word, " ");
+    const char *angle = text("%.*s", (int)strcspn(f->word + kind, "@"), f->word + kind);
+    decimal(azimuth, *angle ? angle + 1 : "0");
+    sine_cosine(along + 1, along, azimuth);
+    arb_zero(along + 2);
+    _arb_vec_zero(f->a, 3);
+    _arb_vec_zero(f->b, 3);
+    arb_zero(f->d);
+    if (strncmp(f->word, "turn ", 5) == 0 || strcmp(f->word, "xdot") == 0)
+        _arb_vec_set(f->b, along, 3);
+    else if (strncmp(f->word, "gate ", 5) != 0)
+        _arb_vec_neg(f->b, c, 3);
+    else if (strstr(f->word, "@0")) {
+        arb_neg(f->a, along + 1);
+        arb_set(f->a + 1, along);
+    } else {
+        cross(f->a, along, c, bits + 64);
+        for (int i = 0; i < 3; i++)
+            arb_zero_pm_one(rest + i);
+        for (long n = 0; n < bits; n++) {
+            force_at(along, rest);
+            arb_dot(s, NULL, 0, along, 1, along, 1, 3, bits + 64);
+            arb_rsqrt(s, s, bits + 64);
+            if (!arb_is_finite(s))
+                undecided("there may be no rest position for %s", f->word);
+            _arb_vec_scalar_mul(rest, along, 3, s, bits + 64);
+        }
+        arb_dot(f->d, NULL, 0, f->a, 1, rest, 1, 3, bits + 64);
+    }
+    arb_dot(s, f->d, 1, f->a, 1, begin_r, 1, 3, bits);
+    arb_dot(s, s, 1, f->b, 1, begin_v, 1, 3, bits);
+    f->one_way = (strcmp(f->word, "lowest") == 0) - (strcmp(f->word, "highest") == 0);
+    f->from_zero = arb_is_zero(s);
+    f->from_double_zero = at_rest && arb_is_zero(begin_r) && _arb_vec_is_zero(f->a, 3) && _arb_vec_is_zero(f->b + 1, 2);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- curves */
@@ -636,8 +717,8 @@ static void next_frame(const long double *jump) {
         z[i] = wider[i] * UP;
 }
 
-static table no_transits = {.name = "transits.csv", .kind = "transits"}, *transits = &no_transits;
-static fmpq_t half;                               /* a unit of the last digit of their times */
+static table no_transits = {.name = "transits.csv"}, *transits = &no_transits, *sections;
+static fmpq_t half;                               /* a unit of the last digit of the times of zeros */
 
 static void set_length(double x) {
     int exponent;
@@ -645,15 +726,17 @@ static void set_length(double x) {
     h = ldexp(floor(ldexp(part, 20)), exponent - 20);
     exact_double(step_next, h * HAND_OVER);
     fmpq_add(step_next, step_next, step_begin);
-    if (transits->rows && h * (1 - HAND_OVER) < 4 * fmpq_get_d(half))
-        stop(1, "not proved: the times of transits have too few digits for steps of %g s\n", h);
+    if (h * (1 - HAND_OVER) < 4 * fmpq_get_d(half))
+        stop(1, "not proved: the times of zeros have too few digits for steps of %g s\n", h);
 }
 
 static void start(void) {
     static arb_struct a[6];
     read_site();
     read_release();
-    decide_zeros();
+    decide_never();
+    for (int i = 0; i < count_of_forms; i++)
+        make_form(forms + i);
     cross(a + 3, begin_r, begin_v, bits + 64);
     arb_dot(a, NULL, 0, omega, 1, begin_r, 1, 3, bits + 64);
     for (int i = 0; i < 3; i++)
@@ -747,6 +830,14 @@ static void motion(arb_ptr m, const arb_t s, slong p) {
     add_cross(m + R3, 1, m + A, m + R2, p);
 }
 
+/* The derivative k of a form, from r, v, r'', r''' at `m`. */
+static void value(arb_t out, const form *f, int k, arb_srcptr m, slong p) {
+    static const int place[] = {R, V, R2, R3};
+    arb_dot(out, k ? NULL : f->d, 1, f->a, 1, m + place[k], 1, 3, p);
+    arb_dot(out, out, 1, f->b, 1, m + place[k + 1], 1, 3, p);
+    arb_neg(out, out);
+}
+
 /* The s of a time. */
 static void local(arb_t s, const arb_t t) {
     static arb_t begin;
@@ -764,6 +855,7 @@ static void local_exact(arb_t s, const fmpq_t t) {
 
 /* ---------------------------------------------------------------------------------------------------- printed numbers */
 
+static table *grid;
 static fmpq_t most_off;    /* units of the last digit: 1/2 at level enclosed, else 1 */
 
 static long places(const char *text) {
@@ -773,8 +865,8 @@ static long places(const char *text) {
 
 /* The printed bound of a number. */
 static const char *bound_for(const table *t, long row, long col) {
-    const char *bound = maybe(manifest, text("bounds.%s.%s", t->kind, t->head[col]));
-    return t == transits && col == 1 ? cell(t, row, 8) : bound ? bound : "0";
+    const char *bound = maybe(manifest, text("%s.%s", t->bounds, t->head[col]));
+    return t != grid && col == 1 ? cell(t, row, t == transits ? 8 : 9) : bound ? bound : "0";
 }
 
 /* Proves that a double, in 17 digits and as a hexfloat, is the nearest to x, or to a number within the bound of x. */
@@ -803,7 +895,7 @@ static void prove(table *t, long row, long col, const arb_t x, const char *bound
     static arb_t off, limit;
     static fmpq_t value, within;
     const char *printed = cell(t, row, col), *name = t->head[col];
-    const char *promised = maybe(manifest, text("decimals.%s.%s", t->kind, name));
+    const char *promised = maybe(manifest, text("%s.%s", t->decimals, name));
     if (atol(promised ? promised : get(manifest, "digits")) != places(printed))
         wrong("%s, row %ld: %s = %s has another number of decimals than promised\n", t->name, row + 1, name, printed);
     decimal(value, printed);
@@ -831,11 +923,9 @@ static void prove(table *t, long row, long col, const arb_t x, const char *bound
         prove_double(t->doubles, row, col, x, bound_for(t, row, col));
 }
 
-/* ------------------------------------------------------------------------------------------------------ the two tables */
+/* ---------------------------------------------------------------------------------------------------------- the tables */
 
-static table *grid;
 static arb_struct here[ALL];                      /* the motion at a time, or in an interval */
-static int sign;                                  /* that xdot must have now; 0 where no row says it yet */
 
 /* There are rows at the multiples of grid_step, and at last at t_end. A last multiple that misses t_end by no more than the
    rounding of inputs to doubles is none. */
@@ -868,90 +958,114 @@ static void check_grid_row(const fmpq_t t, long row) {
     }
 }
 
-/* Where xdot may be zero: around a printed transit by half a unit of its last digit, or in a printed interval. */
-typedef struct {
-    fmpq_t from, to;
-    long row;
-    const char *parity;                           /* NULL for a transit */
-} event;
-
-static event *events;
-static long all, next, intervals;                 /* events, those that are done, intervals among all */
-static fmpq_t clear_from;                         /* what is before this time is done */
-
 static int by_time(const void *a, const void *b) {
     return fmpq_cmp(((const event *)a)->from, ((const event *)b)->from);
 }
 
-static void read_events(void) {
-    static fmpq_t t;
-    long row = 0;
-    power_of_ten(transits->rows ? places(cell(transits, 0, 1)) : 0);
-    fmpq_set_si(half, 1, 2);
-    fmpq_div_fmpz(half, half, ten_to);
-    events = calloc(transits->rows + MOST_KEYS, sizeof(event));
-    for (; all < transits->rows; all++) {
-        decimal(t, cell(transits, all, 1));
-        fmpq_sub(events[all].from, t, half);
-        fmpq_add(events[all].to, t, half);
-        events[all].row = all;
+/* Adds a form with its rows of a table, and its intervals in the manifest. */
+static void add_form(const char *word, const char *possible, table *t, long first, long rows) {
+    static fmpq_t time, unit;
+    form *f = forms + count_of_forms++;
+    long row = first;
+    *f = (form){.word = word, .possible = possible, .t = t, .first = first, .rows = rows};
+    power_of_ten(rows ? places(cell(t, first, 1)) : 0);
+    fmpq_set_si(unit, 1, 2);
+    fmpq_div_fmpz(unit, unit, ten_to);
+    if (rows && fmpq_cmp(unit, half) > 0)
+        fmpq_set(half, unit);
+    f->events = calloc(rows + MOST_KEYS, sizeof(event));
+    for (; f->all < rows; f->all++) {
+        event *e = f->events + f->all;
+        e->row = first + f->all;
+        decimal(time, cell(t, e->row, 1));
+        fmpq_sub(e->from, time, unit);
+        fmpq_add(e->to, time, unit);
     }
-    for (; maybe(manifest, text("possible.%ld.from_s", intervals)); all++, intervals++) {
-        decimal(events[all].from, get(manifest, text("possible.%ld.from_s", intervals)));
-        decimal(events[all].to, get(manifest, text("possible.%ld.to_s", intervals)));
-        events[all].row = intervals;
-        events[all].parity = get(manifest, text("possible.%ld.parity", intervals));
+    for (; maybe(manifest, text("%s.%ld.from_s", possible, f->intervals)); f->all++, f->intervals++) {
+        event *e = f->events + f->all;
+        decimal(e->from, get(manifest, text("%s.%ld.from_s", possible, f->intervals)));
+        decimal(e->to, get(manifest, text("%s.%ld.to_s", possible, f->intervals)));
+        e->row = f->intervals;
+        e->parity = get(manifest, text("%s.%ld.parity", possible, f->intervals));
     }
-    fmpq_zero(clear_from);
-    qsort(events, all, sizeof(event), by_time);
-    for (long i = 0; i < all; i++) {
-        event *e = events + i;
-        if (fmpq_cmp(clear_from, e->from) > 0 || fmpq_cmp(e->from, e->to) >= 0)
+    qsort(f->events, f->all, sizeof(event), by_time);
+    fmpq_zero(time);
+    for (long i = 0; i < f->all; i++) {
+        event *e = f->events + i;
+        if (fmpq_cmp(time, e->from) > 0 || fmpq_cmp(e->from, e->to) >= 0)
             wrong("%s %ld begins before the release, or before the end of the last, or is empty\n",
-                  e->parity ? "manifest.json: possible interval" : "transits.csv, row", e->row + 1);
-        if (e->parity == NULL && (e->row != row++ || atol(cell(transits, e->row, 0)) != row))
-            wrong("transits.csv, row %ld: out of order, or its number is wrong\n", e->row + 1);
-        fmpq_set(clear_from, e->to);
+                  e->parity ? "manifest.json: possible interval" : text("%s, row", t->name), e->row + 1);
+        if (e->parity == NULL && (e->row != row++ || atol(cell(t, e->row, 0)) != row - first))
+            wrong("%s, row %ld: out of order, or its number is wrong\n", t->name, e->row + 1);
+        fmpq_set(time, e->to);
     }
 }
 
-static int sign_at(const arf_t s, slong p) {
+/* Adds the sections that a scene asks for, "highest; gate 90": their rows follow one another. */
+static void add_sections(const char *words) {
+    long row = 0;
+    for (size_t size; *words; words += size + 2 * (words[size] == ';')) {
+        size = strcspn(words, ";");
+        char *word = strndup(words, size);
+        long count = atol(get(manifest, text("sections.counts.%s", word)));
+        if (count_of_forms == MOST_FORMS)
+            no_dataset("sections: more than %d\n", MOST_FORMS - 1);
+        for (long i = row; i < row + count; i++)
+            if (i >= sections->rows || strcmp(cell(sections, i, -1), word) != 0)
+                wrong("sections.csv, row %ld: this should be one of %ld of %s\n", i + 1, count, word);
+        add_form(word, strdup(text("sections.possible.%s", word)), sections, row, count);
+        row += count;
+    }
+    if (row != sections->rows)
+        wrong("sections.csv has %ld rows, the manifest %ld\n", sections->rows, row);
+}
+
+static int sign_at(const form *f, const arf_t s, slong p) {
     static arb_t x;
     arb_set_arf(x, s);
     motion(here, x, p);
-    return arb_sgn_nonzero(here + V);
+    value(x, f, 0, here, p);
+    return arb_sgn_nonzero(x);
 }
 
-/* Proves that xdot has its sign on [a, b], but for xdot = 0 at the release itself: as all its values there have it; or as it
-   has the sign at both ends and is monotone; at the release, as it is 0 there and its first derivative that is not has it. */
-static void keeps_sign(const arf_t a, const arf_t b, int depth) {
-    static arb_t s;
+/* Proves that F has its sign on [a, b], but for F = 0 at the release itself: as all its values there have it; or as it has
+   the sign at both ends and is monotone; at the release, as it is 0 there and its first derivative that is not has it.
+   Where zeros of one direction count, F may also go the other way on all of [a, b], or begin at 0 and be monotone. */
+static void keeps_sign(form *f, const arf_t a, const arf_t b, int depth) {
+    static arb_t s, x;
     static arf_t middles[MOST_DEPTH + 1];
     arf_struct *middle = middles[depth];
+    int slope[3], one_way = f->one_way, sign;
     arf_add(middle, a, b, bits, ARF_RND_NEAR);
     arf_mul_2exp_si(middle, middle, -1);
     double time = fmpq_get_d(step_begin) + h * arf_get_d(middle, ARF_RND_NEAR);
-    int found = sign_at(middle, bits / 2);
-    if (sign == 0)
-        sign = found;
+    int found = one_way ? 0 : sign_at(f, middle, bits / 2);
+    if (f->sign == 0)
+        f->sign = found;
+    sign = f->sign;
     if (found == -sign && found != 0)
-        wrong("transits.csv: xdot has the sign %+d at t = %.17g: a transit beside it is missing or wrong\n", found, time);
+        wrong("%s: %s has the sign %+d at t = %.17g: a zero beside it is missing or wrong\n", f->t->name, f->word, found, time);
     arb_set_interval_arf(s, a, b, bits);
     motion(here, s, bits / 2);
-    int all = arb_sgn_nonzero(here + V), bend = arb_sgn_nonzero(here + R2), third = arb_sgn_nonzero(here + R3);
-    int is_release = fmpq_is_zero(step_begin) && arf_is_zero(a) && from_zero;
-    int done = all == sign || (is_release && (bend == sign || (from_double_zero && third == sign)));
-    done = sign != 0 && (done || (bend != 0 && sign_at(a, bits) == sign && sign_at(b, bits) == sign));
+    for (int k = 0; k < 3; k++) {
+        value(x, f, k, here, bits / 2);
+        slope[k] = arb_sgn_nonzero(x);
+    }
+    int is_release = fmpq_is_zero(step_begin) && arf_is_zero(a) && f->from_zero, bend = slope[1];
+    int done = slope[0] == sign || (is_release && (bend == sign || (f->from_double_zero && slope[2] == sign)));
+    done = sign != 0 && (done || (bend != 0 && sign_at(f, a, bits) == sign && sign_at(f, b, bits) == sign));
+    if (one_way)
+        done = slope[0] != 0 || bend == -one_way || (is_release && bend != 0);
     if (!done && depth == MOST_DEPTH)
-        undecided("transits.csv: a zero of xdot near t = %.17g cannot be excluded", time);
+        undecided("%s: a zero of %s near t = %.17g cannot be excluded", f->t->name, f->word, time);
     if (!done) {
-        keeps_sign(a, middle, depth + 1);
-        keeps_sign(middle, b, depth + 1);
+        keeps_sign(f, a, middle, depth + 1);
+        keeps_sign(f, middle, b, depth + 1);
     }
 }
 
-/* Proves that xdot has no zero between two times of the step. */
-static void no_zero(const fmpq_t from, const fmpq_t to) {
+/* Proves that F has no zero that counts between two times of the step. */
+static void no_zero(form *f, const fmpq_t from, const fmpq_t to) {
     static arb_t s;
     static arf_t a, b;
     if (fmpq_cmp(from, to) >= 0)
@@ -962,18 +1076,20 @@ static void no_zero(const fmpq_t from, const fmpq_t to) {
         arf_zero(a);
     local_exact(s, to);
     arb_get_ubound_arf(b, s, bits);
-    keeps_sign(a, b, 0);
+    keeps_sign(f, a, b, 0);
 }
 
-/* Proves that xdot has one zero in the interval of a printed transit, and what is printed of it. */
-static void check_transit(const event *e) {
+/* Proves that F has one zero in the interval of a printed time, and what is printed of it. */
+static void check_passage(form *f, const event *e) {
     static arb_t t, s, first, last, n;
     static fmpq_t time;
+    static const int printed_of_transit[] = {R, R + 1, R + 2, V + 1, R2}, of_section[] = {R, R + 1, R + 2, V, V + 1, V + 2};
+    const int *columns = f->t == transits ? printed_of_transit : of_section;
     long row = e->row;
-    const char *word = cell(transits, row, 2), *printed = cell(transits, row, 1);
+    const char *word = cell(f->t, row, 2), *printed = cell(f->t, row, 1), *name = f->t->name;
     int direction = strcmp(word, "+1") == 0 ? 1 : -1;
-    if (sign == direction || (direction < 0 && strcmp(word, "-1") != 0))
-        wrong("transits.csv, row %ld: the direction is wrong\n", row + 1);
+    if (f->sign == direction || f->one_way == -direction || (direction < 0 && strcmp(word, "-1") != 0))
+        wrong("%s, row %ld: the direction is wrong\n", name, row + 1);
     local_exact(first, e->from);
     local_exact(last, e->to);
     arb_union(s, first, last, bits + 64);         /* I of 5. */
@@ -981,52 +1097,52 @@ static void check_transit(const event *e) {
     arb_set_fmpq(t, time, bits + 64);
     for (int twice = 0; twice < 2; twice++) {     /* the second time from the middle of N, over N: far narrower */
         motion(here, s, bits);
-        arb_set(n, here + R2);
+        value(n, f, 1, here, bits);
         if (arb_sgn_nonzero(n) == -direction)
-            wrong("transits.csv, row %ld: the direction is wrong, or there is no transit\n", row + 1);
+            wrong("%s, row %ld: the direction is wrong, or there is no zero\n", name, row + 1);
         if (arb_sgn_nonzero(n) == 0)
-            undecided("transits.csv, row %ld: xdot may have no single zero at t = %s", row + 1, printed);
+            undecided("%s, row %ld: %s may have no single zero at t = %s", name, row + 1, f->word, printed);
         local(s, t);
         motion(here, s, bits);
-        arb_div(n, here + V, n, bits);
+        value(s, f, 0, here, bits);
+        arb_div(n, s, n, bits);
         arb_sub(n, t, n, bits + 64);              /* N of 5. */
-        prove(transits, row, 1, n, bound_for(transits, row, 1));
+        prove(f->t, row, 1, n, bound_for(f->t, row, 1));
         local(s, n);
         if (!arb_gt(s, first) || !arb_lt(s, last))
-            undecided("transits.csv, row %ld: t = %s is at the edge of its last digit", row + 1, printed);
+            undecided("%s, row %ld: t = %s is at the edge of its last digit", name, row + 1, printed);
         arb_get_mid_arb(t, n);
     }
     arb_set_fmpq(t, end, bits + 64);
     if (arb_gt(n, t))
-        wrong("transits.csv, row %ld: t = %s is after the end of the run\n", row + 1, printed);
+        wrong("%s, row %ld: t = %s is after the end of the run\n", name, row + 1, printed);
     if (!arb_is_positive(n) || !arb_le(n, t))
-        undecided("transits.csv, row %ld: t = %s is at the edge of the run", row + 1, printed);
+        undecided("%s, row %ld: t = %s is at the edge of the run", name, row + 1, printed);
     motion(here, s, bits);
-    arb_srcptr x[] = {here + R, here + R + 1, here + R + 2, here + V + 1, here + R2};
-    for (int i = 0; i < 5; i++) {
-        arb_mul(t, x[i], length, bits + 64);
-        prove(transits, row, 3 + i, t, bound_for(transits, row, 3 + i));
+    for (int i = 0; i < (f->t == transits ? 5 : 6); i++) {
+        arb_mul(t, here + columns[i], length, bits + 64);
+        prove(f->t, row, 3 + i, t, bound_for(f->t, row, 3 + i));
     }
-    sign = direction;
+    f->sign = f->one_way ? 0 : direction;
 }
 
 /* Inside an interval nothing is proved, and the sign after it follows from its parity. */
-static void check_zeros_of_step(void) {
-    for (; next < all && fmpq_cmp(events[next].from, step_next) < 0; next++) {
-        const event *e = events + next;
-        no_zero(clear_from, e->from);
-        fmpq_set(clear_from, e->to);
+static void check_zeros_of_step(form *f) {
+    for (; f->next < f->all && fmpq_cmp(f->events[f->next].from, step_next) < 0; f->next++) {
+        const event *e = f->events + f->next;
+        no_zero(f, f->clear_from, e->from);
+        fmpq_set(f->clear_from, e->to);
         if (e->parity == NULL) {
-            check_transit(e);
+            check_passage(f, e);
             continue;
         }
-        if (sign == 0 && strcmp(e->parity, "unknown") != 0)
-            undecided("manifest.json: the parity of possible.%ld cannot be proved", e->row);
-        sign *= (strcmp(e->parity, "even") == 0) - (strcmp(e->parity, "odd") == 0);
+        if (f->sign == 0 && strcmp(e->parity, "unknown") != 0)
+            undecided("manifest.json: the parity of %s.%ld cannot be proved", f->possible, e->row);
+        f->sign *= (strcmp(e->parity, "even") == 0) - (strcmp(e->parity, "odd") == 0);
     }
-    no_zero(clear_from, fmpq_cmp(end, step_next) < 0 ? end : step_next);
-    if (fmpq_cmp(clear_from, step_next) < 0)
-        fmpq_set(clear_from, step_next);
+    no_zero(f, f->clear_from, fmpq_cmp(end, step_next) < 0 ? end : step_next);
+    if (fmpq_cmp(f->clear_from, step_next) < 0)
+        fmpq_set(f->clear_from, step_next);
 }
 
 /* --------------------------------------------------------------------------------------------------- the other files */
@@ -1039,7 +1155,7 @@ static void same(const document *d, const char *key, const char *expected) {
 /* h of the first row in m^2/s^2: v^2/2 + g z - rate^2/2 (x^2 + axis^2), axis = R - y sin + z cos. Without rotation it is a
    decimal, and may be printed from exactly half a unit away, which no ball can tell: a millionth of a unit is allowed more. */
 static void check_invariant(void) {
-    static table t = {.name = "manifest.json", .kind = "invariant"};
+    static table t = {.name = "manifest.json", .decimals = "decimals.invariant"};
     static arb_struct x[6], axis[2];
     static arb_t sum;
     static fmpq_t value;
@@ -1079,6 +1195,7 @@ static void check_columns(const table *t, long first, long last, const char *key
 
 static void check_manifest(void) {
     const char *word = transits == &no_transits ? "not asked for" : never ? "xdot is identically zero" : "complete";
+    long intervals = transits == &no_transits ? 0 : forms[0].intervals;
     same(manifest, "transits", intervals ? "undecided intervals" : word);
     same(manifest, "counts.grid", text("%ld", grid->rows));
     same(manifest, "counts.transits", text("%ld", transits->rows));
@@ -1086,6 +1203,8 @@ static void check_manifest(void) {
     same(manifest, "digits", get(manifest, "scene.run.digits"));
     check_columns(grid, 1, 3, "bounds.position_m");
     check_columns(grid, 4, 6, "bounds.velocity_m_s");
+    if (sections && sections->rows)
+        check_columns(sections, 1, 1, "sections.bounds.t");
     if (transits->rows == 0)
         return;
     check_columns(transits, 1, 1, "bounds.transit_s");
@@ -1103,7 +1222,7 @@ static void check_vectors(const document *d, const table *t, const char *list, c
         if (t == transits)
             same(d, text("%s.%ld.direction", list, i), text("%d", atoi(cell(t, row, 2))));
         for (long col = 0; col < t->columns; col++) {
-            if (!maybe(manifest, text("decimals.%s.%s", t->kind, t->head[col])))
+            if (!maybe(manifest, text("%s.%s", t->decimals, t->head[col])))
                 continue;
             const char *place = text("%s.%ld.values.%s", list, i, t->head[col]);
             same(d, text("%s.decimal", place), cell(t, row, col));
@@ -1150,9 +1269,12 @@ static void check_page(void) {
                     cell(transits, row, 8)));
     if (rows > 0)
         expect(text("  largest bound on a time %s s\n", get(manifest, "bounds.transit_s")));
-    for (long i = 0; i < intervals; i++)
+    for (long i = 0; maybe(manifest, text("possible.%ld.from_s", i)); i++)
         expect(text("[%s, %s] s (%s number", get(manifest, text("possible.%ld.from_s", i)),
                     get(manifest, text("possible.%ld.to_s", i)), get(manifest, text("possible.%ld.parity", i))));
+    for (int i = 0; i < count_of_forms; i++)
+        if (forms[i].t == sections)
+            expect(text("Passages in sections.csv: %ld of %s\n", forms[i].rows, forms[i].word));
 }
 
 /* ---------------------------------------------------------------------------------------------------------------- run */
@@ -1172,12 +1294,15 @@ static long run(void) {
                 break;
             check_grid_row(t, row);
         }
-        if (!never && transits != &no_transits)
-            check_zeros_of_step();
+        for (int i = 0; i < count_of_forms; i++)
+            if (forms[i].t != transits || !never)
+                check_zeros_of_step(forms + i);
         go_on(length_of_next);
     }
-    if (next != all)
-        wrong("transits.csv has a transit, or manifest.json an interval, after the end of the run, or where xdot = 0 for ever\n");
+    for (form *f = forms; f < forms + count_of_forms; f++)
+        if (f->next != f->all)
+            wrong("%s has a zero, or manifest.json an interval, after the end of the run, or where xdot = 0 for ever\n",
+                  f->t->name);
     return steps;
 }
 
@@ -1192,16 +1317,27 @@ int main(int count, char **words) {
         no_dataset("inputs must be decimal or binary64\n");
     input(end, "run.t_end");
     input(grid_step, "run.grid_step");
+    fmpq_zero(half);
     grid = read_tables("grid", "t,x,y,z,vx,vy,vz", "t_hex,x_hex,y_hex,z_hex,vx_hex,vy_hex,vz_hex");
     count_rows();
     if (strcmp(get(manifest, "scene.run.transits"), "true") == 0) {
         transits = read_tables("transits", "k,t,direction,x,y,z,vy,ax,bound", "t_hex,x_hex,y_hex,z_hex,vy_hex,ax_hex");
-        read_events();
+        add_form("xdot", "possible", transits, 0, transits->rows);
+    }
+    if (maybe(manifest, "scene.run.sections")) {
+        sections = read_table("sections.csv", "section,k,t,direction,x,y,z,vx,vy,vz,bound");
+        if (sections == NULL)
+            no_dataset("no sections.csv\n");
+        sections->decimals = "sections.decimals";
+        sections->bounds = "sections.bounds";
+        sections->head++;                         /* so that columns count as in transits.csv, and the word is column -1 */
+        sections->cells++;
+        add_sections(get(manifest, "scene.run.sections"));
     }
     arb_mat_init(frame, 6, 6);
     arb_mat_init(at_end, 6, 6);
     arb_mat_init(inverse, 6, 6);
-    double numbers = 6.0 * (grid->rows + transits->rows);
+    double numbers = 6.0 * (grid->rows + transits->rows + (sections ? sections->rows : 0));
     double swings = fmpq_get_d(end) * sqrt(strtod(get(manifest, "scene.site.gravity"), NULL) /
                                            strtod(get(manifest, "scene.pendulum.length"), NULL));
     bits = 16 + ilogb(numbers) + 2 * fmax(15, ilogb(swings + 1)) + 10 * labs(atol(get(manifest, "digits"))) / 3;    /* a guess */
@@ -1211,8 +1347,10 @@ int main(int count, char **words) {
         wrong("not proved with %d bits: %s\n", MOST_BITS, doubt);
     highest = bits * 9 / 20 + 8;
     fmpq_set_si(most_off, 1, strcmp(get(manifest, "level"), "enclosed") == 0 ? 2 : 1);
-    fmpq_zero(clear_from);
-    next = sign = 0;
+    for (form *f = forms; f < forms + count_of_forms; f++) {
+        f->next = f->sign = 0;
+        fmpq_zero(f->clear_from);
+    }
     grid->widest = transits->widest = 0;
     long steps = run();
     check_manifest();
@@ -1228,6 +1366,8 @@ int main(int count, char **words) {
     if (transits != &no_transits)
         printf("  transits.csv  %6ld rows, widest distance %.6f; %s\n", transits->rows, transits->widest,
                get(manifest, "transits"));
+    if (sections)
+        printf("  sections.csv  %6ld rows, widest distance %.6f\n", sections->rows, sections->widest);
     printf("  the doubles, vectors.json, certified.txt and the numbers of manifest.json agree\nevery printed number is proved\n");
     return 0;
 }

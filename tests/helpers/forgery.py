@@ -25,6 +25,7 @@ def forge(
     folder: Path,
     grid: Change | None = None,
     transits: Change | None = None,
+    sections: Change | None = None,
     manifest: Callable[[dict[str, Any]], object] | None = None,
     without: Sequence[str] = (),
 ) -> None:
@@ -38,6 +39,11 @@ def forge(
             document["counts"][kind] = len(tables[f"{kind}.csv"].rows)
             if kind == "transits":
                 _change_bounds(document, tables["transits.csv"])
+    if sections is not None:
+        _change_table(tables, "sections", sections)
+        rows, said = tables["sections.csv"].rows, document["sections"]
+        said["counts"] = {word: sum(row[0] == word for row in rows) for word in said["counts"]}
+        said["bounds"]["t"] = max((row[-1] for row in rows), key=Fraction)
     for name in without:
         document["files"].pop(name, None)
         texts.pop(name, None)
