@@ -42,7 +42,7 @@ def test_shipped_datasets_are_proved(check, name):
 def test_sections_of_every_kind_are_proved(check, tmp_path):
     words = "highest; lowest; turn 0; turn 30; gate 12.5; gate -30@0"
     scene = reference.load_scene("paris", ["run.t_end=30", "run.digits=25", f"run.sections={words}", "release.vy=0.05"])
-    done = check(reference.write(reference.solve(scene, confirm="none"), tmp_path / "paris"))
+    done = check(reference.write(reference.solve(scene), tmp_path / "paris"))
     assert done.returncode == 0, done.stdout
     rows = (tmp_path / "paris/sections.csv").read_text().splitlines()
     assert {row.split(",")[0] for row in rows[1:]} == set(words.split("; "))

@@ -41,7 +41,7 @@ class Search:
 
     def __init__(self, word: str, form: Form, prec: int) -> None:
         self.word, self.form, self.bits, self.noise = word, form, prec + SPARE_BITS, prec - NOISE_BITS
-        self.left, self.found = 0, list[tuple[list[int], int]]()
+        self.left, self.found = 0, list[tuple[list[int], int, list[int]]]()
 
     def take(self, step: TaylorStep, rows: list[list[int]]) -> None:
         """Find the passages in a step whose polynomials are x, y, z over l."""
@@ -61,7 +61,8 @@ class Search:
         for low, high, sign in places.isolated(left, right):
             s = places.root(low, high, sign)
             if self.form.direction in (0, -sign):
-                self.found.append((self._moment(step, rows, s), -sign))
+                lost = [_shifted(int(_left_out(row, s / unit) / h), self.bits - step.bits) + 1 for row in rows]
+                self.found.append((self._moment(step, rows, s), -sign, lost))
         self.left = right
 
     def _moment(self, step: TaylorStep, rows: list[list[int]], s: int) -> list[int]:
@@ -164,6 +165,12 @@ def bernstein(terms: int) -> tuple[Array, Array]:
     return form, np.array([[comb(j, i) / 2**j for i in n] for j in n])
 
 
+def _left_out(row: list[int], s: float) -> Fraction:
+    """Return about what a rate lacks at a place: twice the next term, as terms fall like the last four, two by two."""
+    last, before = (max(map(abs, pair)) for pair in (row[-2:], row[-4:-2]))
+    return 2 * len(row) * min(last, last * last // max(before, 1)) * Fraction(s ** (len(row) - 1))
+
+
 def _shifted(value: int, bits: int) -> int:
     return value << bits if bits >= 0 else value >> -bits
 
@@ -172,6 +179,8 @@ def passages(
     plan: Plan, steps: Iterable[TaylorStep], report: Report | None = None
 ) -> dict[str, tuple[Table, list[int]]]:
     """Return `columns.SECTION` at each passage of a plan's sections, and its direction, from the plan's Taylor steps.
+
+    Errors of the tables are those of velocities alone, by the end of a step's polynomial, as its last terms tell.
 
     Raises:
         IntegrationError: a section that the motion touches, or stays in, as far as the digits tell.
@@ -194,7 +203,8 @@ def passages(
     bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)
     tables = {}
     for search in searches:
-        kept = [(row, direction) for row, direction in search.found if row[0] <= last]
-        values = [(row[0], *(int(x * length) for x in row[1:])) for row, _ in kept]
-        tables[search.word] = Table(SECTION, bits, values), [direction for _, direction in kept]
+        kept = [one for one in search.found if one[0][0] <= last]
+        values = [(row[0], *(int(x * length) for x in row[1:])) for row, _, _ in kept]
+        errors = [(0, 0, 0, 0, *(int(size * length) + 1 for size in lost)) for _, _, lost in kept]
+        tables[search.word] = Table(SECTION, bits, values, errors), [direction for _, direction, _ in kept]
     return tables

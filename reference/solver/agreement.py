@@ -157,6 +157,7 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
 
     With the form's error e, its rate f and its second rate g, the time is off by at most 2 e/f where g (2 e/f) is far
     below f. These are computed in the run's own bits: in double the height of a small swing is nothing but rounding.
+    Velocities come from the rates of a step's polynomials here, and are off by what these lack, too.
     """
     table, _ = run.passages[word]
     bits, rows = table.bits + GUARD_BITS, list(zip(*table.values, strict=True)) or [()] * len(SECTION)
@@ -175,13 +176,17 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
         for kind, part in ((POSITION, form.a), (VELOCITY, form.b))
         for name, x in zip(kind, part, strict=True)
     )
+    lost = {name: _in_units([row[i] for row in table.errors], table.bits + power) for i, name in enumerate(SECTION)}
+    off = off + sum(lost[name] * abs(float(x)) for name, x in zip(VELOCITY, form.b, strict=True))
     slope, bend = (np.abs(_floats(x)) * length for x in (f, (after - f) / step))
     with np.errstate(divide="ignore", invalid="ignore"):
         late = 2 * off / slope
         late = np.where(bend * np.ldexp(late, power) <= slope / 4, late, np.inf)
         late += np.ldexp(table["t"], -run.plan.number.prec - power)
         rates = dict(zip(STATE, (*v, *acc), strict=True))
-        columns = {"t": late} | {name: parts[name] + np.abs(_floats(rates[name])) * length * late for name in STATE}
+        columns = {"t": late} | {
+            name: parts[name] + lost[name] + np.abs(_floats(rates[name])) * length * late for name in STATE
+        }
     for i, name in enumerate(SECTION if apart is not None else ()):
         assert apart is not None
         columns[name] = np.maximum(columns[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))

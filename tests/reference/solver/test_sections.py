@@ -52,6 +52,21 @@ def check(solution, words, swing):
     assert outside(inputs, {word: solution.sections[word].table for word in words}) == []
 
 
+def test_what_the_end_of_a_steps_polynomial_lacks_counts_in_the_bounds(monkeypatch):
+    """A lowest point near the end of a step: the rate of a polynomial lacks one order more than the state there."""
+    words = "run.sections=highest; lowest; turn 30"
+    scene = ["run.t_end=45", "run.digits=20", words, "release.vy=0.228", "release.x=0.802", "site.latitude=75.57"]
+
+    def off():
+        computed = reference.solve(reference.load_scene("paris", [*scene, "run.level=computed"]))
+        assert computed.run.engine == "heyoka"
+        return outside(computed.scene.exact, {word: found.table for word, found in computed.sections.items()})
+
+    assert off() == []
+    monkeypatch.setattr("reference.engines.passages._left_out", lambda row, s: Fraction(0))
+    assert off() != []
+
+
 @pytest.mark.parametrize("seed", one_in(8, range(40)))
 def test_sections_of_random_scenes_are_those_of_another_code(seed):
     scene, words, swing = drawn(seed)
