@@ -191,7 +191,10 @@ def command(
                 refuse(unused, BESIDE_RANGES)
                 hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
                 return
-            refuse({"CANDIDATE": list(candidates or ()), **unused}, "together with --section")
+            refuse(unused, "together with --section")
+            if candidates:
+                advice = "Its passages stand in one file: `foucault score SCENE --transits FILE --section WORD`."
+                raise InputError("CANDIDATE", candidates[0], "no file beside that of --transits", advice)
             read_as = scene if reading else scene.with_values(["inputs=binary64"])  # as programs in double have them
             hold_passages(transits, str(section), read_as, naming, tolerance, as_json)
             return
