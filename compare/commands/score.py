@@ -76,7 +76,7 @@ NAME = option("--name", "Name of the program of --run (default: the program).", 
 SETTING = option("--setting", "Value of {setting} in --run, in s (default: 200 a period).", "S")
 EXPERIMENTS = option(
     "--experiments",
-    "Where the program of --run is off, run it up to ten times with other numbers, and measure the cause.",
+    "Where the program of --run is off, run it up to eight times with other numbers, and measure the cause.",
 )
 APPROXIMATION = option(
     "--approximation",
