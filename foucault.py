@@ -56,7 +56,7 @@ def commands(word: str = "") -> typer.Typer:
         cls=Grouped,
         no_args_is_help=True,
         rich_markup_mode=None,
-        context_settings={"help_option_names": ["--help", "-h"]},
+        context_settings={"help_option_names": ["--help", "-h"], "max_content_width": 110},
     )
     alone = any(word in names for names in GROUPS.values())
     for part in (computing, comparing):

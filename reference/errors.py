@@ -18,7 +18,7 @@ from typing import Any, TextIO, cast
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
 MOST = 5  # names in a message at most
-VERY_ALIKE = (1.0, 0.8)  # of difflib, from 0 to 1: names that are as alike as this leave no room for others
+VERY_ALIKE = 0.8  # of difflib, from 0 to 1: names that are as alike as this leave no room for others
 LEAST_PART = 3  # characters of a word that is looked for inside the names as well
 
 # controls, invisible and direction-changing characters, separators of lines, bytes that are not UTF-8 (surrogates),
@@ -107,12 +107,14 @@ class Stopped(FoucaultError):
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
-    """Return at most five names: very like a word, else containing it, else like it; in any case."""
+    """Return at most five names: a word's own or what it shortens (site.g), very like it, containing it, or like it."""
     names = {name.lower(): name for name in known}
     typed = word.lower()
-    for likeness in VERY_ALIKE:
-        if alike := get_close_matches(typed, names, n=MOST, cutoff=likeness):
-            return [names[name] for name in alike]
+    section, _, key = typed.rpartition(".")
+    short = [name for name in names if key and name.startswith(section) and f".{key}" in name]
+    for alike in ([typed] if typed in names else short, get_close_matches(typed, names, n=MOST, cutoff=VERY_ALIKE)):
+        if alike:
+            return [names[name] for name in alike[:MOST]]
     containing = sorted((name for name in names if len(typed) >= LEAST_PART and typed in name), key=len)
     return [names[name] for name in (containing or get_close_matches(typed, names, n=MOST))][:MOST]
 

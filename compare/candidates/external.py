@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO
 
 from reference import InputError, Scene
+from reference.errors import did_you_mean
 from reference.model.start import Start
 from reference.system.interruption import terminable
 
@@ -114,7 +115,8 @@ def arguments(command: str, scene: Scene) -> list[str]:
             return match[1]
         if match[2] not in values:
             words = ", ".join(f"{{{word}}}" for word in values)
-            raise InputError("--run", match[0], f"one of {words}", f"Write {{{match[0]}}} for {match[0]} itself.")
+            advice = f"{did_you_mean(match[2], values, '')} Write {{{match[0]}}} for {match[0]} itself."
+            raise InputError("--run", match[0], f"one of {words}", advice.lstrip())
         return values[match[2]]
 
     return [_PLACEHOLDER.sub(value, word) for word in words]

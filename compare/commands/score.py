@@ -76,7 +76,7 @@ NAME = option("--name", "Name of the program of --run (default: the program).", 
 SETTING = option("--setting", "Value of {setting} in --run, in s (default: 200 a period).", "S")
 EXPERIMENTS = option(
     "--experiments",
-    "Where the program of --run is off, run it up to ten times with other numbers, and measure the cause.",
+    "Where the program of --run is off, run it up to eight times with other numbers, and measure the cause.",
 )
 APPROXIMATION = option(
     "--approximation",
@@ -191,7 +191,10 @@ def command(
                 refuse(unused, BESIDE_RANGES)
                 hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
                 return
-            refuse({"CANDIDATE": list(candidates or ()), **unused}, "together with --section")
+            refuse(unused, "together with --section")
+            if candidates:
+                advice = "Its passages stand in one file: `foucault score SCENE --transits FILE --section WORD`."
+                raise InputError("CANDIDATE", candidates[0], "no file beside that of --transits", advice)
             read_as = scene if reading else scene.with_values(["inputs=binary64"])  # as programs in double have them
             hold_passages(transits, str(section), read_as, naming, tolerance, as_json)
             return

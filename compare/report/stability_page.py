@@ -48,8 +48,9 @@ def headlines(cells: Sequence[Cell]) -> list[str]:
     runs = Counter(map(_named(cells), wrong))
     sentences = [
         *_programs_broken(cells),
-        f"{len(wrong)} of {len(tried)} runs are silently wrong: they report success, but the error is over {WRONG} "
-        "times what was asked for, and over what the motion makes of such an error at the release.",
+        f"{len(wrong)} of {len(tried)} runs{_not_tried(cells)} are silently wrong: they report "
+        f"success, but the error is over {WRONG} times what was asked for, and over what the motion makes of such an "
+        "error at the release.",
     ]
     magnified = [cell for cell in tried if cell.status == Status.ILL_CONDITIONED]
     if magnified:
@@ -63,6 +64,12 @@ def headlines(cells: Sequence[Cell]) -> list[str]:
         worst = ", ".join(f"{name} ({count})" for name, count in runs.most_common(6))
         sentences.append(f"Silently wrong most often: {worst}.")
     return sentences + list(_stiffness(cells))
+
+
+def _not_tried(cells: Sequence[Cell]) -> str:
+    """Return in brackets how many cells have no run, and why; "" if all have one."""
+    counts = Counter(cell.status.words for cell in cells if cell.status in NOT_TRIED)
+    return f" ({', '.join(f'{count} more were {words}' for words, count in counts.items())})" if counts else ""
 
 
 def _named(cells: Sequence[Cell]) -> Callable[[Cell], str]:

@@ -68,6 +68,8 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         "cpu_s": tally.cpu_s + tally.store_s,
         "compile_s": swept.compile_s,
         "fold_s": tally.fold_s,
+        "solver_rows": tally.promoted,
+        "solver_s": tally.promoted_s,
         "wall_s": swept.wall_s,
         "rows_per_core_s": sum(tally.counts.values()) / tally.cpu_s if tally.cpu_s else None,
         "rows": [_row(request, number, row) for number, row in enumerate(swept.rows())] if printed else None,
@@ -87,7 +89,10 @@ def text(swept: Swept, out: Path | None) -> str:
     tally, counts = swept.tally, swept.counts
     by_status = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items())
     total = f"{len(swept)} rows: {by_status}"
-    cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s, compiling {swept.compile_s:.2f} s; {swept.request.engine}"
+    cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s"
+    if tally.promoted:
+        cost += f", {tally.promoted_s:.2f} s of them for {tally.promoted} rows that went to the solver"
+    cost += f", compiling {swept.compile_s:.2f} s; {swept.request.engine}"
     lines = []
     if out is None:
         columns = {column.name: column for column in swept.request.columns}

@@ -287,7 +287,7 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
         yield "which input limits you: what each alone moves the period by, to first order, and its share"
     for name, limit in limits:
         moved, (low, high) = f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %", limit["s_per_unit"]
-        unit = unit_of(name)
+        unit = unit_of(name).replace("degrees", "degree")
         slope = f"the period changes by {low} to {high} s{unit and ' per '}{unit}"
         yield f"  {name} {ranges['uncertain'][name]}: {moved} ({slope})"
 

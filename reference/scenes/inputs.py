@@ -94,7 +94,7 @@ def _reading(info: ValidationInfo) -> str:
 
 def _as_text(value: object) -> object:
     if isinstance(value, float):
-        raise Refused("a decimal number in quotes", 'A bare TOML float is rounded: write it as a string, "0.3".')
+        raise Refused("a decimal number in quotes", f'Write "{value}" as a string: a bare TOML float is rounded.')
     if isinstance(value, int) and not isinstance(value, bool):
         return str(value)
     return value
@@ -106,9 +106,7 @@ _SIZES = f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size"
 def _decimal(text: str, info: ValidationInfo) -> str:
     match = _DECIMAL.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if match is None:
-        printed = _PRINTED.fullmatch(text)
-        advice = f"NumPy's repr: write {printed[1]}, as str() does." if printed else "NaN and inf are not numbers here."
-        raise Refused("a decimal number such as 67 or 7.292115e-5", advice)
+        raise Refused("a decimal number such as 67 or 7.292115e-5", _how_to_write(text))
     # zero as well: 0e999999999 is computed with a power of ten
     if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
         raise Refused(_SIZES)
@@ -117,6 +115,17 @@ def _decimal(text: str, info: ValidationInfo) -> str:
     except OverflowError:
         raise Refused(f"a number that a double holds, at most {sys.float_info.max:.3g} in size", _DOUBLES) from None
     return text
+
+
+def _how_to_write(text: str) -> str:
+    """Return advice on a text that is no decimal number."""
+    if printed := _PRINTED.fullmatch(text):
+        return f"NumPy's repr: write {printed[1]}, as str() does."
+    if text.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        return "NaN and inf are not numbers here."
+    if _DECIMAL.fullmatch(text.replace(",", ".")):
+        return "Write a decimal point, not a comma." if "," in text else f"Write at most {MAX_LENGTH} characters."
+    return "Write the number alone, in SI units or degrees: 1200 for 20 min." if _DECIMAL.match(text) else ""
 
 
 _DOUBLES = "The numbers are read as binary64 here."

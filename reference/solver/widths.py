@@ -31,7 +31,8 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
     found: dict[str, Fraction] = {}
     have = _numbers(scene.exact)
     for word, text in uncertain.items():
-        name, width, field_name = full_name(word), str(text).strip(), f"--uncertain {word}"
+        name, width = full_name(word), str(text).strip()
+        field_name = f"{'uncertain.' if scene.uncertain.get(word) == text else '--uncertain '}{word}"
         if name not in UNCERTAIN:
             raise unknown(field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES)
         if name not in have:

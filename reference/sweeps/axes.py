@@ -20,7 +20,7 @@ import numpy as np
 from ..errors import InputError, unknown
 from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
-from ..scenes.scene import Reading, checked_value, field_names
+from ..scenes.scene import Reading, checked_value, field_names, full_name
 from ..system.documents import MAX_JSON_BYTES, regular
 from .parquet import need_pyarrow, read_columns
 
@@ -137,7 +137,7 @@ def varied_names() -> list[str]:
 
 def _check_key(option: str, key: str) -> None:
     """Raise InputError for what is no field of a scene, or none that a sweep can vary."""
-    if key not in varied_names():
+    if full_name(key) not in varied_names():
         raise unknown(option, key, "a field that a sweep can vary", varied_names(), "`foucault show SCENE` lists them.")
 
 
@@ -169,6 +169,7 @@ def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
     key, sign, typed = (part.strip() for part in word.partition("="))
     if not sign or not typed:
         raise InputError("--over", word, f"KEY={FORMS}")
+    key = full_name(key)
     _check_key("--over", key)
     if ":" in typed and not typed.startswith("@"):
         texts = _range(key, typed)
@@ -238,7 +239,7 @@ def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     need_pyarrow("--rows", str(path), "the package pyarrow")
     with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
         columns = read_columns(stream, _check_size)
-    return [(key, tuple(map(_text, column))) for key, column in columns.items()]
+    return [(full_name(key), tuple(map(_text, column))) for key, column in columns.items()]
 
 
 def _check_size(names: Iterable[str], rows: int) -> None:
@@ -256,7 +257,7 @@ def _text(value: Any) -> str:
 def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a CSV file: of each its name, which may be a value, and the values below it."""
     names, *lines = _lines(option, path)
-    return [(name.strip(), tuple(line[i].strip() for line in lines)) for i, name in enumerate(names)]
+    return [(full_name(name), tuple(line[i].strip() for line in lines)) for i, name in enumerate(names)]
 
 
 def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:

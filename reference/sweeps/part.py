@@ -38,20 +38,19 @@ class Tally:
         cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them by themselves.
         fold_s: of these, those of constants and releases.
         store_s: CPU seconds of writing them.
+        promoted: rows that the solver was given.
+        promoted_s: of `cpu_s`, those of these rows.
     """
 
     counts: Counter[str] = field(default_factory=Counter)
     cpu_s: float = 0.0
     fold_s: float = 0.0
     store_s: float = 0.0
+    promoted: int = 0
+    promoted_s: float = 0.0
 
     def __add__(self, other: Tally) -> Tally:
-        return Tally(
-            self.counts + other.counts,
-            self.cpu_s + other.cpu_s,
-            self.fold_s + other.fold_s,
-            self.store_s + other.store_s,
-        )
+        return Tally(**{name: own + vars(other)[name] for name, own in vars(self).items()})
 
 
 @dataclass
@@ -175,9 +174,11 @@ def _promote(request: Request, part: Part, place: int, reason: str, promote: Pro
 
     The reason for it, empty if by request, stays the row's reason where the solver failed.
     """
-    row = int(part.columns["row"][place])
+    row, before = int(part.columns["row"][place]), time.thread_time()
     result = promote(request, row, doubtful=bool(reason))
     part.tally.cpu_s += result.cpu_s
+    part.tally.promoted += 1
+    part.tally.promoted_s += result.cpu_s + time.thread_time() - before
     if result.failure:
         status = Status.DOUBTFUL if reason == DOUBTFUL_REASON else Status.UNREACHABLE
         part.fail(place, status, f"{reason} {result.failure}".strip())

@@ -105,15 +105,17 @@ def _choice(kept: Documents) -> Iterator[str]:
         "Each entry is the cheapest setting that was measured and reached the error; in brackets are the equations "
         "that were integrated. Double precision ends near "
         f"1e-12 m. Beyond that `heyoka_long_double` reaches {best['heyoka_long_double']:.1e} m, and "
-        f"`heyoka_real128` {best['heyoka_real128']:.1e} m; [more digits](#{DIGITS_ANCHOR}) are a matter of CPU time."
+        f"`heyoka_real128` {best['heyoka_real128']:.1e} m; [more digits](#{DIGITS_ANCHOR}) are a matter of CPU time. "
+        "The tables below have all methods, also those that fit no column here: numbalsoda, REBOUND, diffrax, the "
+        "multistep methods, and this project's own `limbs`."
     )
     yield ""
     wrong = Counter(cell.method for cell in cells(kept["stability"]) if cell.status == Status.SILENTLY_WRONG)
     yield so(
         wrong["cvode_bdf"] + wrong["scipy_bdf"] > 10 * (wrong["scipy_radau"] + wrong["gauss_legendre"]),
         "Two warnings. On [difficult scenes](#" + STIFF_ANCHOR.format(count=len(_scenes(kept))) + ") the multistep "
-        "methods (BDF, Adams, LSODA) often report success and are wrong: do not take them unchecked. Where drag makes "
-        "the motion stiff, take an implicit method such as SciPy's Radau.",
+        "methods (BDF, Adams, LSODA) often report success and are wrong: check them before you trust them. Where drag "
+        "makes the motion stiff, take an implicit method such as SciPy's Radau.",
     )
     yield ""
 
@@ -139,13 +141,14 @@ def _head(kept: Documents) -> Iterator[str]:
     yield "## How it was measured"
     yield ""
     yield (
-        "This page is written by `make studies`, which runs the commands below one after the other, keeps their "
-        "results in `docs/studies/` and takes every figure from there; a test holds the page against these files. "
-        "CPU seconds are those of the work alone, one thread, imports and compilation apart; errors are the largest "
-        "position errors over the grid against the golden dataset of the same binary64 inputs. A run that would take "
-        "more CPU seconds than `--limit` is not made to its end: its cost is extrapolated and marked `~`, and it has "
-        "no error. An absolute tolerance is a part of each variable's own swing, of the smallest where a library takes "
-        f"one number for all. {_counted_methods(kept)}"
+        "`make studies` runs the commands below one after the other, keeps their results in `docs/studies/` and writes "
+        "this page from them; a test holds every figure against these files. CPU seconds are those of the work alone, "
+        "on one thread, without imports and compilation. The error of a run is its largest position error over the "
+        "grid, against the golden dataset of the same binary64 inputs. The tables interpolate the cost of an error "
+        "between neighbouring settings; the table above names settings that were run. A run that would take more CPU "
+        "seconds than `--limit` is run in part only: its cost is extrapolated and marked `~`, and it has no error. An "
+        "absolute tolerance is scaled to the swing of each variable, or to the smallest where a library takes one "
+        f"number for all. {_counted_methods(kept)}"
     )
     yield ""
     loads = {name: busy(_results(name, kept)).partition(". ") for name in COMMANDS}
@@ -295,9 +298,9 @@ def _again(kept: Documents) -> Iterator[str]:
     quarter = len(ratios) // 4
     yield so(
         tau > SAME_ORDER,
-        f"{len(both)} of the runs once more, under another load: their ranking by cost is nearly the same (Kendall's "
-        f"tau {tau:.2f}), although single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times what they were, and "
-        f"half of them {ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Ratios of costs hold to about that.",
+        f"{len(both)} of the runs were made again under another load. They rank by cost nearly as before (Kendall's "
+        f"tau {tau:.2f}). Single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times what they were, half of them "
+        f"{ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Trust ratios of costs to about that.",
     )
     yield ""
 
@@ -352,10 +355,11 @@ def _stability(kept: Documents) -> Iterator[str]:
     found = cells(kept["stability"])
     yield from _section(f"## Stiff and extreme: {len({cell.scene for cell in found})} scenes", "stability")
     yield (
-        f"Every method is asked for the same on every scene, and at most {SWINGS} small swings are run. A run is "
-        f"silently wrong if it reports success with an error above {WRONG} times what was asked for, and above what "
-        "the motion itself makes of such an error at the release; where the motion magnifies it by more, the run is "
-        "ill-conditioned, and nobody's fault. A step is given as a part of 2π over the fastest rate of the scene."
+        f"Each method is asked for the same number of digits on every scene, over at most {SWINGS} small swings. A run "
+        f"is *silently wrong* if it reports success with an error above {WRONG} times what was asked for, and above "
+        "what the motion itself makes of such an error at the release. Where the motion magnifies it by more, the run "
+        "is *ill-conditioned*, and the method is not to blame. Steps are parts of 2π over the fastest rate of the "
+        "scene."
     )
     yield ""
     yield from (f"- {sentence}" for sentence in headlines(found))
@@ -403,13 +407,14 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     kept = {cell.method for cell in found if cell.scene == "separatrix" and cell.status == Status.OK}
     yield so(
         not kept,
-        "- `separatrix`, which ends on top of the rod, defeats all of them: the motion magnifies an error more than "
-        "anybody allows for.",
+        "- `separatrix`, which ends on top of the rod, defeats every method: the motion magnifies an error more than "
+        "any tolerance allows for.",
     )
     stiff = [name for name in dict.fromkeys(cell.scene for cell in found) if "stiff" in load_scene(name).flags]
     yield so(
         all(cell.status == Status.OK for cell in found if cell.method == "scipy_radau" and cell.scene in stiff),
-        f"- Where drag makes it stiff ({', '.join(f'`{name}`' for name in stiff)}) SciPy's Radau is right everywhere.",
+        f"- Where drag makes the motion stiff ({', '.join(f'`{name}`' for name in stiff)}) SciPy's Radau is right "
+        "everywhere.",
     )
     yield ""
 

@@ -20,7 +20,7 @@ SHOWN = {  # method and formulation in the study, and the name in the chart
     ("heyoka_double", "space"): "heyoka",
 }
 STYLE = """<style>
-text { font: 13px sans-serif; fill: #222 } .small { font-size: 11px } .axis { stroke: #888; fill: none }
+text { font: 16px sans-serif; fill: #222 } .small { font-size: 14px } .axis { stroke: #888; fill: none }
 .grid { stroke: #8883; fill: none } .right { stroke: #0a66c2; fill: none; stroke-width: 2 }
 .wrong { stroke: #c2410c; fill: none; stroke-width: 2 } text.right { fill: #0a66c2; stroke: none }
 text.wrong { fill: #c2410c; stroke: none } .dot { fill: #0a66c2; stroke: none }
@@ -71,9 +71,9 @@ def chart(rows: Iterable[Mapping[str, object]]) -> str:
     for power in range(int(times[0]), int(times[1]) + 1):
         x = place(10.0**power, 1)[0]
         parts.append(f'<path class="grid" d="M{x:.1f} {top}v{height}"/>')
-        parts.append(f'<text class="small" x="{x:.1f}" y="{top + height + 16}" text-anchor="middle">1e{power} s</text>')
+        parts.append(f'<text class="small" x="{x:.1f}" y="{top + height + 22}" text-anchor="middle">1e{power} s</text>')
     parts.append(f'<path class="axis" d="M{left} {top}v{height}h{width}"/>')
-    parts.append(f'<text x="{left + width / 2}" y="{top + height + 36}" text-anchor="middle">CPU time</text>')
+    parts.append(f'<text x="{left + width / 2}" y="{top + height + 44}" text-anchor="middle">CPU time</text>')
     found = list(rows)
     for (method, formulation), name in SHOWN.items():
         mine = [row for row in found if (row["method"], row["formulation"]) == (method, formulation)]
@@ -83,7 +83,7 @@ def chart(rows: Iterable[Mapping[str, object]]) -> str:
         parts += [f'<circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="2.5"/>' for x, y in points]
         x, y = points[-1]
         parts.append(f'<text class="small" x="{x + 7:.1f}" y="{y + 4:.1f}">{name}</text>')
-    return _svg(600, 370, "Position error against CPU time of six integrators, a day of the Paris pendulum", parts)
+    return _svg(600, 376, "Position error against CPU time of six integrators, a day of the Paris pendulum", parts)
 
 
 def _svg(width: int, height: int, title: str, parts: Iterable[str]) -> str:

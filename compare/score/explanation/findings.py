@@ -104,7 +104,7 @@ class Explanation:
             )
         elif len(self.causes) > 1:
             begin = "- "
-            yield f"{BEGIN}, largest first,"
+            yield f"{BEGIN} (largest effect first)"
         for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
             yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
         if self.slip:

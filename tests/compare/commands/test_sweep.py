@@ -73,6 +73,13 @@ def test_json_holds_every_row_and_the_costs(foucault):
     assert {"cpu_s", "compile_s", "fold_s", "wall_s", "rows_per_core_s", "audit"} <= set(document)
 
 
+def test_a_sweep_says_what_the_solver_took_of_it(foucault):
+    _, out, _ = foucault("sweep", *SMALL, "--over", "site.latitude=0,90", "--tolerance", "1e-14", "--workers", "1")
+    told = re.search(r"CPU ([\d.]+) s, ([\d.]+) s of them for 2 rows that went to the solver", out)
+    every, solver = map(float, told.groups())
+    assert 0 < solver <= every
+
+
 def test_a_row_that_fails_is_named_and_the_others_stand(foucault):
     status, out, err = foucault("sweep", *SMALL, "--over", "pendulum.length=0.4,67")
     assert status == 1

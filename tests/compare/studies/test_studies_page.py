@@ -67,7 +67,7 @@ FIELDS = (
     *("cpu_spread", "setting", "status", "asked", "digits", "exponent"),
 )
 DEFINED = (  # lines whose numbers are definitions, and stand in the code that is run
-    "## Thirty days", "Position error at the end", "Every method is asked", "| method | CPU s at", "foucault study",
+    "## Thirty days", "Position error at the end", "Each method is asked", "| method | CPU s at", "foucault study",
     "- `separatrix`", "  ", "The machine was busy", "## Stiff and extreme",
 )  # fmt: skip
 
@@ -90,7 +90,7 @@ def test_every_line_with_a_number_is_held_by_the_results(kept: dict[str, Any], m
     [
         ("paris", "heyoka_double", "times cheaper than the paper"),
         ("paris", "scipy_dop853", "is not stiff"),
-        ("paris_again", "heyoka_double", "ranking"),
+        ("paris_again", "heyoka_double", "rank by cost"),
         ("precisions", "limbs", "cost less than heyoka"),
     ],
 )
