@@ -16,11 +16,10 @@ import signal
 import statistics
 import subprocess
 import tempfile
-import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from reference import InputError, Scene
 from reference.errors import did_you_mean
@@ -153,28 +152,46 @@ def run_program(
         except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
             why = error.strerror if isinstance(error, OSError) else error
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
-        limits = _Limits(process, output, errors, timeout_s, max_bytes)
         try:
             with terminable():
-                _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-        except BaseException:
-            limits.kill()
-            process.wait()
-            raise
+                usage, exceeded = _end_of(process, (output, errors), timeout_s, max_bytes)
         finally:
-            limits.end()
             wall = time.monotonic() - start
             _end_all(process.pid, mark)  # what it left running in the background
+            process.wait()
         tail = _tail(errors)
-        if limits.reason:
-            kind = OutOfTimeError if limits.timed_out else InputError
-            raise kind("--run", shlex.join(words), limits.reason, tail)
+        if exceeded is not None:
+            kind, expected = exceeded
+            raise kind("--run", shlex.join(words), expected, tail)
         if process.returncode:
             raise FailedError(process.returncode, words, tail)
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
+
+
+def _end_of(
+    process: subprocess.Popen[bytes], streams: tuple[BinaryIO, ...], timeout_s: float, max_bytes: int
+) -> tuple[Any, tuple[type[InputError], str] | None]:
+    """Wait for a process, and kill it if it exceeds its time or its output; return its resources and what it exceeded.
+
+    It is looked at often enough to tell its wall-clock time to 2 %, or to 20 ms.
+    """
+    start = time.monotonic()
+    exceeded: tuple[type[InputError], str] | None = None
+    while True:
+        ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if ended:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            return usage, exceeded
+        waited = time.monotonic() - start
+        if waited > timeout_s:
+            exceeded = OutOfTimeError, f"a program that ends within {timeout_s:g} s (--timeout)"
+        elif max(os.fstat(stream.fileno()).st_size for stream in streams) > max_bytes:
+            exceeded = InputError, f"at most {max_bytes} bytes of output"
+        if exceeded is not None:
+            process.kill()
+        time.sleep(min(0.02, waited / 50))
 
 
 def _end_all(leader: int, mark: str) -> None:
@@ -201,40 +218,6 @@ def _marked(mark: str) -> Iterator[Process]:
         ended = process.info["status"] == psutil.STATUS_ZOMBIE
         if not ended and mark in (process.info["environ"] or {}).get(MARK, ""):
             yield process
-
-
-class _Limits:
-    """Watch a process and kill its group if it exceeds its time or its output."""
-
-    def __init__(
-        self, process: subprocess.Popen[bytes], output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int
-    ) -> None:
-        self.reason, self.timed_out = "", False
-        self.over = threading.Event()
-        self._process = process
-        watched = (output, errors, timeout_s, max_bytes)
-        self._thread = threading.Thread(target=self._watch, args=watched, daemon=True)
-        self._thread.start()
-
-    def end(self) -> None:
-        """Stop watching; after this the files are no longer used here."""
-        self.over.set()
-        self._thread.join()
-
-    def _watch(self, output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int) -> None:
-        end = time.monotonic() + timeout_s
-        while not self.over.wait(0.02):
-            if time.monotonic() > end:
-                self.reason, self.timed_out = f"a program that ends within {timeout_s:g} s (--timeout)", True
-            elif max(os.fstat(output.fileno()).st_size, os.fstat(errors.fileno()).st_size) > max_bytes:
-                self.reason = f"at most {max_bytes} bytes of output"
-            if self.reason:
-                self.kill()
-                return
-
-    def kill(self) -> None:
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
 
 
 def _tail(errors: BinaryIO) -> str:

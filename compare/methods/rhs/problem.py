@@ -74,15 +74,13 @@ class FirstOrderSystem:
         """Names in generated code: x0, x1, … for the variables, k0, k1, … for the parameters."""
         return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(f"k{i}" for i in range(len(self.parameters)))
 
-    def traced(self, function: Rates, *more: str) -> Program:
-        """Trace a function of state, functions and parameters, and of further inputs named by `more`."""
-        count, names = len(self.variables), tuple(self.parameters)
+    def traced(self, function: Callable[..., Sequence[Any]], *more: str) -> Program:
+        """Trace a function of state, functions, parameters, and of further inputs named by `more`."""
+        count, end = len(self.variables), len(self.inputs)
 
         def flat(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
-            parameters = dict(zip(names, numbers[count : count + len(names)], strict=True))
-            return function(
-                numbers[:count], functions, parameters | dict(zip(more, numbers[len(self.inputs) :], strict=True))
-            )
+            parameters = dict(zip(self.parameters, numbers[count:end], strict=True))
+            return function(numbers[:count], functions, parameters, *numbers[end:])
 
         return record(flat, (*self.inputs, *more))
 
@@ -200,18 +198,17 @@ class Problem:
     @cached_property
     def rates(self) -> ModuleType:
         """Compiled `rhs(t, y, k)`, and `rhs_into(y, k, dy)` in place; k are the `parameters`."""
-        return self._compiled(self.system.program, _RATES)
+        return self.compiled(self.system.program, _RATES)
 
     @cached_property
     def slopes(self) -> ModuleType:
         """Compiled `jacobian(t, y, k)`, and `jacobian_into(y, k, j)` in place."""
-        return self._compiled(self.system.jacobian, _SLOPES)
+        rows = range(len(self.start))
+        return self.compiled(self.system.jacobian, _SLOPES, j="".join(elements("j", len(rows), str(i)) for i in rows))
 
-    def _compiled(self, program: Program, template: str) -> ModuleType:
-        size = len(self.start)
-        places = {"y": elements("y", size), "k": elements("k", len(self.system.parameters)), "dy": elements("dy", size)}
-        matrix = "".join(elements("j", size, str(row)) for row in range(size))
-        return generated(program, "traced", template, j=matrix, **places)
+    def compiled(self, program: Program, template: str, **texts: object) -> ModuleType:
+        """Return straight-line code of the system and a template that calls it, as `straight_line.generated` does."""
+        return generated(program, template, len(self.start), len(self.system.parameters), **texts)
 
     def cartesian(self, states: Array) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""
