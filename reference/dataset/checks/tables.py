@@ -55,10 +55,9 @@ def _digits(files: Files) -> Iterator[str]:
     sheet, manifest = files.tables["grid.csv"], files.manifest
     for name in GRID:
         largest, bound = max(abs(row[0]) for row in sheet.numbers((name,))), manifest.bound("grid", name)
-        if largest > SIGNIFICANT * bound:
-            around = {decimals_for(value, manifest.digits) for value in (largest - bound, largest + bound)}
-            if manifest.decimals["grid"][name] < min(around):
-                yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
+        fewest = decimals_for(largest + bound, manifest.digits)
+        if largest > SIGNIFICANT * bound and manifest.decimals["grid"][name] < fewest:
+            yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
 
 
 def _doubles(files: Files, kind: str) -> Iterator[str]:

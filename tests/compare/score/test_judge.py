@@ -702,6 +702,10 @@ def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_i
     assert isinstance(score.golden, Solution) and score.golden.run.number == "long_double"
     assert (score.transits.matched, score.transits.extra) == (len(true), [10.0])
     assert "input floor" not in str(score)
+    rough = judge(rows, path, explain=False).errors.bound_m
+    for part, enough in ((0.9, False), (1.1, True)):  # a bound of a thousandth of the tolerance is enough
+        known = judge(rows, path, tolerance=part * 1000 * rough, explain=False).errors.bound_m
+        assert (known == rough) is enough
     closer = judge(rows, path, tolerance=score.errors.max_m, explain=False)
     assert closer.errors.bound_m < score.errors.bound_m / 3
     assert not closer.in_doubt
