@@ -380,6 +380,54 @@ def test_a_dataset_with_drag_may_lose_energy(tmp_path):
     assert problems(write(reference.solve(scene), tmp_path / "drag")) == ""
 
 
+@pytest.fixture(scope="module", params=["confirmed", "enclosed"])
+def swing(request):
+    scene = {"id": "swing", "release": {"angle": "5", "azimuth": "30"}, "run": {"t_end": "40", "grid_step": "20"}}
+    return reference.solve(scene, level=request.param, digits=15, sections=["highest", "gate 30"])
+
+
+@pytest.fixture(scope="module")
+def written(swing, tmp_path_factory):
+    return write(swing, tmp_path_factory.mktemp("sections") / "swing")
+
+
+def test_a_dataset_with_sections_is_written_read_and_verified(swing, written):
+    golden = reference.load(written)
+    assert verify(written).problems == []
+    assert list(golden.sections) == list(swing.sections)
+    for word, passages in swing.sections.items():
+        assert golden.sections[word].exact("t") == pytest.approx(passages.table.exact("t"), abs=1e-13)
+        assert golden.sections[word].exact("vy") == pytest.approx(passages.table.exact("vy"), abs=1e-13)
+        ways = [f"{way:+d}" for way in passages.directions]
+        assert golden.sections[word].decimals("direction") == ways
+        assert golden.sections[word].decimals("k") == [str(k) for k in range(1, len(ways) + 1)]
+
+
+@pytest.mark.parametrize(
+    ("said", "section", "columns", "part"),
+    [
+        ("passage of highest: t is off by", "highest", ["t"], "1e-10"),
+        ("passage gate 30 2: the bob is not at the distance", "gate 30", ["x"], "1e-8"),
+        ("passage gate 30 2: the velocity is not along the sphere", "gate 30", ["vx"], "1e-8"),
+        ("passage gate 30 2: the invariant h differs", "gate 30", ["vx", "vy", "vz"], "1e-8"),
+        ("passages are not the motion's", "gate 30", ["direction"], "-2"),
+        ("rows are not those that the manifest counts", "gate 30", ["k"], "1"),
+    ],
+)
+def test_a_forged_passage_is_found(written, tmp_path, said, section, columns, part):
+    """The second of a section, with numbers that are off by a part of themselves."""
+    folder, name = Path(shutil.copytree(written, tmp_path / "swing")), "sections.csv"
+    sheet = read_files(folder).tables[name]
+    rows = [list(row) for row in sheet.rows]
+    row = next(row for row in rows if row[:2] == [section, "2"])
+    for i in map(sheet.header.index, columns):
+        changed = moved(row[i], Fraction(row[i]) * Fraction(part))
+        row[i] = f"{int(changed):+d}" if columns == ["direction"] else changed
+    text = "".join(",".join(row) + "\n" for row in (sheet.header, *rows))
+    seal(folder, json.loads((folder / MANIFEST).read_text()), read_files(folder).texts | {name: text})
+    assert said in problems(folder)
+
+
 def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(dataset, monkeypatch):
     monkeypatch.setattr(motion, "BASE_S", 0.0)
     monkeypatch.setattr(motion, "ROW_S", 0.0)
