@@ -35,8 +35,7 @@ def _times(files: Files) -> Iterator[str]:
     times = files.scene.exact.grid
     if [Fraction(row[0]) for row in files.tables["grid.csv"].rows] != times:
         yield "grid.csv: the times are not those of the scene"
-        return
-    if files.manifest.decimals["grid"]["t"] != exact_decimals(tuple(times)):
+    elif files.manifest.decimals["grid"]["t"] != exact_decimals(tuple(times)):
         yield f"{MANIFEST}: decimals of the grid's t do not follow from the scene"
 
 

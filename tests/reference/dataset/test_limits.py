@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
@@ -103,6 +104,14 @@ def test_transits_whose_bounds_touch_are_in_order_and_others_are_not(dataset):
     for second, found in (("8.0", False), ("7.9", True)):
         sheet = Sheet(("k", "t", "direction", "bound"), [rows[0], ("2", second, *rows[1][2:])], {})
         assert ("transits.csv: transits 1 and 2 are not in order" in _order(files, sheet)) is found
+
+
+def test_transits_alternate_unless_some_may_be_undecided(dataset):
+    files = read_files(dataset)
+    unsure = replace(files, manifest=files.manifest.model_copy(update={"transits": "undecided intervals"}))
+    sheet = Sheet(("k", "t", "direction", "bound"), [("1", "10", "1", "1"), ("2", "20", "1", "1")], {})
+    for made, found in ((files, True), (unsure, False)):
+        assert ("transits.csv: transits 1 and 2 do not alternate" in _order(made, sheet)) is found
 
 
 def test_transits_at_which_the_cord_is_nearly_level_pass(tmp_path):

@@ -137,6 +137,10 @@ WORDS = {
         lambda m: m["units"].update(t="h"), "units.t = h does not follow from the scene and the tables, which give s"),
     "other equations": (lambda m: m["equations"]["lines"].pop(), "equations.lines = "),
     "another command": (lambda m: m.update(command="rm -rf /"), "command does not follow"),
+    "another command of a proof": (
+        lambda m: (proved(m, "position_m", "0.1"), m.update(command="rm -rf /")), "command does not follow"),
+    "an id with a change that is none": (lambda m: m.update(id="paris+release.x=0.3"), "id = paris+release.x=0.3 does"),
+    "a scene without its site": (lambda m: m["scene"].pop("site"), "scene.site = None does not follow"),
     "another id": (lambda m: m.update(id="paris+site.latitude=0"), "id = paris+site.latitude=0 does not follow"),
     "another formulation": (lambda m: m["run"].update(formulation="guess"), "run.formulation = guess is none"),
     "a check in no formulation": (
@@ -252,6 +256,15 @@ def test_without_numba_thirty_bounds_are_found_row_by_row(dataset, monkeypatch, 
 
     forge(dataset, **{kind: change})
     assert problems(dataset)
+
+
+def test_a_time_with_more_digits_than_it_needs_is_found(dataset):
+    forge(
+        dataset,
+        grid=lambda rows, _: [row.__setitem__(0, f"{row[0]}.0") for row in rows],
+        manifest=lambda document: document["decimals"]["grid"].update(t=1),
+    )
+    assert problems(dataset) == "manifest.json: decimals of the grid's t do not follow from the scene"
 
 
 @pytest.mark.parametrize("column", range(1, 7))
