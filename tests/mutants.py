@@ -207,9 +207,12 @@ def main() -> None:
     def run(mutant: Mutant) -> str:
         folder = copies.get()
         try:
-            return outcome(folder, mutant, LONGER * cpu_s[mutant.tests] + SPARE_S)
+            what = outcome(folder, mutant, LONGER * cpu_s[mutant.tests] + SPARE_S)
         finally:
             copies.put(folder)
+        if what != "killed":
+            print(f"{what:9} {mutant}", flush=True)
+        return what
 
     with tempfile.TemporaryDirectory() as place, ThreadPoolExecutor(WORKERS) as pool:
         for i in range(WORKERS):
@@ -217,8 +220,6 @@ def main() -> None:
         cpu_s = {tests: cpu_of(tests, Path(place, "0")) for tests in dict.fromkeys(mutant.tests for mutant in every)}
         for mutant, what in zip(every, pool.map(run, every), strict=True):
             found[mutant.file, what] += 1
-            if what != "killed":
-                print(f"{what:9} {mutant}", flush=True)
     for file in sorted({file for file, _ in found}):
         print(f"{file:45}", *(f"{found[file, what]:3} {what}" for what in ("killed", "timeout", "survived")))
     survived = sum(found[file, what] for file, what in found if what == "survived")

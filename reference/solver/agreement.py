@@ -33,7 +33,7 @@ from .pilot import MARGIN_BITS
 
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
-INSTANT = Fraction(1, 1 << 20)  # of the fastest rate's radian: a form's second rate is a difference over it
+INSTANT = Fraction("1e-6")  # of the fastest rate's radian: a form's second rate is a difference over it
 ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here
 
 

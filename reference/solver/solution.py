@@ -209,8 +209,8 @@ def transit_decimals(solution: Solution) -> dict[str, int]:
 
 
 def section_decimals(solution: Solution) -> dict[str, int]:
-    """Return those of the passages of sections: as in the grid, and t by the latest of all."""
-    latest = max((passages.table.largest()["t"] for passages in solution.sections.values()), default=Fraction(0))
+    """Return those of the passages of sections, of which there are some: as in the grid, and t by the latest of all."""
+    latest = max(passages.table.largest()["t"] for passages in solution.sections.values())
     return {"t": decimals_for(latest, solution.scene.run.digits), **grid_decimals(solution)}
 
 

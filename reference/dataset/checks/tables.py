@@ -35,8 +35,7 @@ def _times(files: Files) -> Iterator[str]:
     times = files.scene.exact.grid
     if [Fraction(row[0]) for row in files.tables["grid.csv"].rows] != times:
         yield "grid.csv: the times are not those of the scene"
-        return
-    if files.manifest.decimals["grid"]["t"] != exact_decimals(tuple(times)):
+    elif files.manifest.decimals["grid"]["t"] != exact_decimals(tuple(times)):
         yield f"{MANIFEST}: decimals of the grid's t do not follow from the scene"
 
 
@@ -55,10 +54,9 @@ def _digits(files: Files) -> Iterator[str]:
     sheet, manifest = files.tables["grid.csv"], files.manifest
     for name in GRID:
         largest, bound = max(abs(row[0]) for row in sheet.numbers((name,))), manifest.bound("grid", name)
-        if largest > SIGNIFICANT * bound:
-            around = {decimals_for(value, manifest.digits) for value in (largest - bound, largest + bound)}
-            if manifest.decimals["grid"][name] < min(around):
-                yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
+        fewest = decimals_for(largest + bound, manifest.digits)
+        if largest > SIGNIFICANT * bound and manifest.decimals["grid"][name] < fewest:
+            yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
 
 
 def _doubles(files: Files, kind: str) -> Iterator[str]:

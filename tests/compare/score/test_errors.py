@@ -42,6 +42,7 @@ def test_an_error_that_was_put_in_is_measured(golden, truth):
     assert made.end_m == pytest.approx(math.sqrt(8e-6 + wave[-1] ** 2), rel=1e-9)
     assert np.abs(made.components["x"] - wave).max() < 1e-15
     assert made.worst[0] == int(np.argmax(np.abs(wave)))
+    assert replace(made, position=np.zeros_like(TIMES)).rms_m == 0
 
 
 def test_the_worst_component_of_the_worst_row_is_named(golden, truth):
@@ -81,6 +82,14 @@ def test_the_growth_of_an_error_is_its_power_of_time(golden, truth, power):
     assert made.growth_exponent == pytest.approx(power, abs=0.1)
 
 
+def test_growth_is_fitted_to_the_largest_errors_so_far_at_forty_times(golden, truth):
+    """Only in the last row the error is a hundred times as large."""
+    t, late = np.geomspace(1.0, 1000.0, 3901), np.append(np.ones(3900), 100.0)
+    made = replace(trajectory_errors(candidate(truth), truth, golden), t=t, position=late)
+    expected = np.polyfit(np.linspace(0.0, np.log(1000.0), 40), np.log([1.0] * 39 + [100.0]), 1)[0]
+    assert made.growth_exponent == pytest.approx(expected, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("times", "found"), [([1, 2, 3, 4], True), ([1, 2, 3, 3.9], False), ([0, 1, 2, 4], False), ([0], False)]
 )
@@ -101,7 +110,7 @@ def test_a_component_is_relative_if_its_truth_is_known_and_an_error_is_at_least_
     end, speed = truth.states.copy(), trajectory_errors(candidate(truth), truth, golden)
     bound = 1e-6
     known = [*[bound] * 3, *[bound * speed.speed_m_s / speed.amplitude_m] * 3]
-    end[-1] = [1e-5, 0.5e-6, 0.0, 2 * known[3], 0.5 * known[4], 0.0]
+    end[-1] = [1e-5, bound, 0.0, 2 * known[3], 0.5 * known[4], 0.0]
     made = replace(speed, truth=replace(truth, states=end), bound_m=bound)
     assert made.scd == pytest.approx(-math.log10(0.5))  # vx: its known part over twice that
     assert made.mescd == pytest.approx(-math.log10(max(bound / (speed.amplitude_m + 0), known[4] / speed.speed_m_s)))
@@ -162,6 +171,8 @@ def test_a_turn_of_the_swing_plane_is_told_where_there_are_positions(golden, tru
     assert made.swing((0.0, 0.0)).largest_turn == pytest.approx(0.1, rel=1e-6)
     alone = trajectory_errors(Candidate.of_transits("transits", TIMES), dense(golden, TIMES[1:]), golden)
     assert alone.swing((0.0, 0.0)).largest_turn is None
+    rate = swing_rate(golden.scene, alone.speed_m_s)
+    assert alone.position == pytest.approx(np.abs(alone.truth.states[:, 3]) / rate)
 
 
 def test_drifts_of_a_good_run_are_rounding_and_of_a_bad_one_what_was_put_in():

@@ -23,6 +23,7 @@ from compare.score.judge import (
     _reading,
     _rest,
     _transits,
+    _truth,
     judge,
     unjudged_transits,
 )
@@ -617,6 +618,17 @@ def test_a_named_model_passes_where_that_is_asked_for(tmp_path, golden, states, 
     modelled = replace(wrong, explanation=Explanation(model=Model("still", "still air", 1e-9, 1e-3)))
     assert modelled.passes is as_model
     assert modelled.grade == "agrees as the model: still air"
+    assert ("--as-model takes that as enough" in str(modelled)) is not as_model
+    none = TransitErrors(np.empty(0), np.empty(0), [], [], np.empty(0))
+    assert "--as-model" not in str(replace(modelled, transits=none))
+
+
+def test_the_truth_at_a_transit_is_that_of_the_function_where_there_is_one(monkeypatch, golden):
+    monkeypatch.setattr("compare.score.judge.truth_at", lambda *_: "solved")
+    for at, expected in (("function", "function"), (None, "solved")):
+        monkeypatch.setattr("compare.score.judge.by_function", lambda *_, at=at: at)
+        assert _truth(golden, np.ones(1)) == expected
+    assert _truth(replace(golden, function=None), np.ones(1)) == "solved"
 
 
 def test_columns_in_the_place_of_the_scene_are_refused():
@@ -702,6 +714,10 @@ def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_i
     assert isinstance(score.golden, Solution) and score.golden.run.number == "long_double"
     assert (score.transits.matched, score.transits.extra) == (len(true), [10.0])
     assert "input floor" not in str(score)
+    rough = judge(rows, path, explain=False).errors.bound_m
+    for part, enough in ((0.9, False), (1.1, True)):  # a bound of a thousandth of the tolerance is enough
+        known = judge(rows, path, tolerance=part * 1000 * rough, explain=False).errors.bound_m
+        assert (known == rough) is enough
     closer = judge(rows, path, tolerance=score.errors.max_m, explain=False)
     assert closer.errors.bound_m < score.errors.bound_m / 3
     assert not closer.in_doubt

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace as Made
 
 import numpy as np
@@ -10,9 +11,9 @@ import pytest
 
 from compare.candidates.candidate import Deviation
 from compare.score.explanation.findings import Explanation, Model
-from compare.score.scored import Since
+from compare.score.scored import Since, Worst
 from compare.score.transit_matching import TransitErrors
-from compare.score.verdict import lines, percent
+from compare.score.verdict import document, lines, percent
 
 WIND = Explanation(causes=(Deviation("wind", "leaves out the wind", 0.25, "input"),), corrected_m=1e-9)
 RUN = Made(id="paris", run=Made(t_end="86400"), inputs="binary64")
@@ -106,6 +107,34 @@ def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
     said = list(lines(score(explanation=model)))
     assert "As that model it is exact to 1e-09 m; against the full Lagrangian it is 0.25 m off:" in said
     assert not any(line.startswith("As that model") for line in lines(score()))
+
+
+def test_the_document_says_what_was_measured_and_null_what_was_not():
+    errors = Made(**vars(ERRORS) | {"mescd": 0.5})
+    measured = {
+        "errors": errors, "problem": {}, "transits": None,
+        "worst": Worst(10.0, "y", 0.25, 0.252, 0.002), "worst_of_each": {"x": Worst(0.0, "x", 1.0, 2.0, 1.0)},
+        "candidate": Made(name="mine.csv", conventions=[Made(id="ms", text="t is in ms")]),
+        "explanation": replace(WIND, model=Model("still", "still air", 1e-9, 0.25)),
+    }  # fmt: skip
+    found = document(score(**measured))
+    picked = ("rows", "covered_s", "error_over_floor", "swing_plane_error_deg", "phase_error_s", "h_drift_m2_s2")
+    assert [found[key] for key in picked] == [3, [0.0, 3600.0], 2e-3 / 1e-12, 1.0, 0.5, 1e-9]
+    assert (found["worst"]["component"], found["worst_of_each"]["x"]["got"]) == ("y", 2.0)
+    assert found["model"] == vars(Model("still", "still air", 1e-9, 0.25))
+    assert (found["corrected"], found["timing"]["runs"]) == ({"max_error_m": 1e-9}, 3)
+    (cause,) = found["causes"]
+    assert cause == {"id": "wind", "text": "your program leaves out the wind", "size_m": 0.25} | cause
+    assert found["conventions"] == [{"id": "ms", "text": "t is in ms"}]
+    none = document(
+        score(
+            **measured | {"explanation": Explanation(), "timing": None}, input_floor_m=0.0, drifts={},
+            swing=Made(largest_turn=None, largest_delay=None), since=Made(text="better"),
+        )
+    )  # fmt: skip
+    unknown = (*picked[2:], "model", "corrected", "slip", "diagnosis", "transits", "length_drift_m")
+    assert [none[key] for key in unknown] == [None] * len(unknown)
+    assert (none["baseline"], none["causes"], "timing" in none) == ({"text": "better"}, [], False)
 
 
 @pytest.mark.parametrize(

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import json
 import shutil
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from forgery import forge, moved, seal
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 from small_scenes import make_scene
 
 import reference
-from reference.dataset.checks.manifest_check import _bounds
+from reference.dataset.checks.manifest_check import _bounds, _sections
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.golden import read_files
-from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest, differences
+from reference.dataset.manifest import ALWAYS, MANIFEST, Count, Decimals, Manifest, Name, Text, differences
 from reference.dataset.place import MAX_ID, dataset_id
 from reference.dataset.sheets import Sheet
 from reference.dataset.vectors import _closest_pair
@@ -51,11 +52,24 @@ def test_what_is_too_large_is_not_read(dataset, monkeypatch):
     with (dataset / "grid.csv").open("r+b") as stream:
         stream.truncate(1 << 40)
     assert f"grid.csv: {1 << 40} bytes, the manifest says" in problems(dataset)
-    with (dataset / MANIFEST).open("r+b") as stream:
-        stream.truncate((1 << 20) + 1)
-    names.clear()
-    assert "1048577 bytes, 1048576 are the most" in problems(dataset)
-    assert not {"grid.csv", MANIFEST} & {*names}
+    for more in (1, 0):
+        with (dataset / MANIFEST).open("r+b") as stream:
+            stream.truncate((1 << 20) + more)
+        names.clear()
+        assert ("1048577 bytes, 1048576 are the most" in problems(dataset)) is (MANIFEST not in names) is bool(more)
+    assert "grid.csv" not in names
+
+
+@pytest.mark.parametrize(
+    ("kind", "least", "most"),
+    [(Count, 0, 10**10), (Decimals, 0, 2000), (Name, "", "x" * 400), (Text, "", "x" * 20_000)],
+)
+def test_what_a_manifest_counts_and_says_has_a_least_and_a_most(kind, least, most):
+    check = TypeAdapter(kind).validate_python
+    assert (check(least), check(most)) == (least, most)
+    for beyond in (most + "x",) if isinstance(most, str) else (least - 1, most + 1):
+        with pytest.raises(ValidationError):
+            check(beyond)
 
 
 def sealed(dataset, name, old, new):
@@ -75,9 +89,12 @@ def test_a_dataset_needs_the_files_of_every_one_and_no_others(dataset):
             Manifest.model_validate({**document, "files": {other: files[other] for other in ALWAYS if other != name}})
 
 
-@pytest.mark.parametrize(("first", "last", "outside"), [("-0.9", "9", False), ("-1", "9", True), ("1", "1e5", True)])
+@pytest.mark.parametrize(
+    ("first", "last", "outside"),
+    [("-0.9", "9", False), ("-1", "9", True), ("1", "302", False), ("1", "302.1", True)],
+)
 def test_transits_lie_after_the_release_and_up_to_the_end_as_far_as_their_bounds_tell(dataset, first, last, outside):
-    sheet = Sheet(("k", "t", "direction", "bound"), [("1", first, "1", "1"), ("2", last, "-1", "1")], {})
+    sheet = Sheet(("k", "t", "direction", "bound"), [("1", first, "1", "1"), ("2", last, "-1", "2")], {})
     assert any("outside (0, t_end]" in problem for problem in _order(read_files(dataset), sheet)) is outside
 
 
@@ -86,7 +103,15 @@ def test_transits_whose_bounds_touch_are_in_order_and_others_are_not(dataset):
     rows = [("1", "10.0", "1", "1"), ("2", "8.0", "-1", "1")]
     for second, found in (("8.0", False), ("7.9", True)):
         sheet = Sheet(("k", "t", "direction", "bound"), [rows[0], ("2", second, *rows[1][2:])], {})
-        assert any("not in order" in problem for problem in _order(files, sheet)) is found
+        assert ("transits.csv: transits 1 and 2 are not in order" in _order(files, sheet)) is found
+
+
+def test_transits_alternate_unless_some_may_be_undecided(dataset):
+    files = read_files(dataset)
+    unsure = replace(files, manifest=files.manifest.model_copy(update={"transits": "undecided intervals"}))
+    sheet = Sheet(("k", "t", "direction", "bound"), [("1", "10", "1", "1"), ("2", "20", "1", "1")], {})
+    for made, found in ((files, True), (unsure, False)):
+        assert ("transits.csv: transits 1 and 2 do not alternate" in _order(made, sheet)) is found
 
 
 def test_transits_at_which_the_cord_is_nearly_level_pass(tmp_path):
@@ -210,3 +235,33 @@ def test_a_bound_is_from_half_a_unit_to_one_of_the_last_digit(kind, proved, righ
         bounds = {"grid": {}, "transits": {}} | {kind: {"x": bound}}
         claims = SimpleNamespace(bounds=SimpleNamespace(**bounds), decimals={kind: {"x": 3}}, enclosure=proved)
         assert bool([*_bounds(claims)]) is (bound in wrong), bound
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({}, ""),
+        ({"words": None}, "sections are not those of the scene"),
+        ({"words": ("lowest", "highest")}, "sections are not those of the scene: lowest, highest"),
+        ({"possible": ("highest",)}, "sections are not those of the scene"),
+        ({"rows": [("highest", "1"), ("lowest", "1")]}, "rows are not those"),
+        ({"rows": [("highest", "0"), ("highest", "1"), ("lowest", "0")]}, "rows are not those"),
+        ({"bound": "4.9e-4"}, "sections.bounds.x = 4.9e-4 is less than half a unit"),
+    ],
+)
+def test_the_passages_of_a_dataset_are_those_of_its_words_counted_from_1_with_a_bound_of_half_a_unit(change, said):
+    made = {"words": ("highest", "lowest"), "possible": ("highest", "lowest"), "bound": "5e-4"}
+    made |= {"rows": [("highest", "1"), ("highest", "2"), ("lowest", "1")]} | change
+    sections = SimpleNamespace(
+        counts={"highest": 2, "lowest": 1}, possible=dict.fromkeys(made["possible"]), decimals={"x": 3},
+        bounds={"x": made["bound"]},
+    )  # fmt: skip
+    files = SimpleNamespace(
+        manifest=SimpleNamespace(sections=sections),
+        scene=SimpleNamespace(run=SimpleNamespace(sections=made["words"])),
+        tables={"sections.csv": Sheet(("section", "k"), made["rows"], {})},
+    )
+    found = [*_sections(files)]
+    assert len(found) == bool(said) and said in "".join(found)
+    files.manifest.sections = None
+    assert [*_sections(files)] == []

@@ -16,13 +16,13 @@ from small_scenes import make_scene
 import reference
 from reference.dataset.checks import motion, physics, tables
 from reference.dataset.golden import read_files
-from reference.dataset.sheets import Sheet
+from reference.dataset.sheets import NUMBERS, Sheet, binary64_sheet
 from reference.engines.registry import engines
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
 from reference.model.start import Start
 from reference.numbers.columns import GRID, POSITION, VELOCITY
-from reference.numbers.precision import context, fixed_decimal
+from reference.numbers.precision import bits_of, context, fixed_decimal
 from reference.numbers.table import Table, integers
 
 ROW, WIDER = 3, 10**9  # bounds so wide that rounding, of which they consist, is nothing beside them
@@ -86,7 +86,9 @@ def exact(value):
 def test_the_distance_from_the_pivot_may_be_off_by_its_corners(files, kind, part, found):
     (x, y, z), bounds = state(files, kind, ROW, ("x", "y", "z"))
     allowed = largest(lambda x, y, z: x * x + y * y + z * z, (x, y, z), bounds)
-    assert said(with_change(files, kind, "z", part * allowed / (2 * z)), "the bob is not at the distance") is found
+    row = {"grid": "grid.csv: t = 180", "transits": "transits.csv: transit 4"}[kind]
+    moved = with_change(files, kind, "z", part * allowed / (2 * z))
+    assert said(moved, f"{row}: the bob is not at the distance") is found
 
 
 @pytest.mark.parametrize(("part", "found"), [(Fraction(99, 100), False), (Fraction(101, 100), True)])
@@ -198,7 +200,7 @@ def test_the_jerk_is_bounded_by_the_rates_of_the_largest_speed_of_the_swing_of_r
     )
     v, w = math.sqrt(1.5**2 + 2 * (0.4 / 2 * 5 / 2 + 1e-6)), 0.012
     found = tables.largest_jerk(replace(files, scene=scene))
-    assert float(found) == pytest.approx(8 * 2 * (5 / 2 + v**2 + w**2) * (v + w), rel=1e-6)
+    assert float(found) == pytest.approx(8 * 2 * (5 / 2 + v**2 + w**2) * (v + w), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["over_top", "conical", "damped", "fast_pole", "weightless", "overdamped", "hard"])
@@ -265,8 +267,25 @@ def in_a_swing(files, state, bounds, gravity="5"):
 def test_h_is_taken_on_the_sphere_on_the_side_where_the_bob_is(files, z):
     """With x = 0.6 it is at ±0.8, and there vz = -0.6/z."""
     (h,) = in_a_swing(files, ("0.6", "0", z, "1", "2", "9"), [1] * 6).values(physics._invariant)
-    side = math.copysign(1, float(z))
-    assert float(h) == pytest.approx((1 + 4 + 0.75**2) / 2 + 5 * 0.8 * side, rel=1e-12)
+    exact = (5 + Fraction(3, 4) ** 2) / 2 + (4 if float(z) > 0 else -4)
+    assert abs(h - exact) < Fraction(1, 4 ** bits_of(files.manifest.digits))
+
+
+def test_beyond_the_sphere_nothing_tells_z_and_vz_is_that_of_the_row(files):
+    (h,) = in_a_swing(files, ("0.9", "0.9", "0.5", "1", "2", "3"), [1] * 6).values(physics._invariant)
+    assert h == 7
+
+
+@pytest.mark.parametrize("y", [0, 1])
+def test_a_row_may_leave_the_sphere_and_its_velocity_too_by_what_the_bounds_leave_to_the_last_bit(files, y):
+    """25 is off 4² by 9, as 2·4·1 + 1² allows; and (3, 0, 4)·(3, 0, 1) is 13, as four bounds of 1 allow."""
+    for bounds, found in (
+        ([0, 0, 1, 0, 0, 0], physics._Moments.off_the_sphere),
+        ([1, 0, 1, 1, 0, 1], physics._Moments.not_along_the_sphere),
+    ):
+        columns = [integers([part]) for part in (3, y, 4, 3, y, 1)]
+        made = physics._Moments(files, ["row"], columns, 1, bounds, 4, None)
+        assert len(list(found(made))) == y, found
 
 
 @pytest.mark.parametrize(
@@ -291,6 +310,13 @@ def test_h_may_be_off_by_its_slopes_along_the_sphere(files, state, gravity, slop
     assert float(allowed) == pytest.approx(1.05e-18 * sum(slopes), rel=1e-3, abs=0)
 
 
+def test_h_at_a_transit_with_a_nearly_level_cord_may_be_off_by_the_slope_of_vz_over_z(files):
+    """A millionth of the cord below the pivot: h = (y vy)²/(2 z²) + …, and its slope is 4e6 m/s²."""
+    made = in_a_swing(files, ("0", "1", "-1e-6", "0", "2e-6", "0"), [0, 0, 1, 0, 0, 0])
+    (allowed,) = replace(made, transits=files.tables["transits.csv"]).allowed(physics._energy)
+    assert float(allowed) == pytest.approx(1.05e-18 * 4e6, rel=0.03, abs=0)
+
+
 @pytest.mark.parametrize(("bound", "apart", "found"), [("0.5", "0", 0), ("0.4", "0", 12), ("0.25", "0.25", 0)])
 def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_apart_to_the_last_bit(
     bound, apart, found
@@ -311,6 +337,20 @@ def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_
     assert compared("0.75") is None
 
 
+@pytest.mark.parametrize("transits", [True, False])
+def test_two_runs_with_other_directions_of_transits_or_of_passages_do_not_decide(transits):
+    states = Table(GRID, 0, [(0,) * 6])
+    scene = SimpleNamespace(exact=SimpleNamespace(grid=[Fraction(0)]))
+    files = SimpleNamespace(scene=scene, tables={"sections.csv": Sheet((), [], {})}, manifest=None)
+
+    def found(*directions):
+        own = {"transits": states, "directions": directions} if transits else {"transits": None}
+        passages = {"highest": (states, [-1]), "lowest": (states, directions)}
+        return SimpleNamespace(grid=states, plan=SimpleNamespace(times=[Fraction(0)]), passages=passages, **own)
+
+    assert motion._compared(files, found(1, -1), found(-1, 1)) is None
+
+
 @pytest.mark.parametrize(("beyond", "refuted"), [(0, False), (1, True)])
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_possible_transit_is_refuted_where_xdot_cannot_come_near_zero_to_the_last_bit(
@@ -319,33 +359,86 @@ def test_a_possible_transit_is_refuted_where_xdot_cannot_come_near_zero_to_the_l
     """From 1 to 5 s, with 3 m/s² in the middle and a jerk of 5 m/s³, xdot changes by 2·3 + 5·2²/2 m/s and is 1 off."""
     limbs, bits = engines()["limbs"], 60
     middles = Table(("vx", "ax"), bits, [(0, 0), (side * ((17 << bits) + beyond), -3 << bits)])
-    monkeypatch.setattr(type(limbs), "run", lambda *_: SimpleNamespace(grid=middles))
+    asked = []
+    monkeypatch.setattr(type(limbs), "run", lambda _, plan: asked.append(plan) or SimpleNamespace(grid=middles))
     monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(5))
     part = SimpleNamespace(from_s="1", to_s="5", parity="even")
-    manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, motion.GRAZES))
+    manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, 8))
     plan, later = limbs.plan(files.scene.exact, 110, (Fraction(0),), True), Table(("t", "ax"), 0, [(6, 1)])
     outside, problems = motion._outside_intervals(SimpleNamespace(manifest=manifest), plan, later)
     assert (outside, bool(problems)) == ([0], refuted)
+    assert [(plan.times, plan.transits) for plan in asked] == [((0, 3), False)]
 
 
-@pytest.mark.parametrize(("slope", "refuted"), [(4, True), (3, False)])
-def test_a_possible_transit_is_refuted_by_a_zero_that_xdot_surely_crosses(files, monkeypatch, slope, refuted):
-    """At 3 s xdot is zero with 1/4 m/s² or 3/16 m/s²; it surely crosses above the root of 1/20, near times jerk."""
+@pytest.mark.parametrize(
+    ("slopes", "parity", "refuted"),
+    [([5], "odd", True), ([4], "odd", False), ([4], "even", True), ([5, 4], "unknown", True), ([4, 4], "even", False),
+     ([4, 4], "odd", True), ([4, 4, 4], "odd", False), ([4], "unknown", False)],
+)  # fmt: skip
+def test_a_possible_transit_is_refuted_by_a_zero_that_xdot_surely_crosses_and_by_another_parity(
+    files, monkeypatch, slopes, parity, refuted
+):
+    """Zeros of xdot with 1/4 m/s² or 5/16 m/s²; it surely crosses above the root of 1/16, near times jerk."""
     limbs = engines()["limbs"]
-    middles = Table(("vx", "ax"), 4, [(0, 0), (0, slope)])
+    middles = Table(("vx", "ax"), 4, [(0, 0), (0, 4)])
     monkeypatch.setattr(type(limbs), "run", lambda *_: SimpleNamespace(grid=middles))
-    monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(1, 20))
-    part = SimpleNamespace(from_s="1", to_s="5", parity="odd")
-    manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, motion.GRAZES))
+    monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(1, 16))
+    part = SimpleNamespace(from_s="1", to_s="5", parity=parity)
+    manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, 8))
     plan = limbs.plan(files.scene.exact, 110, (Fraction(0),), True)
     outside, problems = motion._outside_intervals(
-        SimpleNamespace(manifest=manifest), plan, Table(("t", "ax"), 4, [(3 << 4, slope)])
+        SimpleNamespace(manifest=manifest), plan, Table(("t", "ax"), 4, [(k << 4, s) for k, s in enumerate(slopes, 1)])
     )
     assert (outside, bool(problems)) == ([], refuted)
 
 
 def test_vz_follows_from_the_others_where_z_is_deep_in_a_row_and_where_it_is_not_0_in_a_transit():
+    """And all of a state is known but that of a transit with z within its bound."""
     z = np.array([0, 1, 250, 251, -1000], dtype=object)
     for transits, follows in ((None, [False, False, False, True, True]), ("a sheet", [False, True, True, True, True])):
-        made = physics._Moments(None, [], [None, None, z], 1, [], 1000, transits)
+        made = physics._Moments(None, [], [None, None, z], 1, [9, 9, 1], 1000, transits)
         assert made._follows.tolist() == follows
+        assert made._whole.tolist() == [transits is None] * 2 + [True] * 3
+
+
+def test_the_time_that_a_run_takes_is_told_by_the_fastest_rate_and_the_largest_speed(files, monkeypatch):
+    """Rates of 2, 0.5 and 0.25 /s, and 3 m/s on a cord of 2 m, for 1000 s."""
+    scene = make_scene(
+        pendulum={"length": "2", "drag": "0.25"},
+        site={"rotation_rate": "0.5", "gravity": "8", "gravity_is": "effective"},
+        run={"t_end": "1000", "grid_step": "500"},
+    )
+    grid = Sheet(("vx", "vy", "vz"), [("0", "1", "-1"), ("1", "-1.5", "0.5")], {})
+    own = replace(files, scene=scene, tables={"grid.csv": grid})
+    assert motion._steps(own) == 4250
+    monkeypatch.setattr(motion.function, "moments", lambda _: [])
+    speeds = SimpleNamespace(vx=np.array([0.0, 1.0]), vy=np.array([1.0, -1.5]), vz=np.array([-1.0, 0.5]))
+    function = None, SimpleNamespace(at=lambda _: speeds)
+    assert motion._steps(replace(own, function=function, manifest=SimpleNamespace(alone=True))) == 4250
+
+
+def test_the_most_bits_are_tried_once(files, monkeypatch):
+    precs = []
+    monkeypatch.setattr(motion, "_first_prec", lambda _: motion.MOST_PREC)
+    monkeypatch.setattr(motion, "_run", lambda _files, prec, *_: precs.append(prec))
+    monkeypatch.setattr(motion, "_compared", lambda *_: [])
+    assert motion.problems(files) == ([], [])
+    assert precs == [motion.MOST_PREC - motion.LIMB_BITS, motion.MOST_PREC]
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "own", "column", "bound"),
+    [("grid", "t", "9", "9", 0.0), ("grid", "x", "9", "0.25", 0.25), ("transits", "t", "0.25", "9", 0.25),
+     ("transits", "x", "9", "0.25", 0.25)],
+)  # fmt: skip
+def test_a_double_is_that_of_a_number_within_the_bound_of_its_column_or_of_its_own_time(kind, name, own, column, bound):
+    for double, found in (
+        *((end, False) for end in (1 - bound, 1 + bound)),
+        *((end, True) for end in (math.nextafter(1 - bound, 0), math.nextafter(1 + bound, 2))),
+    ):
+        doubles = {other: double if other == name else 1.0 for other in NUMBERS[kind]}
+        plain = Sheet((*doubles, "bound"), [(*("1.0" for _ in doubles), own)], {})
+        manifest = SimpleNamespace(bound=lambda *_: Fraction(column))
+        both = {"": plain, ".binary64": binary64_sheet(plain, {other: [number] for other, number in doubles.items()})}
+        files = SimpleNamespace(manifest=manifest, tables={f"{kind}{word}.csv": sheet for word, sheet in both.items()})
+        assert len(list(tables._doubles(files, kind))) == found, double

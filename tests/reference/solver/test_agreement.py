@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from types import SimpleNamespace
 
 import pytest
 from mpmath import findroot, mpf, sqrt
@@ -15,12 +16,19 @@ from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.force import acceleration, force, tension
+from reference.model.sections import form_of
 from reference.model.start import Start
 from reference.numbers.columns import GRID, SECTION, TRANSITS
-from reference.numbers.precision import DOUBLE, real
+from reference.numbers.precision import DOUBLE, real, to_fraction, to_mpf
 from reference.numbers.table import Table
 from reference.solver import solve as solver
-from reference.solver.agreement import Agreement, bits_lacking, with_passage_errors, with_transit_errors
+from reference.solver.agreement import (
+    Agreement,
+    bits_lacking,
+    passages_lacking,
+    with_passage_errors,
+    with_transit_errors,
+)
 from reference.solver.pilot import MARGIN_BITS
 
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
@@ -160,6 +168,78 @@ def test_the_errors_of_transits_are_the_sums_that_the_module_states():
         }
         for name, value in expected.items():
             assert float(table.bound(name)[row]) == pytest.approx(float(value), rel=1e-6), name
+
+
+@cache
+def passages_in_double():
+    words = ("gate 30", "gate 70@0", "turn 50", "highest")
+    return run(Plan(TURNING.exact, "spin", DOUBLE, (Fraction(0), Fraction(10)), transits=False, sections=words))
+
+
+def form_and_rates(word, state):
+    """What errors the form has for those of 1, its first and second rate, and the rates of the state, in SI units."""
+    start = Start.of(TURNING.exact, 200)
+    form, k, h = form_of(word, start), start.k, start.ctx.mpf("1e-30")
+    n, v = ([to_mpf(value, start.ctx) / k.length for value in part] for part in state)
+    acc = acceleration(n, v, k)
+    n2, v2 = ([q + h * p for q, p in zip(part, rate, strict=True)] for part, rate in ((n, v), (v, acc)))
+    first, later = (
+        sum(p * q for p, q in zip((*form.a, *form.b), (*v, *a), strict=True))
+        for v, a in ((v, acc), (v2, acceleration(n2, v2, k)))
+    )
+    parts = dict(zip(GRID, map(abs, (*form.a, *form.b)), strict=True))
+    rates = {name: abs(rate) * k.length for name, rate in zip(GRID, (*v, *acc), strict=True)}
+    return parts, abs(first) * k.length, abs(later - first) / h * k.length, rates
+
+
+@pytest.mark.parametrize("word", ["gate 30", "gate 70@0", "turn 50", "highest"])
+def test_the_errors_of_passages_follow_from_the_errors_of_the_form_and_its_rates(word):
+    """And a time is unknown where its error may be as large as a quarter of the first rate over the second."""
+    made = passages_in_double()
+    table, _ = made.passages[word]
+    ratios = dict(zip(GRID, (3, 5, 7, 2, 11, 13), strict=True))
+    assert len(table) > 3
+    for row, state in enumerate(zip(*(table.exact(name) for name in GRID), strict=True)):
+        parts, slope, bend, rates = form_and_rates(word, (state[:3], state[3:]))
+        late = 2 * sum(ratios[name] * part for name, part in parts.items()) / slope  # for one unit
+        largest = slope / 4 / bend / late
+        for unit in (largest / 10**5, largest * 0.9999, largest * 1.0001):
+            errors = {name: to_fraction(ratio * unit) for name, ratio in ratios.items()}
+            found = with_passage_errors(made, errors, word, None)
+            if unit > largest:
+                assert {found.bound(name)[row] for name in SECTION} == {10**9}
+                continue
+            expected = {"t": late * unit} | {n: (ratios[n] + rates[n] * late) * unit for n in GRID}
+            for name, value in expected.items():
+                assert float(found.bound(name)[row]) == pytest.approx(float(value), rel=1e-5), name
+
+
+def test_no_error_of_a_time_is_below_the_last_bit_of_the_run():
+    tiny = dict.fromkeys(GRID, Fraction(1, 10**40))
+    rough, _, _ = transits_in_double("short cord")
+    passages = passages_in_double()
+    for table in (with_transit_errors(rough, tiny, None), with_passage_errors(passages, tiny, "highest", None)):
+        for t, bound in zip(table.exact("t"), table.bound("t"), strict=True):
+            assert float(bound / t) == pytest.approx(2.0**-53, rel=1e-6)
+
+
+def test_passages_lack_bits_where_directions_differ_or_a_time_has_not_its_digits():
+    """Five digits of 500 s are two after the point, and 1/256 s is more than a quarter of a unit of the last."""
+    one = {word: (Table(SECTION, 8, [(t << 8, *[0] * 6)]), [1]) for word, t in (("highest", 5), ("lowest", 500))}
+    plan = SimpleNamespace(number=SimpleNamespace(prec=90))
+
+    def lacking(times=0, **ways):
+        other = {
+            word: (replace(table, values=[(table.values[0][0] + times, *[0] * 6)]), ways.get(word, [1]))
+            for word, (table, _) in one.items()
+        }
+        missing, apart = passages_lacking(one, SimpleNamespace(plan=plan, passages=other), dict.fromkeys(GRID, 9), 5)
+        return missing, {word: float(table.largest()["t"]) for word, table in apart.items()}
+
+    assert lacking() == (0, {"highest": 0, "lowest": 0})
+    assert lacking(1) == (bits_lacking({"t": Fraction(1, 256)}, {"t": 2}), {"highest": 1 / 256, "lowest": 1 / 256})
+    assert lacking(highest=[-1]) == (45, {"lowest": 0})
+    assert lacking(lowest=[-1]) == (45, {"highest": 0})
 
 
 @pytest.mark.parametrize("error", [Fraction(1, 10**40), Fraction(1, 10**16)])

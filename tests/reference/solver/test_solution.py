@@ -13,15 +13,18 @@ import pytest
 
 import reference
 from reference import InputError
-from reference.numbers.columns import GRID, STATE, TRANSITS
+from reference.numbers.columns import GRID, SECTION, STATE, TRANSITS
+from reference.numbers.table import Table
 from reference.solver.solution import (
     SAMPLED,
     CrossCheck,
+    Passages,
     Proof,
     UndecidedRounding,
     check_decided,
     exact_decimals,
     grid_decimals,
+    section_decimals,
     transit_decimals,
 )
 
@@ -82,6 +85,23 @@ def test_the_motion_at_any_time_takes_a_golden_function(solution):
             without.at(1.0)
     at = replace(solution, proof=replace(proof, function=made)).at([0.0, 1.5])
     assert (at.x.tolist(), at.vz.tolist()) == ([-1.0, 0.5], [5.0, 5.0])
+
+
+@pytest.mark.parametrize("words", [("early", "late"), ("late", "early")])
+def test_passages_have_the_decimals_of_the_grid_and_those_of_the_latest_time(solution, words):
+    rows = {"early": (1, *[0] * 6), "late": (57, *[0] * 6)}
+    sections = {word: Passages(Table(SECTION, 0, [rows[word]]), [1]) for word in words}
+    assert section_decimals(replace(solution, sections=sections)) == grid_decimals(solution) | {"t": 4}
+
+
+def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(solution, monkeypatch):
+    monkeypatch.setattr("reference.solver.solution.swing_of", lambda table, inputs: (table, inputs))
+    table = Table(SECTION, 0, [])
+    decided, unsure = Passages(table, []), Passages(table, [], ((SURE, OPEN, "even"),))
+    for sections, swing in (
+        ({"lowest": decided}, None), ({"highest": unsure}, None), ({"highest": decided}, (table, solution.scene.exact)),
+    ):  # fmt: skip
+        assert replace(solution, sections=sections).swing == swing
 
 
 def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
