@@ -24,7 +24,7 @@ DO = {
     "effective_gravity": "If your g is the measured one, say `--set site.gravity_is=effective`; else add the force.",
     "no_tilt": "Add the force's part along y: −Ω² R cos φ sin φ.",
     "no_lift": "Add the force's part along z: Ω² R cos² φ.",
-    "tilt_no_sine": "Multiply the part along y by sin φ, and add the part along z.",
+    "tilt_no_sine": "Multiply the part along y by sin φ.",
     "uniform_gravity": "Compute the force where the bob is and not at the suspension. The effect is small.",
     "ellipsoid_gravity": "Leave the force at the suspension out: a measured g has it. Keep its change along the swing.",
     "point_mass": "Keep g constant in size and direction, as the scene does.",

@@ -87,7 +87,7 @@ def row(name: str, programs) -> str:  # type: ignore[no-untyped-def]
     words = {programs.G_EFFECTIVE: "effective_gravity"}
     likes = [f"as if `{one.id.removeprefix('as_if.')}`" for one in found.causes if one.stage == AS_IF]
     named = ", ".join([*(f"`{words.get(word, word)}`" for word in sorted(said)), *likes]) or "–"
-    unnamed = programs.TRUE[name] - said - {next(iter(programs.SAID.get(name, {""})))}
+    unnamed = programs.TRUE[name] - said
     untold = ", ".join(f"`{words.get(word, word)}`" for word in sorted(unnamed)) or "–"
     model = next((title for word, title in LINEAR.items() if word in programs.TRUE[name]), "sphere")
     left = digits(found.corrected_m, score) if said or likes else digits(score.errors.max_m, score)

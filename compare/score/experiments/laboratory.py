@@ -100,14 +100,13 @@ class Laboratory:
                 if changed > first.case.enough:
                     return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
         try:
-            readers = [readers_of(run.case, list(run.fits.values())) for run in self._runs]
+            readers = [(run.case, one) for run in self._runs for one in readers_of(run.case, list(run.fits.values()))]
         except UNSOLVED:
             return []
-        spheres = [[one for one in found if one.right.kind == "sphere"] for found in readers]
-        drifting = all(any(one.drifts(one.right) for one in found) for found in spheres)
+        drifting = {id(case) for case, one in readers if one.right.kind == "sphere" and one.drifts(case, one.right)}
         error_m = _error_m(first)
         told = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
-        return [told] if drifting and len(self._runs) > LEAST_RUNS else []
+        return [told] if len(drifting) == len(self._runs) > LEAST_RUNS else []
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""
@@ -151,7 +150,8 @@ def _told(case: JointCase, *step: Deviation) -> list[Explanation]:
         if ids and not same and one.score <= (told or [one])[0].score + EQUAL:
             told.append(one)
             things.append(groups)
-    return told
+    sets = [{cause.id for cause in one.causes} for one in told]
+    return [one for one, ids in zip(told, sets, strict=True) if not any(fewer < ids for fewer in sets)]
 
 
 def _error_m(trial: Trial) -> float:

@@ -27,6 +27,7 @@ RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 PARTS, GROWN = 4, 2.0  # of the rows, and how many times as far as in the first a growing motion reaches in the last
+FREELY = 0.5, 2.5  # of g: what a fall's mean acceleration is between, from row 0 to every other
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
 SHARE = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
@@ -110,7 +111,8 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         if wrong_term:  # one term of a formula, as no integrator changes it
             return Explanation(best.conventions, slip=wrong_term)
         if not best.known:
-            return replace(best, slip=growth(rows.times, rows.plane))
+            fall = falls(rows.times, rows.plane, problem.right)
+            return replace(best, slip=fall or growth(rows.times, rows.plane))
     return best
 
 
@@ -170,6 +172,17 @@ def _is_mirrored(cause: Deviation) -> bool:
         return False
     scene = cause.value - cause.shift
     return abs(cause.value + scene) < ROUGHLY * abs(scene)
+
+
+def falls(times: Array, plane: Array, right: Program) -> str:
+    """Return in a sentence which coordinate falls from row 0 on to far below the cord; empty if none does."""
+    time, gone = times[1:] - times[0], plane[1:] - plane[0]
+    for name, way in zip("xy", gone.T, strict=True):
+        pulls = np.abs(2 * way / time**2) / right.g
+        if pulls.min() > FREELY[0] and pulls.max() < FREELY[1] and abs(way[-1]) > GROWN * right.length:
+            fell = f"Its {name} falls by {abs(way[-1]):.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
+            return f"{fell}: {name} is its vertical, and its cord pulls too little."
+    return ""
 
 
 def growth(times: Array, plane: Array) -> str:

@@ -140,7 +140,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
         left = case.left(program)
         corrected = largest(left)
     more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
-    if more and reader.drifts(reading.program):
+    if more and reader.drifts(case, reading.program):
         causes.append(loose(corrected))
     model = None
     simple = {cause.stage for cause in causes} <= {"gravity", "model"}
@@ -179,7 +179,7 @@ def _without_needless_step(case: Case, reading: Reading) -> Reading:
 
 
 def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
-    """Yield the causes in their order, each with the distance by which it moves the bob."""
+    """Yield the causes in their order, each with the distance by which it moves the bob; if that is none, last of all."""
     kind = reading.reader.right.kind
     changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (kind != "sphere")
     program, before = case.right, case.truth
@@ -196,7 +196,11 @@ def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
                 uncertainty = reading.reader.uncertainty(reading, cause)
                 text = cause.sentence(value, case.right)
         after = case.positions(program)
-        yield Deviation(word, text, largest(after - before), stage, value, shift, uncertainty)
+        size = largest(after - before)
+        if cause is not None and size <= case.enough:  # another cause, put right before it, may have made it small
+            others = reading.reader.without(reading, [cause]).program
+            size = largest(case.positions(reading.program) - case.positions(others))
+        yield Deviation(word, text, size, stage, value, shift, uncertainty)
         before = after
 
 

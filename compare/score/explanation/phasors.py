@@ -212,7 +212,8 @@ class Method:
         title: as a person calls it.
         order: of its error.
         coefficients: of the stability polynomial; empty for the semi-implicit ones.
-        kick: of a semi-implicit one, whether the velocity goes first; None for leapfrog, whose start is exact.
+        kick: of a semi-implicit one, whether the velocity goes first; None for leapfrog.
+        late: whether its first two rows are equal, as those of a bob that is let go half a step after row 0.
     """
 
     id: str
@@ -220,6 +221,7 @@ class Method:
     order: int
     coefficients: tuple[float, ...] = ()
     kick: bool | None = None
+    late: bool = False
 
     def computed(self, phasors: Phasors, step: float) -> Phasors:
         """Return the phasors that the rows of a program with this method show; the same if it cannot be told."""
@@ -257,6 +259,8 @@ class Method:
         """Return the modes of one step of w'' = -d w' - q w about the centre, d and q complex."""
         q, d = phasors.square, -1j * (phasors.rates[0] + phasors.rates[1])
         start, speed = phasors.start - phasors.centre, phasors.speed
+        if self.late:  # v + h/2 w'' = 0
+            speed = q * start * step / 2 / (1 - d * step / 2)
         if self.kick is None:  # leapfrog: half a kick, a drift, half a kick; its Coriolis force is explicit
             half = np.array([[1, 0], [-q * step / 2, 1 - d * step / 2]])
             other = np.array([[1, 0], [-q * step / 2 / (1 + d * step / 2), 1 / (1 + d * step / 2)]])
@@ -282,6 +286,7 @@ METHODS = (
     Method("semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", 1, kick=False),
     Method("explicit_euler", "explicit Euler", 1, _taylor(1)),
     Method("leapfrog", "leapfrog (Verlet)", 2),
+    Method("leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", 2, late=True),
     Method("rk2", "a Runge-Kutta method of order 2 (midpoint, Heun)", 2, _taylor(2)),
     Method("rk3", "a Runge-Kutta method of order 3", 3, _taylor(3)),
     Method("rk4", "a Runge-Kutta method of order 4", 4, _taylor(4)),

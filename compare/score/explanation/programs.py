@@ -37,7 +37,7 @@ class Program:
     Attributes:
         gravity_reading: what it makes of g: ellipsoid (the centrifugal force added), effective (it is within, its
             change along the swing kept), none (no centrifugal force), no_tilt (its vertical part alone), tilt (its
-            horizontal part alone), tilt_no_sine (that without sin φ), uniform (no change along the swing).
+            horizontal part alone), tilt_no_sine (that part without sin φ), uniform (no change along the swing).
         coriolis: factors of the Coriolis force's Ωy and Ωz, and of both.
         coriolis_latitude: the latitude of the Coriolis force in degrees, if it is another one; of any size.
         turned_plane: a pendulum that does not feel the rotation, its plane turned by hand.
@@ -134,12 +134,12 @@ class Program:
         up = self.rate * math.sin(turned) * self.coriolis[1] * self.coriolis[2]
         outward = self.rate**2 * self.axis_distance
         pull_y, pull_z, gradient = 0.0, -self.g, self.gradient
-        if self.gravity_reading in ("ellipsoid", "uniform"):
-            pull_y, pull_z = -outward * sin, outward * cos - self.g
-        elif self.gravity_reading == "no_tilt":
-            pull_z = outward * cos - self.g
-        elif self.gravity_reading in ("tilt", "tilt_no_sine"):
-            pull_y = -outward * (sin if self.gravity_reading == "tilt" else 1.0)
+        if self.gravity_reading in ("ellipsoid", "uniform", "tilt"):
+            pull_y = -outward * sin
+        elif self.gravity_reading == "tilt_no_sine":
+            pull_y = -outward
+        if self.gravity_reading in ("ellipsoid", "uniform", "tilt_no_sine", "no_tilt"):
+            pull_z += outward * cos
         if self.nominal_rate:
             gradient *= (self.rate / self.nominal_rate) ** 2
         # a plane turned by hand takes its own turn with it; else the Earth's, without a factor of the Coriolis force

@@ -22,6 +22,7 @@ from ...observed.least_squares import best_change, by_differences, gauss_newton
 from .causes import Cause
 from .families import Fit
 from .programs import Program
+from .unexplained import Case
 
 ENOUGH = 5000  # combinations that are tried
 BEAM = 20  # combinations that are kept of each size
@@ -166,16 +167,17 @@ class Reader:
         values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN, strays=self.strays)
         return self._judged(together, program.with_inputs(free, values))
 
-    def drifts(self, program: Program) -> bool:
+    def drifts(self, case: Case, program: Program) -> bool:
         """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
-        off, free = self._off(program), list(self.fit.free)
-        pull, drag = free.index(5), free.index(6)
+        columns, free = len(self.fit.slopes) // len(case.rows.times), list(self.fit.free)
+        off = (case.left(program)[:, :columns] / math.sqrt(len(case.rows.times))).ravel()
+        pull, drag, enough = free.index(5), free.index(6), math.hypot(self.floor, self.fit.rest)
 
-        def left(*columns: int) -> float:
-            slopes = self._triangle[:, columns]
+        def left(*numbers: int) -> float:
+            slopes = self.fit.slopes[: len(off), numbers]
             return float(np.linalg.norm(off - slopes @ best_change(slopes, off)))
 
-        return left(pull, drag) <= self.floor < min(left(pull), left(drag))
+        return left(pull, drag) <= enough < min(left(pull), left(drag))
 
     def uncertainty(self, reading: Reading, cause: Cause) -> float:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
@@ -230,5 +232,5 @@ def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
     words = {part.id for part in (*together, cause)}
     groups = {part.group for part in (*together, cause)}
     if "no_rotation" in words:
-        return bool(groups & {"latitude", "frame", "coriolis"})
-    return "no_coriolis" in words and "frame" in groups
+        return bool(groups & {"latitude", "frame", "coriolis", "turn"})
+    return "no_coriolis" in words and bool(groups & {"frame", "turn"})
