@@ -1056,6 +1056,8 @@ static void keeps_sign(form *f, const arf_t a, const arf_t b, int depth) {
     done = sign != 0 && (done || (bend != 0 && sign_at(f, a, bits) == sign && sign_at(f, b, bits) == sign));
     if (one_way)
         done = slope[0] != 0 || bend == -one_way || (is_release && bend != 0);
+    if (one_way && !done && bend == one_way && sign_at(f, a, bits) == -one_way && sign_at(f, b, bits) == one_way)
+        wrong("%s: %s has a zero near t = %.17g that is not printed\n", f->t->name, f->word, time);
     if (!done && depth == MOST_DEPTH)
         undecided("%s: a zero of %s near t = %.17g cannot be excluded", f->t->name, f->word, time);
     if (!done) {
