@@ -22,7 +22,7 @@ WITH_SECTIONS = ("laboratory_drag", "museum_gate")
 QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "two_radians.binary64")
 FORGED = ("barely_over", "damped", "nanometre_paris", "vertical_picometre", "weightless")
 GENERIC = ("barely_over", "damped", "nanometre_paris")  # their motion depends on every input
-MOST_LINES = 1000 + 130  # without blanks, comments and includes; the second is for sections
+MOST_LINES = 1000 + 135  # without blanks, comments and includes; the second is for sections
 
 
 def test_the_program_stays_readable_in_an_evening():

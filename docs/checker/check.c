@@ -1043,8 +1043,6 @@ static void keeps_sign(form *f, const arf_t a, const arf_t b, int depth) {
     if (f->sign == 0)
         f->sign = found;
     sign = f->sign;
-    if (found == -sign && found != 0)
-        wrong("%s: %s has the sign %+d at t = %.17g: a zero beside it is missing or wrong\n", f->t->name, f->word, found, time);
     arb_set_interval_arf(s, a, b, bits);
     motion(here, s, bits / 2);
     for (int k = 0; k < 3; k++) {
@@ -1053,7 +1051,14 @@ static void keeps_sign(form *f, const arf_t a, const arf_t b, int depth) {
     }
     int is_release = fmpq_is_zero(step_begin) && arf_is_zero(a) && f->from_zero, bend = slope[1];
     int done = slope[0] == sign || (is_release && (bend == sign || (f->from_double_zero && slope[2] == sign)));
-    done = sign != 0 && (done || (bend != 0 && sign_at(f, a, bits) == sign && sign_at(f, b, bits) == sign));
+    done = done && sign != 0;
+    if (!done && sign != 0 && found != -sign && bend != 0) {
+        int left = sign_at(f, a, bits), right = sign_at(f, b, bits);
+        done = left == sign && right == sign;
+        found = left == -sign || right == -sign ? -sign : found;
+    }
+    if (found == -sign && found != 0)
+        wrong("%s: %s has the sign %+d at t = %.17g: a zero beside it is missing or wrong\n", f->t->name, f->word, found, time);
     if (one_way)
         done = slope[0] != 0 || bend == -one_way || (is_release && bend != 0);
     if (one_way && !done && bend == one_way && sign_at(f, a, bits) == -one_way && sign_at(f, b, bits) == one_way)
