@@ -18,7 +18,6 @@ from reference.numbers.precision import Array, context
 
 from .method import Family, Outcome, Work, outcome
 from .rhs.problem import Problem
-from .rhs.straight_line import elements, generated, names, unpacked
 from .runge_kutta.fixed_step import fixed_step, steps_between
 from .runge_kutta.tableau import TableauError
 
@@ -31,10 +30,10 @@ _MARCH = """
 @nb.njit("Tuple((int64, int64, int64))(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1],"
          "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1])", **OPTIONS)
 def march(y, k, times, counts, states, a, b, ahead, sizes):
-    ${unpack_parameters}
+    ${unpack_k}
     x, lost = y.copy(), np.zeros(${size})
     slopes, guess, z, f = np.zeros((${stages}, ${size})), np.zeros((${stages}, ${size})), y.copy(), np.zeros(${size})
-    ${f}= derivatives(${y}${c})
+    ${f}= traced(${y}${c})
     for i in range(${stages}):
         slopes[i] = f
     steps, calls = 0, 1
@@ -57,7 +56,7 @@ def march(y, k, times, counts, states, a, b, ahead, sizes):
                         for j in range(${stages}):
                             sum += a[i, j] * slopes[j, d]
                         z[d] = x[d] + h * sum
-                    ${f}= derivatives(${z}${c})
+                    ${f}= traced(${z}${c})
                     for d in range(${size}):
                         change = max(change, abs(h * (f[d] - slopes[i, d])) / sizes[d])
                         slopes[i, d] = f[d]
@@ -127,23 +126,12 @@ def gauss(stages: int) -> Collocation:
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
     """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
-    size, parameters = len(problem.start), len(problem.system.parameters)
-    march = generated(
-        problem.system.program,
-        "derivatives",
-        _MARCH,
-        **{name: elements(name, size) for name in ("y", "z", "f")},
-        c=names("c", parameters),
-        unpack_parameters=unpacked("c", "k", parameters),
-        stages=stages,
-        size=size,
-        most=MOST_ITERATIONS,
-        converged=CONVERGED,
-    ).march
+    limits = {"stages": stages, "most": MOST_ITERATIONS, "converged": CONVERGED}
+    march = problem.compiled(problem.system.program, _MARCH, **limits).march
     method, counts = gauss(stages), steps_between(problem.times, setting)
 
     def work() -> Outcome:
-        states = np.empty((len(problem.times), size))
+        states = np.empty((len(problem.times), len(problem.start)))
         states[0] = problem.start
         rows, steps, calls = march(
             problem.start, problem.parameters, problem.times, counts, states, method.a, method.b, method.ahead,

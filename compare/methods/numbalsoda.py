@@ -17,7 +17,6 @@ from compare.methods.capture import captured
 
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 from .rhs.problem import Problem
-from .rhs.straight_line import elements, generated
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
 
@@ -25,7 +24,7 @@ _RATES = """
 @nb.cfunc("void(float64, CPointer(float64), CPointer(float64), CPointer(float64))", **OPTIONS)
 def rates(t, y, dy, k):
     k[${counter}] += 1.0
-    ${dy}= derivatives(${y}${k})
+    ${dy}= traced(${y}${k})
 """
 
 
@@ -36,10 +35,8 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     )  # otherwise its messages appear when the process ends
     from numbalsoda import driver, driver_dop853
 
-    variables, parameters = len(problem.start), len(problem.parameters)
-    places = {"y": elements("y", variables), "dy": elements("dy", variables)}
-    places["k"] = elements("k", len(problem.system.parameters))
-    address = generated(problem.system.program, "derivatives", _RATES, counter=parameters, **places).rates.address
+    variables = len(problem.start)
+    address = problem.compiled(problem.system.program, _RATES).rates.address
     integrate = {"dop853": driver_dop853.dop853_wrapper, "lsoda": driver.lsoda_wrapper}[code]
     absolute = setting * float(problem.sizes.min())
 

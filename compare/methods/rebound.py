@@ -20,7 +20,6 @@ from reference.numbers.precision import Array
 
 from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 from .rhs.problem import Problem
-from .rhs.straight_line import elements, generated
 
 _POINTER = """
 @nb.extending.intrinsic
@@ -41,18 +40,18 @@ def at(base, offset, count):
 _ODE = """
 @nb.cfunc("void(voidptr, CPointer(float64), CPointer(float64), float64)", **OPTIONS)
 def rates(ode, dy, y, t):
-    k = at(ode, ${ref}, ${parameters} + 1)
-    k[${parameters}] += 1.0
-    ${dy}= derivatives(${y}${k})
+    k = at(ode, ${ref}, ${counter} + 1)
+    k[${counter}] += 1.0
+    ${dy}= traced(${y}${k})
 """
 
 _FORCES = """
 @nb.cfunc("void(voidptr)", **OPTIONS)
 def rates(simulation):
-    k = at(simulation, ${extras}, ${parameters} + 1)
-    k[${parameters}] += 1.0
+    k = at(simulation, ${extras}, ${counter} + 1)
+    k[${counter}] += 1.0
     p = at(simulation, ${particles}, 9)
-    x, y, z, ax, ay, az = derivatives(${y}${k})
+    x, y, z, ax, ay, az = traced(${p}${k})
     p[6] += ax
     p[7] += ay
     p[8] += az
@@ -64,7 +63,7 @@ def prepare_bs(problem: Problem, setting: float) -> Work:
     import rebound
 
     size = len(problem.start)
-    rates = _compiled(problem, _ODE, y="y", dy="dy", ref=rebound.ODE.ref.offset)
+    rates = problem.compiled(problem.system.program, _POINTER + _ODE, ref=rebound.ODE.ref.offset).rates
 
     def work() -> Outcome:
         data = np.append(problem.parameters, 0.0)
@@ -90,8 +89,8 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
     """Compile the forces; the returned function sets up a simulation and integrates."""
     import rebound
 
-    fields = rebound.Simulation
-    rates = _compiled(problem, _FORCES, y="p", extras=fields.extras.offset, particles=fields._particles.offset)
+    places = {"extras": rebound.Simulation.extras.offset, "particles": rebound.Simulation._particles.offset}
+    rates = problem.compiled(problem.system.program, _POINTER + _FORCES, **places).rates
 
     def work() -> Outcome:
         data = np.append(problem.parameters, 0.0)
@@ -107,13 +106,6 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
         return _march(problem, simulation, lambda: [*simulation.particles[0].xyz, *simulation.particles[0].vxyz], data)
 
     return work
-
-
-def _compiled(problem: Problem, template: str, y: str, dy: str = "", **offsets: int) -> Any:
-    size, parameters = len(problem.start), len(problem.parameters)
-    places = {"y": elements(y, size), "dy": elements(dy, size), "k": elements("k", len(problem.system.parameters))}
-    code = _POINTER + template
-    return generated(problem.system.program, "derivatives", code, parameters=parameters, **places, **offsets).rates
 
 
 def _first_step(problem: Problem) -> float:

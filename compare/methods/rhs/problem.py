@@ -200,18 +200,17 @@ class Problem:
     @cached_property
     def rates(self) -> ModuleType:
         """Compiled `rhs(t, y, k)`, and `rhs_into(y, k, dy)` in place; k are the `parameters`."""
-        return self._compiled(self.system.program, _RATES)
+        return self.compiled(self.system.program, _RATES)
 
     @cached_property
     def slopes(self) -> ModuleType:
         """Compiled `jacobian(t, y, k)`, and `jacobian_into(y, k, j)` in place."""
-        return self._compiled(self.system.jacobian, _SLOPES)
+        rows = range(len(self.start))
+        return self.compiled(self.system.jacobian, _SLOPES, j="".join(elements("j", len(rows), str(i)) for i in rows))
 
-    def _compiled(self, program: Program, template: str) -> ModuleType:
-        size = len(self.start)
-        places = {"y": elements("y", size), "k": elements("k", len(self.system.parameters)), "dy": elements("dy", size)}
-        matrix = "".join(elements("j", size, str(row)) for row in range(size))
-        return generated(program, "traced", template, j=matrix, **places)
+    def compiled(self, program: Program, template: str, **texts: object) -> ModuleType:
+        """Return straight-line code of the system and a template that calls it, as `straight_line.generated` does."""
+        return generated(program, template, len(self.start), len(self.system.parameters), **texts)
 
     def cartesian(self, states: Array) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""

@@ -68,24 +68,26 @@ class Program:
         return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
 
 
-def generated(program: Program, name: str, template: str, **texts: object) -> ModuleType:
-    """Return the compiled module of a program, as a function of that name, and of a template with texts filled in."""
-    return compiled(f"@nb.njit(**OPTIONS)\n{program.source(name)}\n\n{Template(template).substitute(texts)}")
+def generated(program: Program, template: str, variables: int, parameters: int, **texts: object) -> ModuleType:
+    """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
 
-
-def names(letter: str, count: int) -> str:
-    """Return variables x0, x1, … as arguments or targets, with a trailing comma; nothing if there are none."""
-    return "".join(f"{letter}{i}, " for i in range(count))
+    Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of these
+    names, as many as variables (`${size}`); `${k}` are those of the parameters. `${x}` and `${c}` are numbers with
+    names of their own, which `${unpack_y}` and `${unpack_k}` take from y and k. `${counter}` is the place behind the
+    parameters, of which libraries are given one at least.
+    """
+    for array in ("y", "z", "f", "p", "dy"):
+        texts[array] = elements(array, variables)
+    texts |= {"k": elements("k", parameters), "size": variables, "counter": max(parameters, 1)}
+    for letter, array, count in (("x", "y", variables), ("c", "k", parameters)):
+        texts[letter] = "".join(f"{letter}{i}, " for i in range(count))
+        texts[f"unpack_{array}"] = f"{texts[letter]}= {texts[array]}" if count else "pass"
+    return compiled(f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}")
 
 
 def elements(array: str, count: int, row: str = "") -> str:
-    """Return the elements of an array (of its row, if one is named) in the same way."""
+    """Return the elements of an array (of its row, if one is named), each with a comma behind it."""
     return "".join(f"{array}[{row and row + ', '}{i}], " for i in range(count))
-
-
-def unpacked(letter: str, array: str, count: int) -> str:
-    """Return the statement that unpacks an array into variables."""
-    return f"{names(letter, count)}= {elements(array, count)}" if count else "pass"
 
 
 @cache

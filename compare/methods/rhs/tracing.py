@@ -30,6 +30,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from operator import add, mul, neg, sub, truediv
 from typing import Any
 
 from .straight_line import FUNCTIONS, CodeLine, Program
@@ -231,9 +232,9 @@ def differentiated(program: Program, variables: Sequence[str]) -> Program:
 
     for line in program.lines:
         operands = [value(name) for name in line.operands]
-        result = _apply(tape, functions, line.operation, operands)
-        values[line.name] = result
-        partials = _partials(tape, functions, line.operation, operands, result)
+        operation = _OPERATORS.get(line.operation) or getattr(functions, line.operation)
+        result = values[line.name] = operation(*operands)
+        partials = _PARTIALS[line.operation](functions, result, *operands)
         slopes[line.name] = list(none)
         for name, partial in zip(line.operands, partials, strict=True):
             for i, slope in enumerate(slopes.get(name, none)):
@@ -241,30 +242,16 @@ def differentiated(program: Program, variables: Sequence[str]) -> Program:
     return tape.program(program.inputs, [slope for name in program.outputs for slope in slopes.get(name, none)])
 
 
-def _apply(tape: Tape, functions: RecordingFunctions, operation: str, operands: list[Any]) -> Any:
-    if operation == "neg":
-        return tape.negate(operands[0])
-    named = {"add": tape.add, "sub": tape.subtract, "mul": tape.multiply, "div": tape.divide}
-    return named[operation](*operands) if operation in named else getattr(functions, operation)(*operands)
-
-
-def _partials(tape: Tape, functions: RecordingFunctions, operation: str, x: list[Any], result: Any) -> tuple[Any, ...]:
-    """Return the derivatives of an operation's result by each of its operands."""
-    if operation == "add":
-        return (1, 1)
-    if operation == "sub":
-        return (1, -1)
-    if operation == "mul":
-        return (x[1], x[0])
-    if operation == "div":
-        return (tape.divide(1, x[1]), tape.negate(tape.divide(result, x[1])))
-    if operation == "neg":
-        return (-1,)
-    if operation == "sqrt":
-        return (tape.divide(0.5, result),)
-    if operation == "sin":
-        return (functions.cos(x[0]),)
-    if operation == "cos":
-        return (tape.negate(functions.sin(x[0])),)
-    square = tape.add(tape.multiply(x[0], x[0]), tape.multiply(x[1], x[1]))
-    return (tape.divide(x[1], square), tape.negate(tape.divide(x[0], square)))
+_OPERATORS: dict[str, Callable[..., Any]] = {"add": add, "sub": sub, "mul": mul, "div": truediv, "neg": neg}
+# the derivatives of an operation's result by each of its operands, from functions, the result and the operands
+_PARTIALS: dict[str, Callable[..., tuple[Any, ...]]] = {
+    "add": lambda f, result, x, y: (1, 1),
+    "sub": lambda f, result, x, y: (1, -1),
+    "mul": lambda f, result, x, y: (y, x),
+    "div": lambda f, result, x, y: (1 / y, -(result / y)),
+    "neg": lambda f, result, x: (-1,),
+    "sqrt": lambda f, result, x: (0.5 / result,),
+    "sin": lambda f, result, x: (f.cos(x),),
+    "cos": lambda f, result, x: (-f.sin(x),),
+    "atan2": lambda f, result, y, x: (x / (y * y + x * x), -(y / (y * y + x * x))),
+}

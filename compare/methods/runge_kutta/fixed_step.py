@@ -17,7 +17,7 @@ from reference.numbers.precision import Array
 
 from ..method import Method, Outcome, Work, outcome
 from ..rhs.problem import Problem
-from ..rhs.straight_line import Program, elements, generated, names, unpacked
+from ..rhs.straight_line import Program, elements
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
@@ -27,12 +27,12 @@ ROUNDING = 1e-9
 _MARCH = """
 @nb.njit("int64(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1])", **OPTIONS)
 def march(y, k, times, counts, states):
-    ${unpack_state}
-    ${unpack_parameters}
+    ${unpack_y}
+    ${unpack_k}
     for row in range(1, len(times)):
         h = (times[row] - times[row - 1]) / counts[row]
         for _ in range(counts[row]):
-            ${x}= step(${x}${c}h)
+            ${x}= traced(${x}${c}h)
         ${out}= ${x}
         if not np.isfinite(states[row]).all():
             return row + 1
@@ -115,17 +115,8 @@ def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
     """
 
     def prepare(problem: Problem, setting: float) -> Work:
-        variables, parameters = len(problem.start), len(problem.system.parameters)
-        march = generated(
-            traced_step(problem, step),
-            "step",
-            _MARCH,
-            unpack_state=unpacked("x", "y", variables),
-            unpack_parameters=unpacked("c", "k", parameters),
-            x=names("x", variables),
-            c=names("c", parameters),
-            out=elements("states", variables, "row"),
-        ).march
+        variables = len(problem.start)
+        march = problem.compiled(traced_step(problem, step), _MARCH, out=elements("states", variables, "row")).march
         counts = steps_between(problem.times, setting)
 
         def work() -> Outcome:
