@@ -175,7 +175,8 @@ def _end_of(
 
     It is looked at often enough to tell its wall-clock time to 2 %, or to 20 ms.
     """
-    start, exceeded = time.monotonic(), None
+    start = time.monotonic()
+    exceeded: tuple[type[InputError], str] | None = None
     while True:
         ended, status, usage = os.wait4(process.pid, os.WNOHANG)
         if ended:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cache, cached_property
 from typing import Any
 
+from reference import load_scene
 from reference.model.constants import Constants, constants
 from reference.numbers.precision import to_fraction
 from reference.scenes.inputs import Inputs
@@ -130,21 +130,11 @@ class Point:
 
 
 def _inputs(p: Point) -> Inputs:
-    zero = Fraction(0)
-    return Inputs(
-        length=to_fraction(p.length),
-        drag=zero,
-        latitude=to_fraction(p.latitude),
-        altitude=to_fraction(p.altitude),
-        gravity=to_fraction(p.gravity),
-        rotation_rate=to_fraction(p.rate),
-        equatorial_radius=to_fraction(p.radius),
-        flattening=to_fraction(p.flattening),
-        position=(zero,) * 4,
-        angles=None,
-        t_end=Fraction(1),
-        grid_step=Fraction(1),
-    )
+    """Return the point's numbers, beside the rest of Paris, of which the constants take nothing."""
+    names = ("length", "latitude", "altitude", "gravity", "flattening")
+    numbers: dict[str, Any] = {name: to_fraction(getattr(p, name)) for name in names}
+    numbers |= {"rotation_rate": to_fraction(p.rate), "equatorial_radius": to_fraction(p.radius)}
+    return replace(load_scene("paris").exact, **numbers)
 
 
 _RANGES = {
