@@ -31,11 +31,11 @@ APPROXIMATIONS: Mapping[str, Approximation] = Registry(
 )
 
 
-def motions() -> tuple[str, ...]:
-    """Return the ids of the approximations that give a trajectory."""
-    return tuple(word for word, declared in APPROXIMATIONS.items() if isinstance(declared, Motion))
+def motions() -> dict[str, Motion]:
+    """Return the approximations that give a trajectory, by id."""
+    return {word: declared for word, declared in APPROXIMATIONS.items() if isinstance(declared, Motion)}
 
 
-def quantities() -> tuple[str, ...]:
-    """Return the ids of the approximations that give one number."""
-    return tuple(word for word, declared in APPROXIMATIONS.items() if isinstance(declared, Quantity))
+def quantities() -> dict[str, Quantity]:
+    """Return the approximations that give one number, by id."""
+    return {word: declared for word, declared in APPROXIMATIONS.items() if isinstance(declared, Quantity)}

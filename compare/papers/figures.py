@@ -12,7 +12,7 @@ from reference import InputError, load_scene
 from reference.numbers.precision import Array
 from reference.system.documents import texts_of
 
-from ..approximations import APPROXIMATIONS, Motion
+from ..approximations import motions
 from ..approximations.frequency import anharmonic
 from ..methods import METHODS, Problem, available
 from ..observed.position_error import difference, distance
@@ -129,9 +129,7 @@ def _simplified() -> list[Panel]:
     output_times = np.concatenate(([0.0], times))
 
     def item(name: str) -> Array:
-        motion = APPROXIMATIONS[name]
-        assert isinstance(motion, Motion)
-        return motion.trajectory(load_scene("paris"), output_times)[1:]
+        return motions()[name].trajectory(load_scene("paris"), output_times)[1:]
 
     curves = (
         ("full", full, PINK, "-", 2.2),

@@ -174,7 +174,7 @@ def _about() -> Html:
     return Table(columns, [(one.id, one.title, one.where, one.drops) for one in APPROXIMATIONS.values()]).html()
 
 
-def chart(rows: Sequence[TimeRow | SweepRow], what: str = "error_m") -> str:
+def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
     """Return an SVG of the errors in `rows`: those of `error_table` at many times, or of one `sweep`.
 
     Args:
@@ -187,7 +187,7 @@ def chart(rows: Sequence[TimeRow | SweepRow], what: str = "error_m") -> str:
     lines = _lines(rows, what)
     if not lines:
         raise InputError("rows", f"{len(rows)} rows", f"some with {what}")
-    over = "time" if isinstance(rows[0], TimeRow) else rows[0].over
+    over = rows[0].over if isinstance(rows[0], SweepRow) else "time"
     with sheet((9.5, max(4.8, 0.3 * sum(line.name.count("\n") + 1 for line in lines) + 3))) as figure:
         axes = figure.subplots()
         logarithmic(axes, "y", *limits([y for line in lines for y in line.y]), 16)
@@ -213,12 +213,12 @@ def chart(rows: Sequence[TimeRow | SweepRow], what: str = "error_m") -> str:
         return svg_text(figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}.")
 
 
-def _lines(rows: Sequence[TimeRow | SweepRow], what: str) -> list[Line]:
+def _lines(rows: Sequence[TimeRow], what: str) -> list[Line]:
     """Return the lines of the rows, the one with the largest last error first."""
     groups: list[tuple[list[str], Any, Any]] = []
     for name in dict.fromkeys(row.approximation for row in rows):
         mine = [row for row in rows if row.approximation == name and getattr(row, what)]
-        x = np.array([row.t if isinstance(row, TimeRow) else row.value for row in mine])
+        x = np.array([row.value if isinstance(row, SweepRow) else row.t for row in mine])
         y = np.array([getattr(row, what) for row in mine])
         same = [names for names, u, v in groups if np.array_equal(u, x) and np.all(np.abs(y / v - 1) < _SAME)]
         if same:

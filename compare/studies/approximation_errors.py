@@ -17,7 +17,7 @@ from reference import FoucaultError, InputError, Scene, UnreachableError, trajec
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..approximations import APPROXIMATIONS, Motion, Quantity, motions, quantities
+from ..approximations import Motion, motions, quantities
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import Gauge
 from .row import failure
@@ -128,17 +128,9 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
 
 
 def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
-    """Return approximations of the motion by their ids, all if None; InputError names those of a single number."""
-    approximations = [APPROXIMATIONS[word] for word in (motions() if ids is None else ids)]
-    wrong = [each.id for each in approximations if not isinstance(each, Motion)]
-    if wrong:
-        raise InputError(
-            "approximations",
-            ", ".join(wrong),
-            "approximations of the motion",
-            "Single numbers stand in quantity_table.",
-        )
-    return [each for each in approximations if isinstance(each, Motion)]
+    """Return approximations of the motion by their ids, all if None."""
+    known = motions()
+    return [known[word] for word in (known if ids is None else ids)]
 
 
 def error_table(
@@ -151,9 +143,6 @@ def error_table(
         ids: of the approximations; all of the motion if None.
         t_end: in s.
         times: in s.
-
-    Raises:
-        InputError: an unknown id, or one of a single number.
     """
     chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
     truth = ReferenceMotion(scene, t_end, marks)
@@ -166,11 +155,9 @@ def error_table(
 
 def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
     """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
-    rows, truths = [], dict[Any, Any]()
-    for word in quantities() if ids is None else ids:
-        approximation = APPROXIMATIONS[word]
-        if not isinstance(approximation, Quantity):
-            raise InputError("approximations", word, "an approximation of a number", "Motions stand in error_table.")
+    rows, truths, known = [], dict[Any, Any](), quantities()
+    for word in known if ids is None else ids:
+        approximation = known[word]
         try:
             value = approximation.value(scene)
             if approximation.truth not in truths:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Any
 
@@ -14,7 +14,7 @@ from reference.status import Status
 
 from ..approximations.approximation import Motion
 from ..approximations.case import Case
-from .approximation_errors import TIMES, ReferenceMotion, chosen_motions
+from .approximation_errors import TIMES, ReferenceMotion, TimeRow, chosen_motions
 from .row import failure
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
@@ -28,17 +28,11 @@ _FIRST_S, _EXTRA_TIMES = 1e-3, 400
 
 
 @dataclass(frozen=True)
-class SweepRow:
+class SweepRow(TimeRow):
     """Largest errors up to t in s with one quantity of the scene changed to `value` (unit: `UNITS`)."""
 
-    approximation: str
-    over: str
-    value: float
-    t: float
-    error_m: float | None
-    plane_error_arcsec: float | None
-    status: Status = Status.OK
-    reason: str = ""
+    over: str = field(kw_only=True)
+    value: float = field(kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -80,7 +74,7 @@ def sweep(
     for value in sweep_values(scene, over) if values is None else values:
         changed = varied(scene, over, value)
         truth = ReferenceMotion(changed, t)
-        rows += [SweepRow(motion.id, over, value, t, *truth.largest(motion, [t])[0]) for motion in chosen]
+        rows += [SweepRow(motion.id, t, *truth.largest(motion, [t])[0], over=over, value=value) for motion in chosen]
     return rows
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from reference import load_scene
 
-from ...approximations import APPROXIMATIONS, Motion
+from ...approximations import motions
 from ...approximations.frequency import anharmonic, harmonic, planar, turntable
 from ...approximations.mathar import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement, section
@@ -108,9 +108,7 @@ def _north_east_to_east() -> Finding:
 
 def _coupling_is_ahead() -> Finding:
     scene, at = load_scene("paris"), np.array([0.0, 12000.0])
-    simpler = APPROXIMATIONS["mathar_item_2"]
-    assert isinstance(simpler, Motion)
-    ahead = lead(simpler.trajectory(scene, at)[-1], path_in(scene, at)[-1])
+    ahead = lead(motions()["mathar_item_2"].trajectory(scene, at)[-1], path_in(scene, at)[-1])
     return Finding(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
 
 

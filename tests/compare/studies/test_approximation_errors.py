@@ -90,19 +90,6 @@ def test_numbers_stand_beside_the_reference():
     assert "turn" in refused["precession_sine"].reason
 
 
-@pytest.mark.parametrize("call", [error_table, sweep, limits])
-def test_a_number_is_no_motion_and_an_unknown_word_is_named(call):
-    with pytest.raises(InputError, match="rest_equation"):
-        call(PARIS, ["rest_equation"])
-    with pytest.raises(InputError, match="`foucault methods` lists them"):
-        call(PARIS, ["nothing"])
-
-
-def test_a_motion_is_no_number():
-    with pytest.raises(InputError, match="linear_g"):
-        quantity_table(PARIS, ["linear_g"])
-
-
 # Limits --------------------------------------------------------------------------------------------------------------
 def test_limits_over_time_are_where_the_error_passes_them():
     ids = ["linear_3d", "gastebois_6_1", "mathar_item_4"]
