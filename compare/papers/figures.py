@@ -27,8 +27,9 @@ BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
 FIXED_STEP = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
-DAY: dict[str, Any] = {"x": "t in h", "xlim": (0, 24), "xticks": range(0, 25, 6)}
-EAST_WEST: dict[str, Any] = {"x": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
+DAY: dict[str, Any] = {"xlabel": "t in h", "xlim": (0, 24), "xticks": range(0, 25, 6)}
+LATE: dict[str, Any] = {"xlim": (12000, 12020), "xticks": range(12000, 12021, 10)}
+EAST_WEST: dict[str, Any] = {"xlabel": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,8 @@ def _rest_by_latitude() -> list[Panel]:
         p = paris().but(length=mpf(length))
         angles = [abs(degrees(p.but(latitude=mpf(float(d))).case.rest_angle)) for d in latitudes]
         lines.append(line(f"l = {length} m", latitudes, angles, colour, dashes))
-    return [
-        Panel(lines, y="deviation from the vertical in °", named=True, xlim=(-90, 90), ylim=(0, 0.105), **EAST_WEST)
-    ]
+    axes = EAST_WEST | {"ylabel": "deviation from the vertical in °", "xlim": (-90, 90), "ylim": (0, 0.105)}
+    return [Panel(lines, axes, named=True)]
 
 
 def _triangle() -> list[Panel]:
@@ -68,7 +68,8 @@ def _triangle() -> list[Panel]:
         lines.append(line("", x, y, colour, dashes, 1.8))
         names.append(dots(name, x[4:5], y[4:5] - 0.05, colour, size=0))
     angles = [dots("φ", [-0.003], [-0.32], FAINT, size=0), dots("ϕ", [-0.03], [-0.8], FAINT, size=0)]
-    return [Panel([*lines, *names, *angles], bare=True, level=True, xlim=(-0.8, 0.8), ylim=(-1.05, 0.4))]
+    ends = {"aspect": "equal", "xlim": (-0.8, 0.8), "ylim": (-1.05, 0.4)}
+    return [Panel([*lines, *names, *angles], ends, bare=True)]
 
 
 def _three_windows() -> list[Panel]:
@@ -80,13 +81,9 @@ def _three_windows() -> list[Panel]:
             line("y, north", times - begin, states[:, 1], RED, DASHES[1]),
             _zero(0, 20),
         ]
-        last = begin == WINDOWS[-1]
-        panels.append(
-            Panel(
-                lines, "t in s, counted from there" if last else "", "m", f"from {begin} s", not begin, 1.5, (0, 20),
-                (-0.75, 0.65), range(0, 21, 5), (-0.5, 0, 0.5),
-            )
-        )  # fmt: skip
+        names = {"xlabel": "t in s, counted from there" if begin == WINDOWS[-1] else "", "ylabel": "m"}
+        ends = {"xlim": (0, 20), "ylim": (-0.75, 0.65), "xticks": range(0, 21, 5), "yticks": (-0.5, 0, 0.5)}
+        panels.append(Panel(lines, names | ends | {"title": f"from {begin} s"}, named=not begin, height=1.5))
     return panels
 
 
@@ -98,17 +95,18 @@ def _from_above_and_south() -> list[Panel]:
         above.append(line(f"from {begin} s", states[:, 0], states[:, 1], colour, dashes))
         south.append(line("", states[:, 0], 1000 * (states[:, 2] + 67), colour, dashes))
     above.append(dots("rest", rest[:1], rest[1:2], BLACK, "P", 6))
-    ends = (-0.6, 0.6)
+    north = {"title": "From above", "ylabel": "y (north) in m", "xlim": (-0.6, 0.6), "ylim": (-0.72, 0.48)}
+    up = {"title": "From the south, heights stretched", "ylabel": "z + 67 m, in mm", "xlim": (-0.6, 0.6)}
     return [
-        Panel(above, "", "y (north) in m", "From above", True, 3.4, ends, (-0.72, 0.48), level=True),
-        Panel(south, "x (east) in m", "z + 67 m, in mm", "From the south, heights stretched", xlim=ends, height=2.0),
+        Panel(above, north | {"aspect": "equal"}, named=True, height=3.4),
+        Panel(south, up | {"xlabel": "x (east) in m"}, height=2.0),
     ]
 
 
 def _heights() -> list[Panel]:
     times, states = paris_path()
     release = line("release", (0, 24), states[[0, 0], 2], RED, DASHES[1], 1)
-    return [Panel([dots("", times / 3600, states[:, 2], BLUE), release], y="z in m", named=True, **DAY)]
+    return [Panel([dots("", times / 3600, states[:, 2], BLUE), release], DAY | {"ylabel": "z in m"}, named=True)]
 
 
 def _azimuths() -> list[Panel]:
@@ -120,8 +118,8 @@ def _azimuths() -> list[Panel]:
         if inside.any():
             name = "plane" if turn == 1 else ""
             lines.append(line(name, hours[inside], (turned + 180 * turn)[inside], RED, width=1))
-    ends: dict[str, Any] = {"ylim": (-180, 180), "yticks": range(-180, 181, 60)}
-    return [Panel(lines, y="azimuth in ° (east to north)", named=True, **DAY, **ends)]
+    axes = {"ylabel": "azimuth in ° (east to north)", "ylim": (-180, 180), "yticks": range(-180, 181, 60)}
+    return [Panel(lines, DAY | axes, named=True)]
 
 
 def _simplified() -> list[Panel]:
@@ -137,16 +135,11 @@ def _simplified() -> list[Panel]:
         ("item 2", item("mathar_item_2"), BLUE, DASHES[1]),
         ("item 1", item("mathar_item_1"), RED, DASHES[2]),
     )
-    return [
-        Panel(
-            [
-                *(line(name, times, states[:, i], *style) for name, states, *style in curves),
-                _zero(12000, 12020),
-            ],
-            "t in s" if i else "", f"{'xy'[i]} in m", "", not i, 2.0, (12000, 12020), xticks=range(12000, 12021, 10),
-        )
-        for i in (0, 1)
-    ]  # fmt: skip
+    panels = []
+    for i, names in enumerate(({"ylabel": "x in m"}, {"ylabel": "y in m", "xlabel": "t in s"})):
+        lines = [line(name, times, states[:, i], *style) for name, states, *style in curves]
+        panels.append(Panel([*lines, _zero(12000, 12020)], LATE | names, named=not i, height=2.0))
+    return panels
 
 
 def _frequency_by_latitude() -> list[Panel]:
@@ -155,7 +148,7 @@ def _frequency_by_latitude() -> list[Panel]:
         line("estimate", latitudes, [estimate_at(float(d)) for d in latitudes], RED, width=1),
         dots("runs", list(measured), list(measured.values()), BLUE, "o", 4),
     ]
-    return [Panel(lines, y="frequency in Hz", named=True, xlim=(-93, 93), **EAST_WEST)]
+    return [Panel(lines, EAST_WEST | {"ylabel": "frequency in Hz", "xlim": (-93, 93)}, named=True)]
 
 
 def _three_orders() -> list[Panel]:
@@ -165,10 +158,9 @@ def _three_orders() -> list[Panel]:
         above.append(dots("", times, states[:, 0], colour, mark, 5))
         gap = distance(map(difference, states.T[:3], truth.T[:3]))
         below.append(dots(FIXED_STEP[name], times, gap, colour, mark, 5, "-"))
-    ends: dict[str, Any] = {"xlim": (12000, 12020), "xticks": range(12000, 12021, 10)}
     return [
-        Panel(above, y="x in m", height=1.9, **ends),
-        Panel(below, "t in s", "error in m", named=True, log=True, height=2.2, **ends),
+        Panel(above, LATE | {"ylabel": "x in m"}, height=1.9),
+        Panel(below, LATE | {"xlabel": "t in s", "ylabel": "error in m"}, named=True, log=True, height=2.2),
     ]
 
 

@@ -74,15 +74,13 @@ class FirstOrderSystem:
         """Names in generated code: x0, x1, … for the variables, k0, k1, … for the parameters."""
         return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(f"k{i}" for i in range(len(self.parameters)))
 
-    def traced(self, function: Rates, *more: str) -> Program:
-        """Trace a function of state, functions and parameters, and of further inputs named by `more`."""
-        count, names = len(self.variables), tuple(self.parameters)
+    def traced(self, function: Callable[..., Sequence[Any]], *more: str) -> Program:
+        """Trace a function of state, functions, parameters, and of further inputs named by `more`."""
+        count, end = len(self.variables), len(self.inputs)
 
         def flat(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
-            parameters = dict(zip(names, numbers[count : count + len(names)], strict=True))
-            return function(
-                numbers[:count], functions, parameters | dict(zip(more, numbers[len(self.inputs) :], strict=True))
-            )
+            parameters = dict(zip(self.parameters, numbers[count:end], strict=True))
+            return function(numbers[:count], functions, parameters, *numbers[end:])
 
         return record(flat, (*self.inputs, *more))
 

@@ -95,12 +95,8 @@ def moved(state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Seq
 
 def traced_step(problem: Problem, step: Step) -> Program:
     """Trace a step to straight-line code: its inputs are state, parameters and h, its outputs the new state."""
-
-    def whole_step(state: Sequence[Any], functions: Any, parameters: Any) -> Sequence[Any]:
-        constants = {name: number for name, number in parameters.items() if name != "h"}
-        return step(state, parameters["h"], lambda at: problem.system.rates(at, functions, constants))
-
-    return problem.system.traced(whole_step, "h")
+    rates = problem.system.rates
+    return problem.system.traced(lambda state, functions, k, h: step(state, h, lambda at: rates(at, functions, k)), "h")
 
 
 def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:

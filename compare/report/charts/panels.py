@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,30 +18,18 @@ class Panel:
 
     Attributes:
         lines: its lines, in data coordinates.
-        x: name of the x axis, or "".
-        y: name of the y axis, or "".
-        title: its title, or "".
-        named: the lines are named in a legend beside the panel, inside it where it is level.
+        axes: what matplotlib sets of the axes: labels, title, ends, ticks, and one scale for both ("aspect": "equal").
+        named: the lines are named in a legend beside the panel, inside it where both axes have one scale.
         height: in inches.
-        xlim, ylim: ends of the axes; None for those of the lines.
-        xticks, yticks: ticks; None for matplotlib's choice.
         log: the y axis is logarithmic.
-        level: both axes have one scale.
         bare: no axes; the lines are named beside their ends.
     """
 
     lines: Sequence[Line]
-    x: str = ""
-    y: str = ""
-    title: str = ""
+    axes: Mapping[str, Any]
     named: bool = False
     height: float = 2.6
-    xlim: tuple[float, float] | None = None
-    ylim: tuple[float, float] | None = None
-    xticks: Sequence[float] | None = None
-    yticks: Sequence[float] | None = None
     log: bool = False
-    level: bool = False
     bare: bool = False
 
 
@@ -77,18 +65,14 @@ def _style(colour: str, dashes: Any, width: float) -> dict[str, Any]:
 
 def _draw(axes: Any, panel: Panel) -> None:
     draw(axes, panel.lines)
-    axes.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
     if panel.log:
         logarithmic(axes, "y", *limits([y for line in panel.lines for y in line.y]), 8)
     else:
         axes.ticklabel_format(axis="y", useOffset=False)
-    given = {"xlim": panel.xlim, "xticks": panel.xticks, "ylim": panel.ylim, "yticks": panel.yticks}
-    axes.set(**{name: value for name, value in given.items() if value is not None})
-    if panel.level:
-        axes.set_aspect("equal")
+    axes.set(**panel.axes)
     names = [line for line in panel.lines if line.name]
     if panel.bare:
         axes.set_axis_off()
         name_ends(axes, names, size=9)
     elif panel.named:
-        legend(axes, names, size=9, inside=panel.level)
+        legend(axes, names, size=9, inside="aspect" in panel.axes)
