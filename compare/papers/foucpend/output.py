@@ -150,8 +150,7 @@ class Transits:
     """Zeros of xdot, found block by block; a release at rest does not count."""
 
     def __init__(self) -> None:
-        self._sign = 0.0  # of the last value that was not zero
-        self._before: tuple[Array, Array] = (np.empty(0), np.empty(0))  # time and value of the row before the block
+        self._rows: tuple[Array, Array] = (np.empty(0), np.empty(0))  # from the one before the last that is not zero on
 
     def of(self, times: Array, v: Array) -> list[float]:
         """Return the times of the zeros after the block's first row, up to its last.
@@ -160,23 +159,14 @@ class Transits:
             times: shape (rows,), the first row being the last one of the block before.
             v: xdot there.
         """
-        first = len(self._before[0])
-        times, v = np.append(self._before[0], times), np.append(self._before[1], v)
-        signs = np.sign(v)
-        zeros = []
-        if self._sign == 0:
-            self._sign = float(signs[first])
-        # rows worth a look: the sign differs from that of the row before, or xdot is exactly zero
-        changes = np.nonzero((signs[1:] != signs[:-1]) | (signs[1:] == 0))[0] + 1
-        for i in changes[changes > first]:
-            sign = float(signs[i])
-            if sign == 0 or sign == self._sign:
-                continue
-            if self._sign != 0:
-                zeros.append(_zero(times, v, int(i)))
-            self._sign = sign
-        self._before = times[-2:-1], v[-2:-1]
-        return zeros
+        before = len(self._rows[0])
+        new = slice(min(before, 1), None)
+        times, v = np.append(self._rows[0], times[new]), np.append(self._rows[1], v[new])
+        signed = np.flatnonzero(v)
+        changed = signed[1:][np.diff(np.sign(v[signed])) != 0]
+        kept = slice(max(signed[-1] - 1, 0) if len(signed) else 0, None)
+        self._rows = times[kept], v[kept]
+        return [_zero(times, v, int(i)) for i in changed if i >= before]
 
 
 def _zero(times: Array, v: Array, i: int) -> float:
