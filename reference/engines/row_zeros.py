@@ -21,6 +21,7 @@ from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAx
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 2  # kinds of zeros: of xdot, and of the rate of the height over the plumb line; and their axes
+FINER = 16  # parts of the time between two samples, where a rate may dip to zero there
 QUIET = 1e-4  # of a swing's period after the release: there heyoka may report the zero at the release
 MOST_LATE = (
     1e-3  # of a radian of the swing: as a zero of the height's rate was found; more, and its series tells little
@@ -138,18 +139,24 @@ class Samples:
         signs = np.concatenate([[release.signs[kind]], zeros.directions])
         there = signs[np.searchsorted(zeros.times, self.times[1:])]
         alternate = (signs[:-1] * signs[1:] < 0).all() and (self.motion.v[kind][1:] * there > 0).all()
-        return not (alternate and (self.complete or not self._dips(zeros, at, release, kind, signs)))
+        return not (alternate and (self.complete or not self._dips(zeros, at, release, kind)[0].size))
 
-    def _dips(self, zeros: Zeros, at: Motion, release: Release, kind: int, signs: Array) -> bool:
-        """Return whether a rate may go through zero and back between neighbours among samples and zeros.
+    def finer(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> Array:
+        """Return the times of samples, with more of them where the rate of a kind may dip to zero."""
+        return np.union1d(self.times, np.linspace(*self._dips(zeros, at, release, kind), FINER + 1)[1:-1])
+
+    def _dips(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> tuple[Array, Array]:
+        """Return the neighbours among samples and zeros between which a rate may go through zero and back.
 
         The cubic through the values and slopes there says how low the minimum between them is, but for its error: that
         of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
-        order = np.argsort(np.concatenate([self.times, zeros.times]), kind="stable")
+        signs, times = np.append(release.signs[kind], zeros.directions), np.append(self.times, zeros.times)
+        order = np.argsort(times, kind="stable")
         rate, slope = self.motion.v[kind], self.motion.a[kind]
         sign, most = signs[np.cumsum(order >= len(rate))[:-1]], np.abs(rate).max()
-        length = np.diff(np.concatenate([self.times, zeros.times])[order])
+        times = times[order]
+        length = np.diff(times)
         rate, slope = np.concatenate([rate, 0 * zeros.times])[order], np.concatenate([slope, at.a[kind]])[order]
         left, right, before, after = sign * [rate[:-1], rate[1:], slope[:-1] * length, slope[1:] * length]
         if release.zero[kind]:
@@ -157,7 +164,8 @@ class Samples:
         between = 3 * (right - left) - before - after
         s = before / (before - between - np.sqrt(between**2 - before * after))
         least = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * ((3 - 2 * s) * right - (1 - s) * after)
-        return bool(((s > 0) & (s < 1) & (least < most * (2 * release.rate * length) ** 4 / 384)).any())
+        may = (s > 0) & (s < 1) & (least < most * (2 * release.rate * length) ** 4 / 384)
+        return times[:-1][may], times[1:][may]
 
 
 def describe_transits(

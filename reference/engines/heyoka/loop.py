@@ -157,17 +157,27 @@ def _solve(
     if sought:
         swung = SAMPLES_PER_SWING * release.end * release.rate / (2 * np.pi)
         samples = np.linspace(0, release.end, int(max(steps, swung)) + 1)
-        times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
-        at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
-        with _lent((), *kind) as second:
-            second.begin(k, state)
-            motion = Motion.of(second.at(times), k)
-        seen = Samples(samples, motion[at_samples])
+        seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, kind)
         if TRANSIT in sought and not release.still:
-            describe_transits(outcomes, row, release, transits, motion[at_transits], seen)
+            samples = seen.finer(transits, at_transits, release, TRANSIT)
+            if len(samples) > len(seen.times):  # the plane passes north-south
+                seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, kind)
+            describe_transits(outcomes, row, release, transits, at_transits, seen)
         if HEIGHT in sought:
-            describe_highest_points(outcomes, row, release, heights, motion[at_heights], seen)
+            describe_highest_points(outcomes, row, release, heights, at_heights, seen)
     return transits
+
+
+def _seen(
+    samples: Array, transits: Zeros, heights: Zeros, k: Constants, state: Any, kind: tuple[bool, float]
+) -> tuple[Samples, Motion, Motion]:
+    """Return the motion at samples, at transits and at zeros of the height's rate, by one more run."""
+    times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
+    at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
+    with _lent((), *kind) as second:
+        second.begin(k, state)
+        motion = Motion.of(second.at(times), k)
+    return Samples(samples, motion[at_samples]), motion[at_transits], motion[at_heights]
 
 
 def _turn_back(outcomes: Outcomes, rows: Rows, axes: PlumbAxes) -> None:

@@ -71,6 +71,14 @@ def test_a_row_is_the_same_alone_and_after_others(wanted):
         assert np.array_equal(alone.transit_t, together.transit_t[own])
 
 
+def test_a_plane_that_passes_north_south_leaves_no_doubt(paris):
+    words = (["run.t_end=20000", f"site.latitude={latitude}"] for latitude in (-87, -66))
+    rows = rows_of([paris.with_values(two).exact for two in words])
+    own, other = (engine.solve(rows, Wanted()) for engine in (BATCH, OCTET))
+    assert own.fate.tolist() == [OK, OK]
+    assert own.transits.tolist() == other.transits.tolist()
+
+
 def test_steps_without_end_stop_a_row_alone(monkeypatch, paris):
     rows = rows_of([paris.with_values([f"run.t_end={t}"]).exact for t in (60, 600)])
     monkeypatch.setattr(loop, "LEAST_STEPS", 50)
