@@ -53,7 +53,7 @@ PLAIN = 0.3  # of what no step at all leaves of the first swing
 READINGS = 2  # of that motion
 STEP_LEFT = 1e-3  # of what the steps do that may be left
 ALIKE = 10.0  # times what the likeliest leaves: others that are tried
-UNSURE = (2, 3, 4, 5, 6, 7, 8)  # of theta, beside which a step is looked for: the turn, the pull, the drag, the place of the release
+UNSURE = (2, 3, 4, 5, 6, 7, 8)  # of theta, beside which a step is looked for: turn, pull, drag, place of the release
 State = list[Any]
 
 
