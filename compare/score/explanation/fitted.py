@@ -179,7 +179,7 @@ def _without_needless_step(case: Case, reading: Reading) -> Reading:
 
 
 def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
-    """Yield the causes in their order, each with the distance by which it moves the bob; those without one last."""
+    """Yield the causes in their order, each with the distance by which it moves the bob."""
     kind = reading.reader.right.kind
     changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (kind != "sphere")
     program, before = case.right, case.truth

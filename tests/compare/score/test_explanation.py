@@ -264,6 +264,46 @@ def test_nothing_is_named_where_nothing_is_known_or_wrong(noise_m: float) -> Non
     assert found.causes == () and (noise_m or found.conventions == ())
 
 
+def stepped(scene: Scene, h: float, every: int, leapfrog: bool) -> np.ndarray:
+    """Return x + iy of rows of a linear program whose first step does not move the bob."""
+    k = constants_in_double(scene.exact)
+    pull, turn = float(k.gravity), 2j * float(k.turn[2])
+    before = here = complex(float(scene.release.x), float(scene.release.y))
+    rows = [here]
+    for n in range(1, 400 * every + 1):
+        if n > 1 and leapfrog:  # by central differences
+            after = (2 * here - before - h * h * pull * here + h * turn / 2 * before) / (1 + h * turn / 2)
+        else:  # position first
+            after = here + (here - before) * (1 - h * turn) - h * h * pull * here if n > 1 else here
+        before, here = here, after
+        rows += [here] * (n % every == 0)
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("leapfrog", [True, False])
+@pytest.mark.parametrize(("length", "latitude", "every"), [("1", "60", 1), ("2.5", "-40", 3), ("12", "48", 10)])
+def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
+    length: str, latitude: str, every: int, leapfrog: bool
+) -> None:
+    fields = [f"pendulum.length={length}", f"site.latitude={latitude}", "release.x=0.01", "release.y=0.02"]
+    scene, h = load_scene("paris", [*fields, "inputs=binary64"]), 0.1 * float(length) ** 0.5 / every
+    rows = stepped(scene, h, every, leapfrog)
+    found = explain(h * every * np.arange(401), {"x": rows.real.copy(), "y": rows.imag.copy()}, scene, 2.2e-8)
+    assert found.corrected_m < 1e-10
+    said = one_word_for_one_motion(words_of(found))
+    assert said == {"linear_g", "no_centrifugal", f"integrator_{'leapfrog_late' if leapfrog else DRIFT}"}
+
+
+DRIFT = "semi_implicit_euler_drift"
+
+
+@pytest.mark.parametrize("pull", [1.0, 2.0])
+def test_a_bob_that_nothing_holds_falls(pull: float) -> None:
+    scene, times = load_scene("paris", ["run.t_end=20", "inputs=binary64"]), np.linspace(0, 20, 401)
+    found = explain(times, {"x": 0.3 + 0.01 * times, "y": 0.4 - pull * 4.9 * times**2}, scene, 5e-7)
+    assert found.slip.startswith("Its y falls by") and not found.causes
+
+
 @pytest.mark.parametrize(
     ("changes", "drifting"),
     [
