@@ -29,7 +29,8 @@ SHOWN = {
     "transits": "transits",
     "max_angle_deg": "angle (°)",
     "position_error_m": "estimated error (m)",
-}  # columns of the table, and their heads
+}  # columns of the table, and their heads; then those of sections
+OF_SECTION = {"passages": "passages", "t_first_s": "first (s)", "interval_s": "interval (s)"}
 LABELS = {
     "swing_hz": "frequency of the swing in Hz",
     "precession_deg_per_h": "precession in °/h, east to north",
@@ -91,7 +92,11 @@ def text(swept: Swept, out: Path | None) -> str:
     lines = []
     if out is None:
         columns = {column.name: column for column in swept.request.columns}
-        shown = [columns[name] for name in SHOWN if name in columns]
+        of_sections = {
+            f"{word}: {name}": f"{word}: {head}" for word in swept.request.sections for name, head in OF_SECTION.items()
+        }
+        heads = {name: head for name, head in (SHOWN | of_sections).items() if name in columns}
+        shown = [columns[name] for name in heads]
         keys = list(swept.request.table.values)
         rows = []
         for number, row in enumerate(swept.rows()):
@@ -99,8 +104,7 @@ def text(swept: Swept, out: Path | None) -> str:
             ok = row["status"] == Status.OK.value
             results = [_cell(row[column.name], row.get(column.error)) if ok else "" for column in shown]
             rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
-        heads = (*keys, *(SHOWN[column.name] for column in shown))
-        lines += Table({**dict.fromkeys(heads, "number"), "": ""}, rows).lines()
+        lines += Table({**dict.fromkeys((*keys, *heads.values()), "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:

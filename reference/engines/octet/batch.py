@@ -70,7 +70,8 @@ class OctetBatch(Batch):
 
 def _arguments(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> tuple[Any, ...]:
     """Return the arguments of `march`."""
-    return lanes, MOVED_ORDER if wanted.moved else ORDER, numbers.ravel(), results.ravel(), moments, steps
+    order = MOVED_ORDER if wanted.moved else ORDER
+    return lanes, order, wanted.form, numbers.ravel(), results.ravel(), moments, steps
 
 
 BATCH = OctetBatch()
