@@ -193,17 +193,10 @@ def _of_zeros(
 def passages(engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
     """Return the columns of a section by its engine, and in which rows its passages are not decided.
 
-    Args:
-        engine: the engine.
-        word: the section's.
-        rows: the rows, with its form.
-        run: of the engine without it.
-        errors: of that run.
+    The rows are those with its form; run and errors are of those without.
     """
     found = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
-    vertical = direction_of(word) != 0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        error, undecided = _of_zeros(rows, found, errors.position, errors.velocity, vertical)
+    error, undecided = _of_zeros(rows, found, errors.position, errors.velocity, direction_of(word) != 0)
     columns, unknown = passages_listed(word, error, found.transit_row, found.transit_t, found.transit_direction)
     return columns, (found.fate != OK) | ~np.isfinite(rows.form).all(axis=(1, 2)) | undecided | unknown
 
@@ -216,17 +209,17 @@ def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any)
     kept = direction * direction_of(word) >= 0
     row, t, direction = row[kept], t[kept], direction[kept]
     count = np.bincount(row, minlength=len(error))
-    first, some = np.cumsum(count) - count, count > 0
+    first = np.cumsum(count) - count
     same = direction == direction[first[row]]
     alike = np.bincount(row[same], minlength=len(error))
-    start, interval = (np.full(len(error), np.nan) for _ in range(2))
-    start[some], end = t[first[some]], t[same][np.cumsum(alike)[some] - 1]
+    start = np.where(count > 0, np.append(t, np.nan)[first], np.nan)
+    end = np.append(t[same], np.nan)[np.cumsum(alike) - 1]
     with np.errstate(divide="ignore", invalid="ignore"):
-        interval[some] = (end - start[some]) / (alike[some] - 1)
+        interval = np.where(alike > 1, (end - start) / (alike - 1), np.nan)
         apart = np.where(error < LATE * interval / 2, 2 * error / (alike - 1), np.nan)
-    columns = {"passages": count, "t_first_s": start, "t_error_s": error, "interval_s": interval}
-    columns |= {"interval_error_s": apart}
-    return _stated({f"{word}: {name}": values for name, values in columns.items()}, section_columns([word]))
+    columns = section_columns([word])
+    numbers = (count, start, error, interval, apart)
+    return _stated({column.name: each for column, each in zip(columns, numbers, strict=True)}, columns)
 
 
 def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:

@@ -46,12 +46,7 @@ class Tally:
     store_s: float = 0.0
 
     def __add__(self, other: Tally) -> Tally:
-        return Tally(
-            self.counts + other.counts,
-            self.cpu_s + other.cpu_s,
-            self.fold_s + other.fold_s,
-            self.store_s + other.store_s,
-        )
+        return Tally(*(mine + its for mine, its in zip(vars(self).values(), vars(other).values(), strict=True)))
 
 
 @dataclass
@@ -75,8 +70,8 @@ class Part:
         """Return rows of which nothing is known but their values; those with a wrong value have failed."""
         table, inputs = request.table, request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
-        kept = (*_KNOWN, *table.values)
-        part.nothing = {column.name: column.empty(1)[0] for column in request.columns if column.name not in kept}
+        failing = (column for column in request.columns if column.name not in (*_KNOWN, *table.values))
+        part.nothing = {column.name: column.empty(1)[0] for column in failing}
         part.fill(slice(None), {"row": numbers, "level": "computed", **table.words(numbers)})
         for row, reason in table.wrong(numbers, inputs).items():
             part.fail(row - numbers.start, Status.INVALID, reason)

@@ -65,11 +65,9 @@ def promoted(
         solution = solve(scene, level=wished, digits=digits, transits=request.wanted.transits)
     except FoucaultError as error:
         return Promoted({}, ([], []), str(error))
-    for word, found in solution.sections.items():
-        if found.possible:
-            low, high, _ = found.possible[0]
-            where = f"from {float(low):.6g} to {float(high):.6g} s"
-            return Promoted({}, ([], []), f"{word}: the proof leaves open whether there are passages {where}.")
+    undecided = [word for word, found in solution.sections.items() if found.possible]
+    if undecided:
+        return Promoted({}, ([], []), f"{', '.join(undecided)}: the proof does not decide how many passages there are.")
     return Promoted(_values(request, row, solution), _times(solution))
 
 

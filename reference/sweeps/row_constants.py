@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..engines.batch_interface import XDOT, Rows
-from ..model.algebra import add, cross, dot, minus, product, scale, subtract
-from ..model.constants import Constants, Vector, axis_distance, is_zero, turn_and_pull
+from ..model.algebra import add, cross, dot, scale, subtract
+from ..model.constants import Constants, Vector, axis_distance, turn_and_pull
 from ..model.force import acceleration, force, tension
 from ..model.sections import form_along
 from ..model.start import at_angles
@@ -33,6 +33,7 @@ _AT_ONCE = 8192  # rows whose working arrays fit into a processor's cache
 _NEARLY = 1e-9
 _SAME = 2.0**-94  # of the parts of a sum: if it is less, it is zero
 _NEWTON_STEPS, _CLOSE = 8, 2.0**-94  # to a rest position, in rad: the last step is at most as long
+_ZERO = DoubleDouble(np.zeros(1), np.zeros(1))
 _EVEN = 0.5  # of |c|: where Ω² is less, there is one rest position near the plumb line
 
 
@@ -81,9 +82,8 @@ def _of_kind(scene: Scene, table: Table, numbers: Any, section: str) -> Rows:
 
 def _inverse(numbers: DoubleDouble) -> DoubleDouble:
     """Return 1/numbers, of infinity zero."""
-    zero, unit = DoubleDouble(np.zeros(1), np.zeros(1)), DoubleDouble(np.ones(1), np.zeros(1))
     with np.errstate(invalid="ignore"):
-        return zero.where(np.isinf(numbers.high), unit / numbers)
+        return _ZERO.where(np.isinf(numbers.high), (_ZERO + 1) / numbers)
 
 
 def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: str = "") -> Rows:
@@ -109,9 +109,9 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
 
 def _of_block(columns: Columns, gravity_is: GravityIs, count: int, section: str) -> Rows:
     """Return the constants and releases of a few rows."""
-    length, rate, zero = columns["length"], columns["rotation_rate"], DoubleDouble(np.zeros(1), np.zeros(1))
+    length, rate = columns["length"], columns["rotation_rate"]
     sin, cos = sine_and_cosine(columns["latitude"])
-    distance = zero
+    distance = _ZERO
     if gravity_is == "ellipsoid":
         earth = columns["equatorial_radius"], columns["flattening"], columns["altitude"]
         distance = axis_distance(*earth, sin, cos, square_root)
@@ -126,24 +126,23 @@ def _of_block(columns: Columns, gravity_is: GravityIs, count: int, section: str)
     at_rest = v[0].vanishes & v[1].vanishes & v[2].vanishes
     falls = pull_north * v[1], pull_up * v[2]  # along c
     fall, size = (falls[0] + falls[1]).high, abs(falls[0].high) + abs(falls[1].high)
+    still = at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes
+    form, multiplicity, leaves = [_ZERO + part for part in XDOT], _zeros_at_release(n, v, k), np.zeros(1)
     if section:
-        form, multiplicity, leaves, still = _of_section(section, n, v, k)
-    else:
-        form, multiplicity, leaves = XDOT, _zeros_at_release(n, v, k), np.zeros(1)
-        still = at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes
+        form, multiplicity, leaves = _of_section(section, n, v, k)
     return Rows(
         length=_stacked((length,), count)[:, 0],
         drag=_stacked((columns["drag"],), count)[:, 0],
         t_end=_stacked((columns["t_end"],), count)[:, 0],
-        turn=_stacked((zero, north, up), count),
-        pull=_stacked((zero, pull_north, pull_up), count),
+        turn=_stacked((_ZERO, north, up), count),
+        pull=_stacked((_ZERO, pull_north, pull_up), count),
         n=_stacked(n, count),
         V=_stacked(add(v, cross(k.turn, n)), count),
-        form=_stacked([zero + part for part in form], count),
+        form=_stacked(form, count),
         zeros_at_release=_spread(multiplicity, count),
         leaves=_spread(leaves, count),
         rising=_spread(np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64), count),
-        still=_spread(still, count),
+        still=_spread(still & (section == ""), count),
     )
 
 
@@ -167,29 +166,29 @@ def _zeros_at_release(n: Vector, v: Vector, k: Constants) -> Any:
     return np.where(v[0].vanishes, np.where(v[1].vanishes & v[2].vanishes, at_rest, moving), 0)
 
 
-def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> tuple[Any, Any, Any, Any]:
-    """Return a section's form, the multiplicity of its zero at t = 0, its sign just after, and where it has no zeros.
+def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> tuple[list[DoubleDouble], Any, Any]:
+    """Return a section's form, the multiplicity of its zero at t = 0, and its sign just after.
 
     Of a velocity three derivatives are looked at, of a position four. Where all vanish, the multiplicity is as many at
     least, and the sign is not known.
     """
     sin, cos = sine_and_cosine(DoubleDouble.of([azimuth_of(word)]))
     form = form_along(word, (cos, sin, 0), k.pull, lambda: _rest_position(k))
+    numbers = [_ZERO + part for part in (*form.a, *form.b, form.d)]
     rate = acceleration(n, v, k)
     driven = subtract(force(v, rate, k), k.pull)  # rate of the force, which is linear
     tighter = 2 * dot(v, rate) + dot(v, force(n, v, k)) + dot(n, driven)
     jerk = subtract(driven, add(scale(tighter, n), scale(tension(n, v, k), v)))
-    is_place = not all(map(is_zero, form.a))
-    vanish, multiplicity, leaves = True, np.zeros(1, np.int64), np.full(1, np.nan)
-    for order, vector in enumerate((n, v, rate, jerk) if is_place else (v, rate, jerk)):
-        parts = [product(p, q) for p, q in zip(form.a if is_place else form.b, vector, strict=True)]
-        parts = [part for part in (*parts, minus(0, form.d) if order == 0 else 0) if not is_zero(part)]
-        value = sum(parts[1:], parts[0]).high
-        is_none = np.abs(value) <= _SAME * sum(np.abs(part.high) for part in parts)
+    is_gate, d, vanish = word.startswith("gate"), numbers[6], np.ones(1, bool)
+    multiplicity, leaves = np.zeros(1, np.int64), np.full(1, np.nan)
+    for vector in (n, v, rate, jerk) if is_gate else (v, rate, jerk):
+        parts = [p * q for p, q in zip(numbers[:3] if is_gate else numbers[3:6], vector, strict=True)]
+        value, size = (parts[0] + parts[1] + parts[2] - d).high, sum(np.abs(part.high) for part in (*parts, d))
+        is_none = np.abs(value) <= _SAME * size
         leaves = np.where(vanish & ~is_none, np.sign(value), leaves)
-        vanish = vanish & is_none
+        vanish, d = vanish & is_none, _ZERO
         multiplicity = multiplicity + vanish
-    return (*form.a, *form.b, form.d), multiplicity, leaves, np.zeros(1, bool)
+    return numbers, multiplicity, leaves
 
 
 def _rest_position(k: Constants) -> Vector:

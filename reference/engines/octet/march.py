@@ -207,10 +207,10 @@ def _begin(m: March) -> None:
 
 
 @compiled
-def _place_zeros(m: March, order: int, form: bool) -> None:
+def _place_zeros(m: March, order: int, form: bool | None) -> None:
     """Find transits and highest points on the step of each lane."""
     if occupied(load(m.transits.sought, 0)):
-        store(m.transits.after, 0, form_of(m.state) if form else xdot_of(m.state))
+        store(m.transits.after, 0, xdot_of(m.state) if form is None else form_of(m.state))
         seek(m.transits, m.c.xdot, m.length, m.time, order)
         refine(m.transits, m.c.xdot, m.length, order, CONVERGED)
     if occupied(load(m.highest.sought, 0)):
@@ -251,10 +251,12 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
 
 
 @kept(*rows.SOURCES, nogil=True, **OPTIONS)
-def march(m: March, order: int, form: bool, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
+def march(
+    m: March, order: int, form: bool | None, numbers: Array, results: Array, moments: Moments, steps: int
+) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done.
 
-    The transits are the zeros of the rows' forms, if `form` says so.
+    The transits are the zeros of the rows' forms unless `form` is None: then numba leaves out what has to do with them.
     """
     many = len(numbers) // rows.COLUMNS
     if m.counts[NEXT] == 0:
@@ -264,7 +266,7 @@ def march(m: March, order: int, form: bool, numbers: Array, results: Array, mome
         if m.counts[DONE] == many or 0 < len(moments.row) < moments.number[0] + LANES * MOST_ZEROS:
             break
         taylor_coefficients(m.c, m.state, order)
-        if form:
+        if form is not None:
             put_form(m.c, m.state, order)
         _begin(m)
         _set_length(m, order)
