@@ -92,11 +92,9 @@ def text(swept: Swept, out: Path | None) -> str:
     lines = []
     if out is None:
         columns = {column.name: column for column in swept.request.columns}
-        of_sections = {
-            f"{word}: {name}": f"{word}: {head}" for word in swept.request.sections for name, head in OF_SECTION.items()
-        }
-        heads = {name: head for name, head in (SHOWN | of_sections).items() if name in columns}
-        shown = [columns[name] for name in heads]
+        sections = swept.request.sections
+        heads = SHOWN | {f"{word}: {name}": f"{word}: {head}" for word in sections for name, head in OF_SECTION.items()}
+        shown = [columns[name] for name in heads if name in columns]
         keys = list(swept.request.table.values)
         rows = []
         for number, row in enumerate(swept.rows()):
@@ -104,7 +102,8 @@ def text(swept: Swept, out: Path | None) -> str:
             ok = row["status"] == Status.OK.value
             results = [_cell(row[column.name], row.get(column.error)) if ok else "" for column in shown]
             rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
-        lines += Table({**dict.fromkeys((*keys, *heads.values()), "number"), "": ""}, rows).lines()
+        named = (*keys, *(heads[column.name] for column in shown))
+        lines += Table({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:

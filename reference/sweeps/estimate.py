@@ -217,9 +217,8 @@ def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any)
     with np.errstate(divide="ignore", invalid="ignore"):
         interval = np.where(alike > 1, (end - start) / (alike - 1), np.nan)
         apart = np.where(error < LATE * interval / 2, 2 * error / (alike - 1), np.nan)
-    columns = section_columns([word])
-    numbers = (count, start, error, interval, apart)
-    return _stated({column.name: each for column, each in zip(columns, numbers, strict=True)}, columns)
+        columns, numbers = section_columns([word]), (count, start, error, interval, apart)
+        return _stated({column.name: each for column, each in zip(columns, numbers, strict=True)}, columns)
 
 
 def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
@@ -275,7 +274,7 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
             "max_angle_deg": np.degrees(run.largest_angle),
             "max_angle_error_deg": errors.angle,
         }
-    return _stated(columns, COLUMNS)
+        return _stated(columns, COLUMNS)
 
 
 def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[str, Any], Any]:
@@ -286,8 +285,7 @@ def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[
     unknown: Any = False
     for name in {column.error for column in described if column.error}:
         own = [column.name for column in described if column.error == name]
-        with np.errstate(invalid="ignore"):
-            error = columns[name] + np.spacing(np.max(np.abs([columns[value] for value in own]), axis=0))
+        error = columns[name] + np.spacing(np.max(np.abs([columns[value] for value in own]), axis=0))
         none = ~np.isfinite(error)
         unknown = unknown | none & np.isfinite([columns[value] for value in own]).any(axis=0)
         columns |= {value: np.where(none, np.nan, columns[value]) for value in own}

@@ -195,7 +195,6 @@ def _rest_position(k: Constants) -> Vector:
     """Return what `model.force.rest_position` does; NaN where there may be another one near the plumb line."""
     size = square_root(dot(k.pull, k.pull))
     north, up = (part / size for part in k.pull[1:])
-    step = size
     for _ in range(_NEWTON_STEPS):
         n, along = (0, north, up), (0, -up, north)
         push, bent = force(n, (0, 0, 0), k), subtract(force(along, (0, 0, 0), k), k.pull)

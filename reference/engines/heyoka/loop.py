@@ -61,8 +61,8 @@ class Integrator:
             noted.clear()
         self._ta.time = 0.0
         self._ta.state[:] = state
-        constants = [*k.turn[1:], k.pull[2], k.drag][: self._parameters]
-        self._ta.pars[:] = [*constants, *form][: len(self._ta.pars)]
+        numbers = (*([*k.turn[1:], k.pull[2], k.drag][: self._parameters]), *form)
+        self._ta.pars[:] = numbers[: len(self._ta.pars)]
 
     def to_end(self, release: Release, most: int) -> tuple[Any, int, bool]:
         """Return the state at the end, the steps taken, and whether the end was not reached.

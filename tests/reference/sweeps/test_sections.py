@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from passages import found
-from random_rows import random_kinds, rows_of
+from random_rows import KINDS, random_kinds, rows_of
 
 from reference import load_scene, solve, sweep
 from reference.engines.batch_interface import Wanted
@@ -19,7 +19,7 @@ from reference.sweeps.promote import audited, worst_ratio
 
 ENGINES = [name for name, engine in batches().items() if engine.installed]
 SPAN = Fraction(60)
-NEAR = 1e-5  # s: DOP853 in double, which amplifies its errors over the top
+NEAR = 1e-6  # s, of DOP853 in double
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,9 @@ def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, e
 
 def test_passages_of_limbs_are_those_of_scipy(drawn):
     many, words, truth = drawn
-    for inputs, exact in zip(many[::4], truth[::4], strict=True):
+    # over the top scipy's states leave the sphere, and errors grow by two hundred a turn
+    tame = [i for i in range(len(many)) if KINDS[i % len(KINDS)] != "over"]
+    for inputs, exact in ((many[i], truth[i]) for i in tame):
         for word, other in found(inputs, words, SPAN).items():
             table, directions = exact[word]
             assert directions == [direction for _, direction in other], (word, inputs)
