@@ -122,8 +122,8 @@ PUBLIC = {
     "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution Swept "
     "UnreachableError integrate load load_ranges load_scene parse_scene scene_ids solve trajectory write",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Uncertain Workers "
-    "check_workers chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
+    "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections Uncertain "
+    "Workers check_workers chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
     "reference.dataset.render": "MEANING",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",

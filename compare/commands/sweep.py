@@ -14,6 +14,7 @@ from reference.commands.terminal import (
     Assignments,
     Cluster,
     EndTime,
+    Sections,
     Workers,
     check_workers,
     completion,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from reference import Swept
     from reference.sweeps.request import Request
 
-ON_SCENE = ("--set", "--t-end")  # options that change the scene, and not what is asked of a sweep of it
+ON_SCENE = ("--set", "--t-end", "--section")  # options that change the scene, and not what is asked of a sweep of it
 _NO_GRID = dict.fromkeys(
     ("run.grid_step", "run.digits", "run.level", "run.transits"), "Give --t-end, --digits, --level or --want."
 )
@@ -62,6 +63,7 @@ def command(
     set_: Assignments = None,
     t_end: EndTime = None,
     want: Annotated[str | None, WANT] = None,
+    section: Sections = None,
     level: Annotated[str | None, LEVEL] = None,
     digits: Annotated[int | None, DIGITS] = None,
     tolerance: Annotated[float | None, TOLERANCE] = None,
@@ -75,7 +77,7 @@ def command(
 ) -> None:
     """Solve a scene for many values of its fields.
 
-    Frequency, precession, transits and final state, each with its error.
+    Frequency, precession, transits, passages of sections and final state, each with its error.
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
     """
@@ -86,8 +88,8 @@ def command(
 
     request = _request(
         scene_word, out,
-        {"--over": over, "--rows": rows, "--set": set_, "--t-end": t_end, "--want": want, "--level": level,
-         "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit},
+        {"--over": over, "--rows": rows, "--set": set_, "--t-end": t_end, "--want": want, "--section": section,
+         "--level": level, "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit},
     )  # fmt: skip
     check_workers(workers, cluster)
     if plot is not None:
@@ -131,9 +133,11 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
         if out is None:
             raise InputError("SCENE", "nothing", "a scene, or --out DIR with a sweep to go on with")
         return Store.opened(out).request
-    scene = load_scene(
-        scene_word, replacements(options["--set"], {"--t-end": ("run.t_end", options["--t-end"])}, _NO_GRID)
-    )
+    given = {
+        "--t-end": ("run.t_end", options["--t-end"]),
+        "--section": ("run.sections", ",".join(options["--section"]) if options["--section"] else None),
+    }
+    scene = load_scene(scene_word, replacements(options["--set"], given, _NO_GRID))
     chosen = {word.strip("-"): value for word, value in options.items() if value is not None and word not in ON_SCENE}
     if "want" in chosen:
         chosen["want"] = [word.strip() for word in chosen["want"].split(",")]

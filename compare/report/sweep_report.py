@@ -29,7 +29,8 @@ SHOWN = {
     "transits": "transits",
     "max_angle_deg": "angle (°)",
     "position_error_m": "estimated error (m)",
-}  # columns of the table, and their heads
+}  # columns of the table, and their heads; then those of sections
+OF_SECTION = {"passages": "passages", "t_first_s": "first (s)", "interval_s": "interval (s)"}
 LABELS = {
     "swing_hz": "frequency of the swing in Hz",
     "precession_deg_per_h": "precession in °/h, east to north",
@@ -96,7 +97,9 @@ def text(swept: Swept, out: Path | None) -> str:
     lines = []
     if out is None:
         columns = {column.name: column for column in swept.request.columns}
-        shown = [columns[name] for name in SHOWN if name in columns]
+        sections = swept.request.sections
+        heads = SHOWN | {f"{word}: {name}": f"{word}: {head}" for word in sections for name, head in OF_SECTION.items()}
+        shown = [columns[name] for name in heads if name in columns]
         keys = list(swept.request.table.values)
         rows = []
         for number, row in enumerate(swept.rows()):
@@ -104,8 +107,8 @@ def text(swept: Swept, out: Path | None) -> str:
             ok = row["status"] == Status.OK.value
             results = [_cell(row[column.name], row.get(column.error)) if ok else "" for column in shown]
             rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
-        heads = (*keys, *(SHOWN[column.name] for column in shown))
-        lines += Table({**dict.fromkeys(heads, "number"), "": ""}, rows).lines()
+        named = (*keys, *(heads[column.name] for column in shown))
+        lines += Table({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:

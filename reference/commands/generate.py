@@ -23,6 +23,7 @@ from .terminal import (
     Assignments,
     Cluster,
     EndTime,
+    Sections,
     Uncertain,
     Workers,
     check_workers,
@@ -66,9 +67,6 @@ ENGINE = option(
     completion(lambda: ENGINES),
 )
 NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
-SECTION = option(
-    "--section", "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.", "WORD"
-)
 AUDIT = option(
     "--audit/--no-audit",
     "At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
@@ -98,7 +96,7 @@ def command(
     level: Annotated[str | None, LEVEL] = None,
     engine: Annotated[str, ENGINE] = AUTO,
     no_transits: Annotated[bool, NO_TRANSITS] = False,
-    section: Annotated[list[str] | None, SECTION] = None,
+    section: Sections = None,
     audit: Annotated[bool | None, AUDIT] = None,
     confirm: Annotated[str | None, CONFIRM] = None,
     no_confirm: Annotated[bool, NO_CONFIRM] = False,

@@ -56,6 +56,10 @@ BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exa
 EndTime = Annotated[str | None, option("--t-end", "End each run at this time, in s (default: the scene's).", "S")]
 Workers = Annotated[int | None, option("--workers", "Number of cores of this machine to use (default: all).", "N")]
 Cluster = Annotated[str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")]
+SECTION = option(
+    "--section", "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.", "WORD"
+)
+Sections = Annotated[list[str] | None, SECTION]
 AsJson = Annotated[bool, option("--json", "Print one JSON document on stdout and nothing else.")]
 
 

@@ -23,6 +23,7 @@ from ..system.imports import missing, switched_off
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
 LEAST_BEND = 1e-6  # of a highest point: below it the orbit is conical
+XDOT = (0, 0, 0, 1, 0, 0, 0)  # the form a·n + b·n' - d of the transits: a, b and d
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,10 @@ class Rows:
         pull: c, gravity and the centrifugal force at the pivot over l, in 1/s², shape (n, 3, 2).
         n: position over l at t = 0, a unit vector, shape (n, 3, 2).
         V: n' + Ω × n at t = 0, in 1/s, shape (n, 3, 2).
-        zeros_at_release: multiplicity of xdot's zero at t = 0 by the exact inputs, 0 to 4, shape (n,), int64.
+        form: a, b and d of the form a·n + b·n' - d whose zeros are the transits, b in s; `XDOT`, or that of a section,
+            shape (n, 7, 2).
+        zeros_at_release: multiplicity of its zero at t = 0 by the exact inputs, 0 to 4, shape (n,), int64.
+        leaves: of a section its sign just after t = 0, NaN where it is not known; of xdot 0, shape (n,).
         rising: sign of u', the rate at which the bob rises along the plumb line, at t = 0 by the exact inputs: -1, 0 or
             1, shape (n,), int64.
         still: whether xdot is zero at all times by the exact inputs, shape (n,): such a row has no transits.
@@ -53,7 +57,9 @@ class Rows:
     pull: Array
     n: Array
     V: Array
+    form: Array
     zeros_at_release: Any
+    leaves: Array
     rising: Any
     still: Any
 
@@ -101,6 +107,7 @@ class Wanted:
         transits: count the zeros of xdot in 0 < t <= t_end, all of them located, and judge them.
         apsides: the highest points of the swing, for its frequency and its precession.
         times: the time and the direction of each transit as well.
+        form: the transits are the zeros of `Rows.form`, which is not xdot.
         moved: a run that tells the error: another order, and every constant and start number one ulp further from 0
             (1) or nearer to it (-1); 0 for the run itself.
     """
@@ -108,6 +115,7 @@ class Wanted:
     transits: bool = True
     apsides: bool = True
     times: bool = False
+    form: bool = False
     moved: int = 0
 
 
@@ -123,7 +131,7 @@ class Outcomes:
         transits: number of transits, int32.
         t_first, t_last: times of the first and of the last one, in s.
         close_pairs: transits nearer to the one before than `CLOSE_PAIR` of a small swing's period, int32.
-        least_ax: smallest |ax| at a transit, in m/s².
+        least_ax: smallest |ax| at a transit, in m/s²; of a section the smallest rate of its form, times l.
         apsides: number of highest points (where zdot along the plumb line goes from + to -) in 0 < t <= t_end, int32.
         apsis_first, apsis_last: times of the first and of the last one, in s.
         turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from
@@ -259,6 +267,12 @@ class PlumbAxes:
         n, V = ((of(part[:, 0]), *turned(of(part[:, 1]), of(part[:, 2]), sin, cos)) for part in (rows.n, rows.V))
         speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
         return cls(size, sin, cos, turn, n, V, speed)
+
+    def forms(self, rows: Rows) -> Array:
+        """Return a, b and d of the rows' forms, shape (7, n); here n is counted from the lowest point, (0, 0, -1)."""
+        ax, ay, az, bx, by, bz, d = (DoubleDouble.from_pairs(rows.form[:, i]) for i in range(len(XDOT)))
+        ap, au = turned(ay, az, self.sin, self.cos)
+        return np.array([part.high for part in (ax, ap, au, bx, *turned(by, bz, self.sin, self.cos), d + au)])
 
 
 def moved(numbers: Array, way: int) -> Array:

@@ -1,4 +1,4 @@
-"""The zeros found in a row, guarded: what they say of its transits and highest points.
+"""The zeros found in a row, guarded: what they say of its transits, or passages of a section, and highest points.
 
 A root finder such as heyoka's may lose a zero. A single one shows in the directions, which have to alternate from the
 release to the end. Of two close together the rate itself tells, at samples of the run: between two of them it may dip
@@ -13,15 +13,16 @@ from typing import Any, Self
 
 import numpy as np
 
-from ..model.algebra import add, cross, subtract
+from ..model.algebra import add, cross, dot, minus, plus, subtract
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..numbers.precision import Array
-from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
+from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, XDOT, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
-TRANSIT, HEIGHT = 0, 2  # kinds of zeros: of xdot, and of the rate of the height over the plumb line; and their axes
-FINER = 16  # parts of the time between two samples, where a rate may dip to zero there
+TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
+RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
+FINER = 16  # parts of the time between two samples, where a form may dip to zero there
 QUIET = 1e-4  # of a swing's period after the release: there heyoka may report the zero at the release
 MOST_LATE = (
     1e-3  # of a radian of the swing: as a zero of the height's rate was found; more, and its series tells little
@@ -63,6 +64,11 @@ class Motion:
         v, torque = (rates[0], rates[1], rates[2]), (rates[3], rates[4], rates[5])
         return cls(n, v, add(cross(torque, n), cross(subtract(momentum, k.turn), v)))
 
+    def form(self, form: Any) -> tuple[Any, Any]:
+        """Return a form, as `PlumbAxes.forms` gives it, and its rate."""
+        a, b, n = form[:3], form[3:6], (self.n[0], self.n[1], self.n[2] + 1)
+        return minus(plus(dot(a, n), dot(b, self.v)), form[6]), plus(dot(a, self.v), dot(b, self.a))
+
     def earlier(self, by: Array) -> Self:
         """Return the motion a little earlier than at its times, n'' as it is."""
         n, v = (
@@ -86,8 +92,9 @@ class Release:
         rate: of a small swing, in rad/s.
         quiet: seconds after the release in which a zero is that of the release, if it has one by the exact inputs.
         still: whether xdot is zero at all times by the exact inputs.
-        zero: of each kind of rate, whether it is exactly zero at the release.
-        signs: of each kind of rate just after the release.
+        forms: whose zeros are sought, of each kind.
+        zero: of each kind of form, whether it is exactly zero at the release.
+        signs: of each kind of form just after the release.
         angle: from the plumb line, in rad.
     """
 
@@ -96,13 +103,14 @@ class Release:
     rate: float
     quiet: float
     still: bool
+    forms: dict[int, Any]
     zero: dict[int, bool]
     signs: dict[int, float]
     angle: float
 
     @classmethod
-    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: Motion) -> Self:
-        """Return what is known of a row whose motion at the release is given."""
+    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: Motion, form: Any = XDOT) -> Self:
+        """Return what is known of a row whose motion at the release is given, and in these axes the form."""
         rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
         x, p, u = motion.n
@@ -113,9 +121,10 @@ class Release:
             rate=rate,
             quiet=QUIET * 2 * np.pi / (rate + axes.speed[row]),
             still=bool(rows.still[row]),
+            forms={TRANSIT: form, HEIGHT: RISE},
             zero={TRANSIT: multiplicity > 0, HEIGHT: rising == 0},
             # at rest on the plumb line the bob can but rise
-            signs={TRANSIT: np.sign(east), HEIGHT: rising or np.sign(motion.a[2]) or 1},
+            signs={TRANSIT: rows.leaves[row] or np.sign(east), HEIGHT: rising or np.sign(motion.a[2]) or 1},
             angle=np.arctan2(np.hypot(x, p), -u),
         )
 
@@ -138,26 +147,28 @@ class Samples:
         """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
         signs = np.concatenate([[release.signs[kind]], zeros.directions])
         there = signs[np.searchsorted(zeros.times, self.times[1:])]
-        alternate = (signs[:-1] * signs[1:] < 0).all() and (self.motion.v[kind][1:] * there > 0).all()
+        alternate = (signs[:-1] * signs[1:] < 0).all()
+        alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * there > 0).all()
         return not (alternate and (self.complete or not self._dips(zeros, at, release, kind)[0].size))
 
     def finer(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> Array:
-        """Return the times of samples, with more of them where the rate of a kind may dip to zero."""
+        """Return the times of samples, with more of them where the form of a kind may dip to zero."""
         return np.union1d(self.times, np.linspace(*self._dips(zeros, at, release, kind), FINER + 1)[1:-1])
 
     def _dips(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> tuple[Array, Array]:
-        """Return the neighbours among samples and zeros between which a rate may go through zero and back.
+        """Return the neighbours among samples and zeros between which a form may go through zero and back.
 
         The cubic through the values and slopes there says how low the minimum between them is, but for its error: that
         of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
         signs, times = np.append(release.signs[kind], zeros.directions), np.append(self.times, zeros.times)
         order = np.argsort(times, kind="stable")
-        rate, slope = self.motion.v[kind], self.motion.a[kind]
+        rate, slope = self.motion.form(release.forms[kind])
         sign, most = signs[np.cumsum(order >= len(rate))[:-1]], np.abs(rate).max()
         times = times[order]
         length = np.diff(times)
-        rate, slope = np.concatenate([rate, 0 * zeros.times])[order], np.concatenate([slope, at.a[kind]])[order]
+        rate = np.concatenate([rate, 0 * zeros.times])[order]
+        slope = np.concatenate([slope, at.form(release.forms[kind])[1]])[order]
         left, right, before, after = sign * [rate[:-1], rate[1:], slope[:-1] * length, slope[1:] * length]
         if release.zero[kind]:
             left[0], before[0] = 0, max(before[0], 0)
@@ -172,7 +183,7 @@ def describe_transits(
     outcomes: Outcomes, row: int, release: Release, zeros: Zeros, at: Motion, samples: Samples
 ) -> None:
     """Fill in a row's transits: the zeros, and the motion at them."""
-    t, ax = zeros.times, at.a[0]
+    t, (_, ax) = zeros.times, at.form(release.forms[TRANSIT])
     if samples.lost(zeros, at, release, TRANSIT) or (np.sign(ax) != zeros.directions).any():
         outcomes.fate[row] = DOUBTFUL
     outcomes.transits[row] = len(t)

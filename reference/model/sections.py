@@ -7,6 +7,7 @@ velocity along the plumb line changes from up to down.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from ..numbers.precision import to_mpf
@@ -33,12 +34,21 @@ def form_of(word: str, start: Start) -> Form:
     Raises:
         UnreachableError: a gate through the rest position, and the scene has none.
     """
-    ctx, pull = start.ctx, start.k.pull
-    kind, angle = word.split()[0], to_mpf(azimuth_of(word) / 180, ctx)
-    along = (ctx.cospi(angle), ctx.sinpi(angle), 0)
+    ctx, angle = start.ctx, to_mpf(azimuth_of(word) / 180, start.ctx)
+    return form_along(word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest)
+
+
+def direction_of(word: str) -> int:
+    """Return the direction of the zeros that count, as in `Form`."""
+    return {"highest": -1, "lowest": 1}.get(word, 0)
+
+
+def form_along(word: str, along: Vector, pull: Vector, rest: Callable[[], Vector]) -> Form:
+    """Return the form of a section's word in any number type, from its direction, c and the rest position."""
+    kind = word.split()[0]
     if kind == "turn":
         return Form(NOTHING, along, 0)
     if kind != "gate":
-        return Form(NOTHING, scale(-1, pull), 0, -1 if kind == "highest" else 1)
+        return Form(NOTHING, scale(-1, pull), 0, direction_of(word))
     across = (-along[1], along[0], 0) if word.endswith("@0") else cross(along, pull)
-    return Form(across, NOTHING, 0 if word.endswith("@0") else dot(across, start.rest))
+    return Form(across, NOTHING, 0 if word.endswith("@0") else dot(across, rest()))

@@ -171,7 +171,7 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
     f, after = plus(dot(a, v), dot(b, acc)), plus(dot(a, add(v, scale(step, acc))), dot(b, later))
     power, length = bits_in(max(errors.values())), float(start.k.length)
     parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    off = sum(
+    off: Any = sum(
         parts[name] * abs(float(x))
         for kind, part in ((POSITION, form.a), (VELOCITY, form.b))
         for name, x in zip(kind, part, strict=True)

@@ -123,9 +123,8 @@ def solve(
         level = "enclosed"
     elif derivatives:
         raise InputError("derivatives", True, "uncertain inputs, to which they are taken", "Give uncertain={…} too.")
-    words = sections if sections is None or isinstance(sections, str) else ",".join(sections)
-    requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits, "sections": words}
-    scene = as_scene(scene).with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
+    requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits, "sections": sections}
+    scene = as_scene(scene).with_values({f"run.{key}": value for key, value in requested.items() if value is not None})
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
     if confirm not in CONFIRMATIONS:

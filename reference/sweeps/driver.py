@@ -19,7 +19,7 @@ from typing import Any
 from ..engines.registry import batches
 from ..status import Status
 from ..system.workers import Pool, WorkerDied, as_done
-from .estimate import MOVED
+from .estimate import MOVED, PASSAGES
 from .part import Part, Promote, Tally, solve_part
 from .promote import Promoted, promoted
 from .request import Request, request_of
@@ -171,7 +171,7 @@ def prepared(request: Request) -> float:
     """Compile in this thread what the rows need; return the CPU seconds that it took."""
     started = time.thread_time()
     engine = batches()[request.engine]
-    for wanted in (request.wanted, MOVED):
+    for wanted in (request.wanted, MOVED, *([PASSAGES] if request.sections else [])):
         engine.prepare(wanted, drag=False)
     return time.thread_time() - started
 

@@ -13,14 +13,16 @@ beyond the horizontal, against limbs at 110 bits.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import LEAST_BEND, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import LEAST_BEND, OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..model.sections import direction_of
 from ..numbers.precision import Array
-from .parquet import COLUMNS, STATE_COLUMNS
+from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
 
 FACTOR = 16.0
 WILD_FACTOR = 64.0  # where there are three runs
@@ -34,6 +36,7 @@ LATE = 0.25  # of half a swing or turn: transits and highest points that may be 
 HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
 MOVED, MOVED_BACK = (Wanted(transits=False, apsides=False, moved=way) for way in (1, -1))
+PASSAGES = Wanted(apsides=False, times=True, form=True)
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,7 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         # where a swing is late its position tells at the lowest point, its velocity at the highest
         position = factor * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
         velocity = factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
-        transit = velocity / run.least_ax + np.spacing(run.t_last)
+        transit, undecided = _of_zeros(rows, run, position, velocity)
         span = run.t_last - run.t_first
         share = (run.transits - 1) * transit / span
         swing, precession = _of_swing(rows, run, position, velocity)
@@ -109,7 +112,7 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         precession=precession,
         # the height, which rounds to about an ulp, tells little of an angle next to the top
         angle=np.degrees(position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))),
-        undecided=_undecided(rows, run, velocity, speed),
+        undecided=undecided,
         unsure_of_highest=_unsure_of_highest(rows, run, position, velocity),
     )
 
@@ -163,16 +166,59 @@ def of_swing(run: Outcomes, late: Array, turned: Array) -> tuple[Array, Array]:
     return np.where(counted, gaps * late / span**2, np.nan), np.where(counted, drift * DEGREES_PER_HOUR, np.nan)
 
 
-def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Array:
-    """Return where a transit may lie on either side of the end, or a close pair be none at all."""
-    at_end = np.abs(run.state[:, 3]) <= velocity
-    length = rows.length[:, 0]
+def _of_zeros(
+    rows: Rows, run: Outcomes, position: Array, velocity: Array, vertical: bool = False
+) -> tuple[Array, Array]:
+    """Return the error of the worst transit's time, and where one may lie beyond the end, or a close pair be none.
+
+    Of a section likewise, from how wrong its form may be; `vertical` says that it is the rate of the height, of which
+    a velocity's error is the part along the sphere, and a position's turns the velocity.
+    """
+    length, speed = rows.length[:, 0], np.linalg.norm(run.state[:, 3:], axis=1)
+    form, state = rows.form[..., 0], run.state
+    value = (form[:, :3] * state[:, :3]).sum(axis=1) + (form[:, 3:6] * state[:, 3:]).sum(axis=1) - form[:, 6] * length
+    of_place, of_velocity = (np.linalg.norm(part, axis=1) for part in (form[:, :3], form[:, 3:6]))
     fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
-    reach = length * np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
-    jerk = fastest**3 * reach
-    pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * jerk * velocity)
-    undecided: Array = ~rows.still & (at_end | pair)
-    return undecided
+    sine = np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
+    off, bend = of_place * position + of_velocity * velocity, fastest**2 * length * sine
+    bend = bend * (of_place + of_velocity * fastest)
+    if vertical:
+        passing = _fastest(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
+        off, bend = of_velocity * (sine * velocity + passing * position), 8 * sine * bend
+    pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * bend * off)
+    undecided: Array = ~rows.still & ((np.abs(value) <= off) | pair)
+    return off / run.least_ax + np.spacing(run.t_last), undecided
+
+
+def passages(engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
+    """Return the columns of a section by its engine, and in which rows its passages are not decided.
+
+    The rows are those with its form; run and errors are of those without.
+    """
+    found = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
+    error, undecided = _of_zeros(rows, found, errors.position, errors.velocity, direction_of(word) != 0)
+    columns, unknown = passages_listed(word, error, found.transit_row, found.transit_t, found.transit_direction)
+    return columns, (found.fate != OK) | ~np.isfinite(rows.form).all(axis=(1, 2)) | undecided | unknown
+
+
+def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any) -> tuple[dict[str, Any], Any]:
+    """Return the columns of a section, and where a number has no error, from the error of each row's times.
+
+    `row`, `t` and `direction` are those of every zero of its form, ordered by row and time.
+    """
+    kept = direction * direction_of(word) >= 0
+    row, t, direction = row[kept], t[kept], direction[kept]
+    count = np.bincount(row, minlength=len(error))
+    first = np.cumsum(count) - count
+    same = direction == direction[first[row]]
+    alike = np.bincount(row[same], minlength=len(error))
+    start = np.where(count > 0, np.append(t, np.nan)[first], np.nan)
+    end = np.append(t[same], np.nan)[np.cumsum(alike) - 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        interval = np.where(alike > 1, (end - start) / (alike - 1), np.nan)
+        apart = np.where(error < LATE * interval / 2, 2 * error / (alike - 1), np.nan)
+        columns, numbers = section_columns([word]), (count, start, error, interval, apart)
+        return _stated({column.name: each for column, each in zip(columns, numbers, strict=True)}, columns)
 
 
 def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
@@ -202,10 +248,7 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
-    """Return the columns by name, and in which rows a number has no error: there neither stands.
-
-    Each error includes an ulp of the numbers that it belongs to, for the rounding of the column.
-    """
+    """Return the columns by name, and in which rows a number has no error: there neither stands."""
     span, swings = run.t_last - run.t_first, run.apsis_last - run.apsis_first
     with np.errstate(divide="ignore", invalid="ignore"):
         precession = np.where(run.apsides > 1, run.turn / swings * DEGREES_PER_HOUR, np.nan)
@@ -231,12 +274,20 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
             "max_angle_deg": np.degrees(run.largest_angle),
             "max_angle_error_deg": errors.angle,
         }
-        unknown = np.zeros(len(rows), bool)
-        for name in {column.error for column in COLUMNS if column.error}:
-            own = [column.name for column in COLUMNS if column.error == name]
-            error = columns[name] + np.spacing(np.max(np.abs([columns[value] for value in own]), axis=0))
-            none = ~np.isfinite(error)
-            unknown |= none & np.isfinite([columns[value] for value in own]).any(axis=0)
-            columns |= {value: np.where(none, np.nan, columns[value]) for value in own}
-            columns[name] = np.where(none, np.nan, error)
+        return _stated(columns, COLUMNS)
+
+
+def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[str, Any], Any]:
+    """Return columns with each error an ulp of its numbers larger, for the rounding, and where a number has no error.
+
+    There neither stands.
+    """
+    unknown: Any = False
+    for name in {column.error for column in described if column.error}:
+        own = [column.name for column in described if column.error == name]
+        error = columns[name] + np.spacing(np.max(np.abs([columns[value] for value in own]), axis=0))
+        none = ~np.isfinite(error)
+        unknown = unknown | none & np.isfinite([columns[value] for value in own]).any(axis=0)
+        columns |= {value: np.where(none, np.nan, columns[value]) for value in own}
+        columns[name] = np.where(none, np.nan, error)
     return columns, unknown

@@ -77,6 +77,27 @@ COLUMNS = (
     Column("max_angle_deg", "float64", "largest angle from the plumb line", (AMPLITUDE,), "max_angle_error_deg"),
     Column("max_angle_error_deg", "float64", "its error", (AMPLITUDE,)),
 )  # fmt: skip
+
+
+def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
+    """Return the columns of sections: of each the number of passages, the first one, and the time from one to the next.
+
+    That time is the mean between passages in the direction of the first: the period of a gate or a turn, and half of it
+    of the highest or the lowest points.
+    """
+    return tuple(
+        Column(f"{word}: {name}", kind, meaning, error=error and f"{word}: {error}")
+        for word in words
+        for name, kind, meaning, error in (
+            ("passages", "int32", "passages of the section in 0 < t <= t_end", ""),
+            ("t_first_s", "float64", "time of the first one", "t_error_s"),
+            ("t_error_s", "float64", "error of the worst one's time", ""),
+            ("interval_s", "float64", "mean time between passages in the direction of the first", "interval_error_s"),
+            ("interval_error_s", "float64", "its error", ""),
+        )
+    )
+
+
 TRANSIT_COLUMNS = (
     Column("row", "int64", "number of the row"),
     Column("t_s", "float64", "time of the transit"),

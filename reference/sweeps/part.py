@@ -16,15 +16,15 @@ from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .axes import TEXTS
-from .estimate import columns_of, judged
-from .parquet import COLUMNS, TRANSIT_COLUMNS
+from .estimate import columns_of, judged, passages
+from .parquet import TRANSIT_COLUMNS
 from .promote import Promoted, promoted
 from .request import Request
 from .row_constants import engine_rows
 
 Promote = Callable[..., Promoted]
 
-DOUBTFUL_REASON = "The number of transits, or the error, is not decided in double."
+DOUBTFUL_REASON = "The number of transits or passages, or the error, is not decided in double."
 STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
 _KNOWN = ("row", "status", "reason", "level")  # columns that a row has which failed
 
@@ -61,17 +61,21 @@ class Part:
         columns: arrays of shape (rows,) by name; words are objects, None where there is none.
         transits: columns row, t_s and direction of every transit, if wanted.
         tally: counts and costs.
+        nothing: what the columns of a row hold that failed.
     """
 
     columns: dict[str, Any] = field(default_factory=dict)
     transits: dict[str, Any] = field(default_factory=dict)
     tally: Tally = field(default_factory=Tally)
+    nothing: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
     def unsolved(cls, request: Request, numbers: range) -> Part:
         """Return rows of which nothing is known but their values; those with a wrong value have failed."""
         table, inputs = request.table, request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
+        failing = (column for column in request.columns if column.name not in (*_KNOWN, *table.values))
+        part.nothing = {column.name: column.empty(1)[0] for column in failing}
         part.fill(slice(None), {"row": numbers, "level": "computed", **table.words(numbers)})
         for row, reason in table.wrong(numbers, inputs).items():
             part.fail(row - numbers.start, Status.INVALID, reason)
@@ -108,8 +112,7 @@ class Part:
 
     def fail(self, place: int, status: Status, reason: str) -> None:
         """Say why a row failed, and take its numbers away."""
-        self.fill(place, {column.name: column.empty(1)[0] for column in COLUMNS if column.name not in _KNOWN})
-        self.fill(place, {"status": status.value, "reason": reason})
+        self.fill(place, {**self.nothing, "status": status.value, "reason": reason})
 
     def list_transits(self, replaced: Iterable[int], rows: Any, times: Any, directions: Any) -> None:
         """List transits in the order of their rows, in place of those that are listed for some rows."""
@@ -205,6 +208,11 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
             part.list_transits([], listed, run.transit_t, run.transit_direction)
         stopped = (run.fate == STOPPED) | lost
         unsure = (run.fate != OK) | unknown | errors.unsure_of_highest
+        for word in request.sections:
+            sought = engine_rows(request.scene, request.table, part.columns["row"][at], word)
+            columns, undecided = passages(engine, word, sought, run, errors)
+            part.fill(at, columns)
+            unsure |= undecided
         unsure |= errors.undecided if wanted.transits else False
         if request.tolerance is not None:
             unsure = unsure | ~(errors.position <= request.tolerance)

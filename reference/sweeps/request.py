@@ -25,7 +25,19 @@ from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene, parse_scene
 from .axes import TEXTS, Table, grid, listed
-from .parquet import AMPLITUDE, COLUMNS, FREQUENCY, PRECESSION, TIMES, TRANSIT_COLUMNS, TRANSITS, WANTS, WORDS, Column
+from .parquet import (
+    AMPLITUDE,
+    COLUMNS,
+    FREQUENCY,
+    PRECESSION,
+    TIMES,
+    TRANSIT_COLUMNS,
+    TRANSITS,
+    WANTS,
+    WORDS,
+    Column,
+    section_columns,
+)
 from .row_constants import ANGLES, POSITION
 
 SCHEMA = 2
@@ -75,19 +87,24 @@ class Request:
         want = set(self.want)
         return Wanted(
             transits=bool(want & {TRANSITS, FREQUENCY, TIMES}),
-            apsides=bool(want & {PRECESSION, FREQUENCY, AMPLITUDE}),
+            apsides=bool(want & {PRECESSION, FREQUENCY, AMPLITUDE} or self.sections),
             times=TIMES in want,
         )
 
+    @property
+    def sections(self) -> tuple[str, ...]:
+        """The words of the scene's sections, whose passages are found as well."""
+        return self.scene.run.sections or ()
+
     @cached_property
     def columns(self) -> tuple[Column, ...]:
-        """The columns of a row: its number, a column for each field that is varied, and those that are wanted."""
+        """The columns of a row: its number, one for each field that is varied, those that are wanted, of sections."""
         varied = [
             Column(key, WORDS if key in TEXTS else "float64", f"{key} of the scene, the nearest double")
             for key in self.table.values
         ]
         results = [column for column in COLUMNS[1:] if not column.wants or set(column.wants) & set(self.want)]
-        return (COLUMNS[0], *varied, *results)
+        return (COLUMNS[0], *varied, *results, *section_columns(self.sections))
 
     @property
     def parts(self) -> int:

@@ -11,15 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import Rows
-from ..model.algebra import add, cross
+from ..engines.batch_interface import XDOT, Rows
+from ..model.algebra import add, cross, dot, scale, subtract
 from ..model.constants import Constants, Vector, axis_distance, turn_and_pull
-from ..model.force import force
+from ..model.force import acceleration, force, tension
+from ..model.sections import form_along
 from ..model.start import at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..numbers.precision import Array
 from ..scenes.inputs import GravityIs, Inputs
 from ..scenes.scene import Scene
+from ..scenes.sections import azimuth_of
 from .axes import Table
 
 Columns = Mapping[str, DoubleDouble]
@@ -29,7 +31,10 @@ POSITION = ("x", "y", "vx", "vy")
 ANGLES = ("angle", "azimuth", "angle_rate", "azimuth_rate")
 _AT_ONCE = 8192  # rows whose working arrays fit into a processor's cache
 _NEARLY = 1e-9
-_SAME = 2.0**-94  # of two parts of u': if their sum is less, it is zero
+_SAME = 2.0**-94  # of the parts of a sum: if it is less, it is zero
+_NEWTON_STEPS, _CLOSE = 8, 2.0**-94  # to a rest position, in rad: the last step is at most as long
+_ZERO = DoubleDouble(np.zeros(1), np.zeros(1))
+_EVEN = 0.5  # of |c|: where Ω² is less, there is one rest position near the plumb line
 
 
 def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
@@ -40,29 +45,30 @@ def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
     return {name: DoubleDouble.of([value]) for name, value in named.items()}
 
 
-def engine_rows(scene: Scene, table: Table, numbers: Any) -> Rows:
+def engine_rows(scene: Scene, table: Table, numbers: Any, section: str = "") -> Rows:
     """Return the constants and releases of rows; not finite where something is wrong with the scene.
 
     Args:
         scene: the scene that is varied.
         table: its values.
         numbers: of the rows.
+        section: whose passages take the place of the transits, if any.
     """
     numbers = np.asarray(numbers, np.int64)
     words = table.words(numbers)
     if not words:
-        return _of_kind(scene, table, numbers)
+        return _of_kind(scene, table, numbers, section)
     kinds = list(zip(*words.values(), strict=True))
     order, blocks = [], []
     for kind in sorted(set(kinds)):
         places = np.flatnonzero([other == kind for other in kinds])
         worded = scene.with_values(f"{key}={word}" for key, word in zip(words, kind, strict=True))
         order.append(places)
-        blocks.append(_of_kind(worded, table, numbers[places]))
+        blocks.append(_of_kind(worded, table, numbers[places], section))
     return Rows.joined(blocks)[np.argsort(np.concatenate(order))]
 
 
-def _of_kind(scene: Scene, table: Table, numbers: Any) -> Rows:
+def _of_kind(scene: Scene, table: Table, numbers: Any, section: str) -> Rows:
     """Return rows whose words are those of the scene."""
     columns = columns_of(scene.exact)
     for key, values in table.numbers(numbers, scene.inputs).items():
@@ -71,23 +77,23 @@ def _of_kind(scene: Scene, table: Table, numbers: Any) -> Rows:
         else:
             columns[key.rpartition(".")[2]] = values
     with np.errstate(all="ignore"):
-        return row_constants(columns, scene.site.gravity_is, len(numbers))
+        return row_constants(columns, scene.site.gravity_is, len(numbers), section)
 
 
 def _inverse(numbers: DoubleDouble) -> DoubleDouble:
     """Return 1/numbers, of infinity zero."""
-    zero, unit = DoubleDouble(np.zeros(1), np.zeros(1)), DoubleDouble(np.ones(1), np.zeros(1))
     with np.errstate(invalid="ignore"):
-        return zero.where(np.isinf(numbers.high), unit / numbers)
+        return _ZERO.where(np.isinf(numbers.high), (_ZERO + 1) / numbers)
 
 
-def row_constants(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
+def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: str = "") -> Rows:
     """Return the constants and releases of rows.
 
     Args:
         columns: the numbers of the scenes by the names of `columns_of`, SI units and degrees; one for all or `count`.
         gravity_is: what gravity means, as in `Inputs`.
         count: how many rows.
+        section: as in `engine_rows`.
     """
     blocks = []
     for first in range(0, count, _AT_ONCE):
@@ -97,15 +103,15 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
             name: value if len(value.high) == 1 else DoubleDouble(value.high[rows], value.low[rows])
             for name, value in columns.items()
         }
-        blocks.append(_of_block(block, gravity_is, size))
+        blocks.append(_of_block(block, gravity_is, size, section))
     return Rows.joined(blocks)
 
 
-def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
+def _of_block(columns: Columns, gravity_is: GravityIs, count: int, section: str) -> Rows:
     """Return the constants and releases of a few rows."""
-    length, rate, zero = columns["length"], columns["rotation_rate"], DoubleDouble(np.zeros(1), np.zeros(1))
+    length, rate = columns["length"], columns["rotation_rate"]
     sin, cos = sine_and_cosine(columns["latitude"])
-    distance = zero
+    distance = _ZERO
     if gravity_is == "ellipsoid":
         earth = columns["equatorial_radius"], columns["flattening"], columns["altitude"]
         distance = axis_distance(*earth, sin, cos, square_root)
@@ -115,21 +121,28 @@ def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
         turn=(0, north, up),
         pull=(0, pull_north, pull_up),
         centrifugal=(rate * rate, up * up, -(north * up), north * north),
+        drag=columns["drag"],
     )
     at_rest = v[0].vanishes & v[1].vanishes & v[2].vanishes
     falls = pull_north * v[1], pull_up * v[2]  # along c
     fall, size = (falls[0] + falls[1]).high, abs(falls[0].high) + abs(falls[1].high)
+    still = at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes
+    form, multiplicity, leaves = [_ZERO + part for part in XDOT], _zeros_at_release(n, v, k), np.zeros(1)
+    if section:
+        form, multiplicity, leaves = _of_section(section, n, v, k)
     return Rows(
         length=_stacked((length,), count)[:, 0],
         drag=_stacked((columns["drag"],), count)[:, 0],
         t_end=_stacked((columns["t_end"],), count)[:, 0],
-        turn=_stacked((zero, north, up), count),
-        pull=_stacked((zero, pull_north, pull_up), count),
+        turn=_stacked((_ZERO, north, up), count),
+        pull=_stacked((_ZERO, pull_north, pull_up), count),
         n=_stacked(n, count),
         V=_stacked(add(v, cross(k.turn, n)), count),
-        zeros_at_release=_spread(_zeros_at_release(n, v, k), count),
+        form=_stacked(form, count),
+        zeros_at_release=_spread(multiplicity, count),
+        leaves=_spread(leaves, count),
         rising=_spread(np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64), count),
-        still=_spread(at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes, count),
+        still=_spread(still & (section == ""), count),
     )
 
 
@@ -151,6 +164,47 @@ def _zeros_at_release(n: Vector, v: Vector, k: Constants) -> Any:
     at_rest = np.where(falls, np.where(in_meridian, 4, 3), np.where(in_meridian, 2, 1))
     moving = np.where(in_meridian & cross(k.turn, v)[0].vanishes, 2, 1)
     return np.where(v[0].vanishes, np.where(v[1].vanishes & v[2].vanishes, at_rest, moving), 0)
+
+
+def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> tuple[list[DoubleDouble], Any, Any]:
+    """Return a section's form, the multiplicity of its zero at t = 0, and its sign just after.
+
+    Of a velocity three derivatives are looked at, of a position four. Where all vanish, the multiplicity is as many at
+    least, and the sign is not known.
+    """
+    sin, cos = sine_and_cosine(DoubleDouble.of([azimuth_of(word)]))
+    form = form_along(word, (cos, sin, 0), k.pull, lambda: _rest_position(k))
+    numbers = [_ZERO + part for part in (*form.a, *form.b, form.d)]
+    rate = acceleration(n, v, k)
+    driven = subtract(force(v, rate, k), k.pull)  # rate of the force, which is linear
+    tighter = 2 * dot(v, rate) + dot(v, force(n, v, k)) + dot(n, driven)
+    jerk = subtract(driven, add(scale(tighter, n), scale(tension(n, v, k), v)))
+    is_gate, d, vanish = word.startswith("gate"), numbers[6], np.ones(1, bool)
+    multiplicity, leaves = np.zeros(1, np.int64), np.full(1, np.nan)
+    for vector in (n, v, rate, jerk) if is_gate else (v, rate, jerk):
+        parts = [p * q for p, q in zip(numbers[:3] if is_gate else numbers[3:6], vector, strict=True)]
+        value, size = (parts[0] + parts[1] + parts[2] - d).high, sum(np.abs(part.high) for part in (*parts, d))
+        is_none = np.abs(value) <= _SAME * size
+        leaves = np.where(vanish & ~is_none, np.sign(value), leaves)
+        vanish, d = vanish & is_none, _ZERO
+        multiplicity = multiplicity + vanish
+    return numbers, multiplicity, leaves
+
+
+def _rest_position(k: Constants) -> Vector:
+    """Return what `model.force.rest_position` does; NaN where there may be another one near the plumb line."""
+    size = square_root(dot(k.pull, k.pull))
+    north, up = (part / size for part in k.pull[1:])
+    for _ in range(_NEWTON_STEPS):
+        n, along = (0, north, up), (0, -up, north)
+        push, bent = force(n, (0, 0, 0), k), subtract(force(along, (0, 0, 0), k), k.pull)
+        step = dot(push, along) / (dot(push, n) - dot(bent, along))
+        north, up = north + step * along[1], up + step * along[2]
+        size = square_root(north * north + up * up)
+        north, up = north / size, up / size
+    even = np.abs(k.centrifugal[0].high) < _EVEN * np.sqrt(k.pull[1].high ** 2 + k.pull[2].high ** 2)
+    known = np.where(even & (np.abs(step.high) <= _CLOSE), 0.0, np.nan)
+    return 0, north + known, up
 
 
 def _balanced(n: Vector, k: Constants) -> Any:

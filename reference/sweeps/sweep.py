@@ -151,6 +151,7 @@ def sweep(
     rows: str | Path | None = None,
     out: str | Path | None = None,
     want: Sequence[str] = ("all",),
+    sections: str | Sequence[str] | None = None,
     level: str = "computed",
     digits: int | None = None,
     tolerance: float | None = None,
@@ -170,6 +171,7 @@ def sweep(
         rows: instead, a CSV or Parquet file whose columns are fields, one row a scene.
         out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A folder of the same sweep is gone on with.
         want: quantities: frequency, precession, transits, state, amplitude, all of these, transit-times.
+        sections: other moments to find, such as ["highest", "gate 30"], instead of the scene's.
         level: level of trust; above computed every row goes through `solve`.
         digits: significant digits, of every row through `solve`; None for double.
         tolerance: rows with a larger error of the position in m go through `solve` as well.
@@ -188,9 +190,8 @@ def sweep(
     file, folder = (Path(path) if path is not None else None for path in (rows, out))
     wanted = tuple(want.split(",")) if isinstance(want, str) else want
     options = {"want": wanted, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
-    scene = as_scene(scene)
-    if t_end is not None:
-        scene = scene.with_values({"run.t_end": t_end})
+    given = {"run.t_end": t_end, "run.sections": sections}
+    scene = as_scene(scene).with_values({key: value for key, value in given.items() if value is not None})
     return run(
         asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options), folder, workers, cluster, report
     )

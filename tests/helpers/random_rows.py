@@ -74,6 +74,6 @@ def columns_of_many(many: list[Inputs]) -> dict[str, DoubleDouble]:
     }
 
 
-def rows_of(many: list[Inputs]) -> Rows:
-    """Return scenes of any release form and gravity as rows, in order."""
-    return Rows.joined([row_constants(columns_of(inputs), inputs.gravity_is, 1) for inputs in many])
+def rows_of(many: list[Inputs], section: str = "") -> Rows:
+    """Return scenes of any release form and gravity as rows, in order, with a section's form or that of xdot."""
+    return Rows.joined([row_constants(columns_of(inputs), inputs.gravity_is, 1, section) for inputs in many])

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...model.constants import Constants
 from ...numbers.precision import DOUBLE, Array
-from ..batch_interface import STOPPED, Outcomes, PlumbAxes, Rows, Wanted, moved, turned
+from ..batch_interface import STOPPED, XDOT, Outcomes, PlumbAxes, Rows, Wanted, moved, turned
 from ..row_zeros import (
     HEIGHT,
     MODEL,
@@ -31,19 +31,23 @@ STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
 SAMPLES_PER_SWING = 12  # at least, between which a rate may dip to zero; a step of a tiny swing lasts half of one
 LEAST_STEPS = 10_000  # that are granted to any row
 
-Kind = tuple[tuple[int, ...], bool, float]  # the zeros that are looked for, whether there is drag, and the tolerance
+# the zeros that are looked for, whether they are those of any form, whether there is drag, and the tolerance
+Kind = tuple[tuple[int, ...], bool, bool, float]
 
 
 class Integrator:
     """The equations compiled once, in the axes of the plumb line; not to be used by two threads at once."""
 
-    def __init__(self, sought: tuple[int, ...], drag: bool, tolerance: float) -> None:
+    def __init__(self, sought: tuple[int, ...], form: bool, drag: bool, tolerance: float) -> None:
         names = PARAMETERS if drag else PARAMETERS[:-1]
         k = Constants.of({name: hy.par[i] for i, name in enumerate(names)})
         state = hy.make_vars(*MODEL.variables)
-        _, v = MODEL.cartesian(state, k, hy)
+        n, v = MODEL.cartesian(state, k, hy)
         self._events: dict[int, list[float]] = {kind: [] for kind in sought}
         rate = {TRANSIT: v[0], HEIGHT: v[2]}
+        if form:
+            numbers = [hy.par[len(names) + i] for i in range(len(XDOT))]
+            rate[TRANSIT] = Motion(n, v, v).form(numbers)[0]
         events = [hy.nt_event(rate[kind], _recorder(noted)) for kind, noted in self._events.items()]
         keep_on_disk(DOUBLE)
         self._ta: Any = hy.taylor_adaptive(
@@ -51,13 +55,14 @@ class Integrator:
         )
         self._parameters = len(names)
 
-    def begin(self, k: Constants, state: Any) -> None:
-        """Set a row's constants and its state at t = 0."""
+    def begin(self, k: Constants, state: Any, form: Any) -> None:
+        """Set a row's constants, its state at t = 0 and the form of its section, where there is one."""
         for noted in self._events.values():
             noted.clear()
         self._ta.time = 0.0
         self._ta.state[:] = state
-        self._ta.pars[:] = [*k.turn[1:], k.pull[2], k.drag][: self._parameters]
+        numbers = (*([*k.turn[1:], k.pull[2], k.drag][: self._parameters]), *form)
+        self._ta.pars[:] = numbers[: len(self._ta.pars)]
 
     def to_end(self, release: Release, most: int) -> tuple[Any, int, bool]:
         """Return the state at the end, the steps taken, and whether the end was not reached.
@@ -116,7 +121,7 @@ def prepare(wanted: Wanted, drag: bool, tolerance: float) -> float:
     """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
     started = time.thread_time()
     for sought in {_sought(wanted), ()}:
-        with _lent(sought, drag, tolerance):
+        with _lent(sought, wanted.form and bool(sought), drag, tolerance):
             pass
     return time.thread_time() - started
 
@@ -126,13 +131,14 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
     outcomes, axes = Outcomes.empty(len(rows)), PlumbAxes.of(rows)
     numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
     numbers, drags = moved(numbers, wanted.moved), moved(rows.drag[:, 0], wanted.moved)
+    forms = axes.forms(rows).T if wanted.form else [XDOT] * len(rows)
     listed: list[tuple[int, Array, Array]] = []
     with np.errstate(all="ignore"):
         for row in range(len(rows)):
             n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
             k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
             state = [*n, *np.cross(n, V)]
-            release = Release.of(rows, axes, row, Motion.of(state, k))
+            release = Release.of(rows, axes, row, Motion.of(state, k), forms[row])
             transits = _solve(outcomes, row, release, k, state, wanted, tolerance)
             listed.append((row, transits.times, transits.directions))
         _turn_back(outcomes, rows, axes)
@@ -143,9 +149,9 @@ def _solve(
     outcomes: Outcomes, row: int, release: Release, k: Constants, state: Any, wanted: Wanted, tolerance: float
 ) -> Zeros:
     """Solve a row, its state at the end left in these axes and over l; return its transits."""
-    sought, kind = _sought(wanted), (bool(k.drag), tolerance)
-    with _lent(sought, *kind) as first:
-        first.begin(k, state)
+    sought, kind, form = _sought(wanted), (bool(k.drag), tolerance), release.forms[TRANSIT]
+    with _lent(sought, wanted.form, *kind) as first:
+        first.begin(k, state, form)
         most = LEAST_STEPS + STEPS_PER_SWING * release.end * release.rate / (2 * np.pi)
         last, steps, stopped = first.to_end(release, int(most))
         transits, heights = (release.after(first.zeros(zero), zero) for zero in (TRANSIT, HEIGHT))
@@ -157,11 +163,11 @@ def _solve(
     if sought:
         swung = SAMPLES_PER_SWING * release.end * release.rate / (2 * np.pi)
         samples = np.linspace(0, release.end, int(max(steps, swung)) + 1)
-        seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, kind)
+        seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, form, kind)
         if TRANSIT in sought and not release.still:
             samples = seen.finer(transits, at_transits, release, TRANSIT)
             if len(samples) > len(seen.times):  # the plane passes north-south
-                seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, kind)
+                seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, form, kind)
             describe_transits(outcomes, row, release, transits, at_transits, seen)
         if HEIGHT in sought:
             describe_highest_points(outcomes, row, release, heights, at_heights, seen)
@@ -169,13 +175,13 @@ def _solve(
 
 
 def _seen(
-    samples: Array, transits: Zeros, heights: Zeros, k: Constants, state: Any, kind: tuple[bool, float]
+    samples: Array, transits: Zeros, heights: Zeros, k: Constants, state: Any, form: Any, kind: tuple[bool, float]
 ) -> tuple[Samples, Motion, Motion]:
     """Return the motion at samples, at transits and at zeros of the height's rate, by one more run."""
     times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
     at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
-    with _lent((), *kind) as second:
-        second.begin(k, state)
+    with _lent((), False, *kind) as second:
+        second.begin(k, state, form)
         motion = Motion.of(second.at(times), k)
     return Samples(samples, motion[at_samples]), motion[at_transits], motion[at_heights]
 

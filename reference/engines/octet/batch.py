@@ -37,7 +37,7 @@ class OctetBatch(Batch):
         from .march import empty_march, empty_moments, march
 
         started = time.thread_time()
-        arguments = _arguments(empty_march(), Wanted(), np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
+        arguments = _arguments(empty_march(), wanted, np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
         prepare(march, "steps of eight rows at once", COMPILE_S, *arguments)
         return time.thread_time() - started
 
@@ -70,7 +70,8 @@ class OctetBatch(Batch):
 
 def _arguments(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> tuple[Any, ...]:
     """Return the arguments of `march`."""
-    return lanes, MOVED_ORDER if wanted.moved else ORDER, numbers.ravel(), results.ravel(), moments, steps
+    order = MOVED_ORDER if wanted.moved else ORDER
+    return lanes, order, wanted.form or None, numbers.ravel(), results.ravel(), moments, steps
 
 
 BATCH = OctetBatch()

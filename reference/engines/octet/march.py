@@ -42,7 +42,17 @@ from .lane_zeros import (
     seek,
     seek_highest,
 )
-from .series import Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
+from .series import (
+    Series,
+    empty_series,
+    form_of,
+    put_form,
+    step_length,
+    sum_series,
+    taylor_coefficients,
+    udot_of,
+    xdot_of,
+)
 
 LEAST_RATE = 1e-300  # of u' at a release that rises or falls: it keeps its sign
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row
@@ -197,10 +207,10 @@ def _begin(m: March) -> None:
 
 
 @compiled
-def _place_zeros(m: March, order: int) -> None:
+def _place_zeros(m: March, order: int, form: bool | None) -> None:
     """Find transits and highest points on the step of each lane."""
     if occupied(load(m.transits.sought, 0)):
-        store(m.transits.after, 0, xdot_of(m.state))
+        store(m.transits.after, 0, xdot_of(m.state) if form is None else form_of(m.state))
         seek(m.transits, m.c.xdot, m.length, m.time, order)
         refine(m.transits, m.c.xdot, m.length, order, CONVERGED)
     if occupied(load(m.highest.sought, 0)):
@@ -241,8 +251,13 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
 
 
 @kept(*rows.SOURCES, nogil=True, **OPTIONS)
-def march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
-    """Take at most `steps` steps, or until no room is left for times; return whether all rows are done."""
+def march(
+    m: March, order: int, form: bool | None, numbers: Array, results: Array, moments: Moments, steps: int
+) -> bool:
+    """Take at most `steps` steps, or until no room is left for times; return whether all rows are done.
+
+    The transits are the zeros of the rows' forms unless `form` is None: then numba leaves out what has to do with them.
+    """
     many = len(numbers) // rows.COLUMNS
     if m.counts[NEXT] == 0:
         for lane in range(LANES):
@@ -251,10 +266,12 @@ def march(m: March, order: int, numbers: Array, results: Array, moments: Moments
         if m.counts[DONE] == many or 0 < len(moments.row) < moments.number[0] + LANES * MOST_ZEROS:
             break
         taylor_coefficients(m.c, m.state, order)
+        if form is not None:
+            put_form(m.c, m.state, order)
         _begin(m)
         _set_length(m, order)
         sum_series(m.state, m.c, m.length, order)
-        _place_zeros(m, order)
+        _place_zeros(m, order, form)
         for lane in range(LANES):
             row = m.counts[ROW + lane]
             if row >= 0:

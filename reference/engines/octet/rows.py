@@ -13,7 +13,7 @@ from ..batch_interface import LEAST_BEND as LEAST
 
 # of a row's numbers: state and constants in its unit of time, unit and span in s, what the release says of zeros
 X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, RISING, CLOSE_S, SEEKS_X, SEEKS_U = range(17)
-COLUMNS = 17
+FORM, COLUMNS = 17, 24  # the form of a section: a, b and d
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
 APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND, LEAST_FALL = range(13, 24)
@@ -46,6 +46,9 @@ def packed(rows: Rows, wanted: Wanted) -> Array:
     numbers[:, ZEROS_X], numbers[:, RISING] = rows.zeros_at_release, rows.rising
     numbers[:, SEEKS_X] = (wanted.transits or wanted.times) & ~rows.still
     numbers[:, SEEKS_U] = wanted.apsides & (size.high > 0)
+    if wanted.form:
+        numbers[:, FORM:] = axes.forms(rows).T
+        numbers[:, [FORM, FORM + 1, FORM + 2, FORM + 6]] *= unit[:, None]
     with np.errstate(divide="ignore"):
         numbers[:, CLOSE_S] = CLOSE_PAIR * 2.0 * np.pi / np.sqrt(size.high)
     return numbers

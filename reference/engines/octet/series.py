@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from ..limbs.lanes import LANES, compiled, exp2_of, fma, inlined, larger, load, log2_of, magnitude, spread, store
 from ..limbs.limb import Array, aligned
-from .rows import PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
+from .rows import FORM, PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
 
 MOST_ORDER = 24  # even, as two orders are computed at a time
 LONGEST = 3.0  # log2 of the longest step in units of time, where nothing changes
@@ -28,7 +28,7 @@ class Series(NamedTuple):
 
     Attributes:
         x, p, u, tension: n in the axes of the plumb line, and λ.
-        xdot, udot: of x' and u'.
+        xdot, udot: of x' and u'; where a section is sought, its form takes the place of x'.
         w, v, s: V.
     """
 
@@ -148,6 +148,32 @@ def sum_series(state: Array, c: Series, length: Array, order: int) -> None:
     store(state, LANES * W, fma(w, outward, x))
     store(state, LANES * V, fma(v, outward, p))
     store(state, LANES * S, fma(s, outward, down))
+
+
+@inlined
+def _form(state: Array, x: Any, p: Any, u: Any, xdot: Any, pdot: Any, udot: Any) -> Any:
+    """Return a·n + b·n'."""
+    total = fma(load(state, LANES * FORM) * x, load(state, LANES * (FORM + 1)), p)
+    total = fma(fma(total, load(state, LANES * (FORM + 2)), u), load(state, LANES * (FORM + 3)), xdot)
+    return fma(fma(total, load(state, LANES * (FORM + 4)), pdot), load(state, LANES * (FORM + 5)), udot)
+
+
+@compiled
+def put_form(c: Series, state: Array, order: int) -> None:
+    """Put the coefficients of the rows' forms in the place of those of x'."""
+    for k in range(order):
+        at = LANES * k
+        pdot = load(c.p, at + LANES) * spread(k + 1.0)
+        total = _form(state, load(c.x, at), load(c.p, at), load(c.u, at), load(c.xdot, at), pdot, load(c.udot, at))
+        store(c.xdot, at, total - load(state, LANES * (FORM + 6)) if k == 0 else total)
+
+
+@inlined
+def form_of(state: Array) -> Any:
+    """Return the form of a state."""
+    x, p, u = load(state, LANES * X), load(state, LANES * P), load(state, LANES * U)
+    pdot = load(state, LANES * V) - load(state, LANES * TURN_U) * x
+    return _form(state, x, p, u, xdot_of(state), pdot, udot_of(state)) - load(state, LANES * (FORM + 6))
 
 
 @inlined

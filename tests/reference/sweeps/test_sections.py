@@ -1,0 +1,134 @@
+"""Passages of sections in sweeps: none lost or doubled, every number within its error, by limbs and by scipy."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from passages import found
+from random_rows import KINDS, random_kinds, rows_of
+
+from reference import load_scene, solve, sweep
+from reference.engines.batch_interface import Wanted
+from reference.engines.registry import batches, engines, run
+from reference.sweeps.estimate import judged, passages
+from reference.sweeps.promote import audited, worst_ratio
+
+ENGINES = [name for name, engine in batches().items() if engine.installed]
+SPAN = Fraction(60)
+NEAR = 1e-6  # s, of DOP853 in double
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    """Forty random scenes, words of sections, and of each its passages by limbs at 110 bits."""
+    many, generator = list(random_kinds("sections", 40, SPAN)), random.Random("sections")
+    words = [
+        "highest",
+        "lowest",
+        "gate 90",
+        *(f"{kind} {generator.uniform(-180, 180):.3f}" for kind in ("gate", "turn")),
+    ]
+    words.append(f"{words[3]}@0")
+    limbs = engines()["limbs"]
+    plans = [limbs.plan(inputs, 110, (Fraction(0), SPAN), False) for inputs in many]
+    return many, words, [run(replace(plan, sections=tuple(words))).passages for plan in plans]
+
+
+def mean_interval(times, directions):
+    same = [t for t, direction in zip(times, directions, strict=True) if direction == directions[0]]
+    return float((same[-1] - same[0]) / (len(same) - 1)) if len(same) > 1 else np.nan
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, engine, tally):
+    many, words, truth = drawn
+    solver, rows = batches()[engine], rows_of(many)
+    base = solver.solve(rows, Wanted())
+    errors, _ = judged(solver, rows, base)
+    undecided, worst, count = 0, 0.0, 0
+    for word in words:
+        columns, unsure = passages(solver, word, rows_of(many, word), base, errors)
+        for i, exact in enumerate(truth):
+            row = {name.removeprefix(f"{word}: "): values[i] for name, values in columns.items()}
+            times, directions = exact[word][0].exact("t"), exact[word][1]
+            undecided += bool(unsure[i])
+            if unsure[i]:
+                continue
+            assert row["passages"] == len(times), (word, many[i])
+            count += len(times)
+            pairs = [("t_first_s", "t_error_s", float(times[0]))] if times else []
+            if len(times) > 1:
+                pairs.append(("interval_s", "interval_error_s", mean_interval(times, directions)))
+            for name, error, value in pairs:
+                assert np.isnan(value) == np.isnan(row[name]) == np.isnan(row[error]), (word, many[i])
+                worst = np.nanmax([worst, abs(row[name] - value) / row[error]])
+    tally(
+        f"sections of sweeps, {engine}: {count} passages, {undecided} undecided, largest error {worst:.2f} of its own"
+    )
+    assert count > 3000
+    assert worst < 1
+    assert undecided < 0.05 * len(many) * len(words)
+
+
+def test_passages_of_limbs_are_those_of_scipy(drawn):
+    many, words, truth = drawn
+    # over the top scipy's states leave the sphere, and errors grow by two hundred a turn
+    tame = [i for i in range(len(many)) if KINDS[i % len(KINDS)] != "over"]
+    for inputs, exact in ((many[i], truth[i]) for i in tame):
+        for word, other in found(inputs, words, SPAN).items():
+            table, directions = exact[word]
+            assert directions == [direction for _, direction in other], (word, inputs)
+            assert np.abs(table["t"] - [t for t, _ in other]).max(initial=0) < NEAR, (word, inputs)
+
+
+WORDS = ["gate 0@0", "gate 90", "highest", "turn 90"]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("release", ["release.x=0.5 release.y=0", "release.x=0 release.y=0.5", "release.x=1e-9"])
+def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_solver_gives(engine, release):
+    scene = load_scene("paris", ["run.t_end=100", *release.split()])
+    swept = sweep(scene, ["site.latitude=-30,45,90"], engine=engine, sections=WORDS, workers=1)
+    for number, row in enumerate(swept.rows()):
+        assert row["status"] == "ok", row["reason"]
+        truth = solve(swept.request.scene_of(number), level="computed", digits=22, transits=False)
+        for word in WORDS:
+            times, directions = truth.sections[word].table.exact("t"), truth.sections[word].directions
+            assert row[f"{word}: passages"] == len(times), word
+            if times:
+                assert abs(row[f"{word}: t_first_s"] - times[0]) <= row[f"{word}: t_error_s"], word
+                interval = mean_interval(times, directions)
+                assert abs(row[f"{word}: interval_s"] - interval) <= row[f"{word}: interval_error_s"], word
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_motion_that_stays_in_the_gate_fails_alone_and_says_so(engine):
+    scene = load_scene("paris", ["run.t_end=60", "release.x=0.5", "release.y=0", "run.sections=gate 0@0"])
+    swept = sweep(scene, ["site.latitude=0,45"], engine=engine, workers=1)
+    assert swept["status"].tolist() == ["doubtful", "ok"]
+    assert "gate 0@0: the motion stays in this section" in swept["reason"][0]
+    assert swept["gate 0@0: passages"][0] == 0
+    assert np.isnan(swept["gate 0@0: t_error_s"][0])
+    assert np.isnan(swept["frequency_hz"][0])
+
+
+def test_rows_of_the_solver_have_the_columns_too_and_an_audit_compares_them():
+    scene = load_scene("paris", ["run.t_end=60", "run.sections=gate 90; highest"])
+    many = sweep(scene, ["site.latitude=30,60"], engine="heyoka", workers=1, audit_rows=2)
+    assert many.audit.wrong == ()
+    proved = sweep(scene, ["site.latitude=30,60"], level="enclosed", digits=12, want=["state"], workers=1)
+    assert proved["level"].tolist() == ["enclosed"] * 2
+    for word in ("gate 90", "highest"):
+        assert proved[f"{word}: passages"].tolist() == many[f"{word}: passages"].tolist()
+        for name, error in (("t_first_s", "t_error_s"), ("interval_s", "interval_error_s")):
+            gap = np.abs(proved[f"{word}: {name}"] - many[f"{word}: {name}"])
+            assert (gap <= proved[f"{word}: {error}"] + many[f"{word}: {error}"]).all()
+    request, row = many.request, next(many.rows())
+    assert worst_ratio(request, 0, row) < 1
+    assert worst_ratio(request, 0, row | {"gate 90: passages": row["gate 90: passages"] + 1}) == np.inf
+    assert worst_ratio(request, 0, row | {"highest: interval_s": row["highest: interval_s"] + 1e-9}) > 1
+    assert audited(request, lambda _: {**many.columns(), "gate 90: passages": np.zeros(2, int)}).wrong == (0, 1)
