@@ -68,7 +68,7 @@ class Apsis(Form):
             first = aside * u + long * (eta * (most + u) + total(miss, 2 * bits))
             second = eta * (size(x[6:]) + bend) + u * (2 * most + u) + total(lost, 2 * bits)
             offs = [arb(0, upper(long / low * y)) for y in (first, aside * bend + long * second)]
-            self.forms = tuple((f, off) for (f, _), off in zip(self.forms, offs, strict=True))
+            self.forms = ((self.forms[0][0], offs[0]), (self.forms[1][0], offs[1]))
             self.tube = self.tube._replace(u=offs[0].rad())
 
     def row(self, s: arb) -> Vector:

@@ -166,13 +166,14 @@ class Ranges:
         None where this is open, without the section `highest`, and for ranges that were read from a file.
         With derivatives the precession is what both tell: these points, and how far inputs move the scene's own.
         """
-        wide, moved = self._wide, [self._precession(j) for j in range(len(self.uncertain))]
-        if wide is None or wide.precession is None or None in moved:
-            return wide
-        (low, high), halves = wide.precession, map(Fraction, self.uncertain.values())
+        wide, inputs, halves = self._wide, self.scene.exact, [Fraction(width) for width in self.uncertain.values()]
+        slopes = [slope for j in range(len(halves)) if (slope := self._precession(j))]
         own = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (led.own for led in self._led)]
-        (least, most) = swing_of(own, self.scene.exact, self.proof.bits).precession
-        far = sum(half * max(-x.low, x.high) for half, x in zip(halves, moved, strict=True))
+        near = swing_of(own, inputs, self.proof.bits) if len(slopes) == len(halves) else None
+        if wide is None or wide.precession is None or near is None or near.precession is None:
+            return wide
+        (low, high), (least, most) = wide.precession, near.precession
+        far = sum((half * max(-x.low, x.high) for half, x in zip(halves, slopes, strict=True)), Fraction(0))
         return replace(wide, precession=(max(low, least - far), min(high, most + far)))
 
     @cached_property
