@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import ceil
@@ -166,49 +166,37 @@ class Ranges:
         None where this is open, without the section `highest`, and for ranges that were read from a file.
         With derivatives the precession is what both tell: these points, and how far inputs move the scene's own.
         """
-        wide, inputs, halves = self._wide, self.scene.exact, [Fraction(width) for width in self.uncertain.values()]
+        (wide, led), halves = self._apses, [Fraction(width) for width in self.uncertain.values()]
         slopes = [slope for j in range(len(halves)) if (slope := self._precession(j))]
-        own = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (led.own for led in self._led)]
-        near = swing_of(own, inputs, self.proof.bits) if len(slopes) == len(halves) else None
-        if wide is None or wide.precession is None or near is None or near.precession is None:
+        if wide is None or wide.precession is None or len(slopes) < len(halves):
             return wide
-        (low, high), (least, most) = wide.precession, near.precession
+        own = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (point.own for point in led)]
         far = sum((half * max(-x.low, x.high) for half, x in zip(halves, slopes, strict=True)), Fraction(0))
-        return replace(wide, precession=(max(low, least - far), min(high, most + far)))
+        return wide.near(swing_of(own, self.scene.exact, self.proof.bits), far)
 
     @cached_property
-    def _wide(self) -> Swing | None:
-        """The swing from the intervals of the highest points."""
-        points = [] if self.proof is None else self._highest
-        return swing_of(points, self.scene.exact, self.proof.bits, self.proof.lean) if points else None
-
-    @property
-    def _highest(self) -> list[Any]:
-        """Intervals of t, x, y and z of the highest points before the first that is undecided."""
+    def _apses(self) -> tuple[Swing | None, list[Any]]:
+        """The swing from the intervals of highest points, and what derivatives tell of these: nothing unless of all."""
         found = self.sections.get("highest")
-        columns = (found.table.exact(name) for name in ("t", "x", "y", "z")) if found else ()
-        return _decided([*zip(*columns, strict=True)], found.possible if found else ())
-
-    @property
-    def _led(self) -> list[Any]:
-        """What derivatives tell of these points; nothing unless it is of all."""
-        found = getattr(self.proof, "derivatives", None)
-        led = [*found.passages.get("highest", ())][: len(self._highest)] if found else []
-        return led if all(point.own for point in led) else []
+        if found is None or self.proof is None:
+            return None, []
+        columns = (found.table.exact(name) for name in ("t", "x", "y", "z"))
+        points, known = _decided([*zip(*columns, strict=True)], found.possible), self.proof.derivatives
+        led = [*known.passages["highest"][: len(points)]] if known else []
+        wide = swing_of(points, self.scene.exact, self.proof.bits, self.proof.lean)
+        return wide, led if all(point.own for point in led) else []
 
     def _precession(self, j: int) -> Ends | None:
         """Return the derivative of the precession to an input, in degrees an hour; None if open."""
-        wide, led = self._wide, self._led
+        wide, led = self._apses
         if wide is None or wide.precession is None or not led:
             return None
-        first, last = led[0], led[-1]
-        turned = last.azimuths[j].low - first.azimuths[j].high, last.azimuths[j].high - first.azimuths[j].low
+        first, last, swings = led[0], led[-1], Fraction(len(led) - 1, 2)
         late = last.times[j].low - first.times[j].high, last.times[j].high - first.times[j].low
         lost = [rate * time / HOUR for rate in wide.precession for time in late]
-        moved = turned[0] - max(lost), turned[1] - min(lost)
-        points = self._highest
-        spans = points[-1][0][0] - points[0][0][1], points[-1][0][1] - points[0][0][0]
-        rates = [x / span * HOUR for x in moved for span in spans]
+        low = last.azimuths[j].low - first.azimuths[j].high - max(lost)
+        high = last.azimuths[j].high - first.azimuths[j].low - min(lost)
+        rates = [turned * hz / swings * HOUR for turned in (low, high) for hz in wide.hz]
         return Ends(min(rates), max(rates))
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -44,6 +44,13 @@ class Swing:
             return None
         low, high = sorted(360 / abs(rate) for rate in self.precession)
         return low, high
+
+    def near(self, other: Swing | None, far: Fraction) -> Swing:
+        """Return this swing with the part of its precession that is at most `far` from another's."""
+        if self.precession is None or other is None or other.precession is None:
+            return self
+        (low, high), (least, most) = self.precession, other.precession
+        return replace(self, precession=(max(low, least - far), min(high, most + far)))
 
 
 def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)) -> Swing | None:

@@ -214,9 +214,12 @@ def swings_outside(name, count, derivatives):
     ranges = reference.solve(scene, uncertain=widths, sections="highest", derivatives=derivatives)
     proved, rng, found = ranges.swing, Random(name), []
     assert (proved is not None and proved.precession is not None) == decided
+    highest = ranges.sections["highest"]
+    undecided = min((low for low, _, _ in highest.possible), default=Fraction(61))
+    known = sum(high < undecided for _, high in highest.table.exact("t"))
     for k in range(count if decided else 0):
         run = truth(drawn(Box(*ranges.proof.proved.box), rng, corner=k % 2 == 0), [Fraction(0), Fraction(60)])
-        points, times = azimuths(run)[: len(ranges._highest)], run.transits.exact("t")
+        points, times = azimuths(run)[:known], run.transits.exact("t")
         turned = [(b - a + 90) % 180 - 90 for (_, a), (_, b) in pairwise(points)]
         span = points[-1][0] - points[0][0]
         rate = sum(turned) * 3600 / span
