@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Annotated, Any
 
 import typer
@@ -21,6 +21,8 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
 FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
 PROVED_DIGITS = 15  # of the highest points from which period and precession follow
+SWING = {"swing_hz": "hz", "period_s": "period", "precession_deg_per_h": "precession", "full_turn_h": "full_turn"}
+MEAN = ("period_s", "precession_deg_per_h", "full_turn_h")  # of uncertain inputs
 CLOSER = 6  # powers of ten by which inputs are less uncertain where the derivatives to them are taken
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
@@ -212,14 +214,19 @@ def _proved(scene: Scene) -> dict[str, Any]:
     Raises:
         UnreachableError: the level enclosed is out of reach.
     """
-    from ..dataset.ranges import ends
     from ..solver.solve import solve
 
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "false"})
     swing = solve(scene, level="enclosed", digits=PROVED_DIGITS, sections="highest").swing
-    names = {"swing_hz": "hz", "period_s": "period", "precession_deg_per_h": "precession", "full_turn_h": "full_turn"}
-    told = {name: getattr(swing, of, None) for name, of in names.items()}
-    return {"over_s": scene.run.t_end} | {name: found and list(ends(*found)) for name, found in told.items()}
+    return {"over_s": scene.run.t_end, **_told(swing, SWING)}
+
+
+def _told(swing: Any, names: Iterable[str]) -> dict[str, list[str] | None]:
+    """Return intervals of what a swing has, as text; None where one is open."""
+    from ..dataset.ranges import ends
+
+    found = {name: getattr(swing, SWING[name], None) for name in names}
+    return {name: interval and list(ends(*interval)) for name, interval in found.items()}
 
 
 def _proved_line(proved: dict[str, Any]) -> str:
@@ -229,18 +236,19 @@ def _proved_line(proved: dict[str, Any]) -> str:
 
 
 def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
-    """Return proven intervals of the period, the first transits and passages, for every value of uncertain inputs.
+    """Return proven intervals of period, precession, full turn, the first transits and passages, for uncertain inputs.
 
     Raises:
         InputError: an input, or a width.
         UnreachableError: the box is too wide.
     """
-    from ..dataset.ranges import ends, period_texts
+    from ..dataset.ranges import ends
     from ..solver.solve import solve
 
+    asked = scene.run.sections or ()
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
-    ranges = solve(scene, uncertain=widths, derivatives=True)
-    tables = {"transit": ranges.transits, **{word: found.table for word, found in ranges.sections.items()}}
+    ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*asked, "highest"))])
+    tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in asked}}
     first = {
         word: [list(ends(*interval)) for interval in table.exact("t")[:FIRST] if len(table)]
         for word, table in tables.items()
@@ -248,7 +256,8 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
     return {
         "over_s": scene.run.t_end,
         "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
-        "period_s": period_texts(ranges),
+        "period_s": ranges.period and list(ends(*ranges.period)),
+        **_told(ranges.swing, MEAN[1:]),
         "first_transits_s": first.pop("transit"),
         "first_passages_s": first,
         "possible": len(ranges.possible),
@@ -257,26 +266,32 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
 
 
 def _limits(scene: Scene, uncertain: dict[str, str]) -> dict[str, Any]:
-    """Return how far each input moves the period, to first order: by derivatives close to the scene's own inputs."""
+    """Return how far each input moves the period, to first order: by derivatives close to the scene's own inputs.
+
+    And those of period and precession to it.
+    """
     from ..dataset.ranges import ends
     from ..numbers.precision import rounded_up
     from ..solver.solve import solve
 
-    near = solve(scene, uncertain={name: f"±{width}e-{CLOSER}" for name, width in uncertain.items()}, derivatives=True)
-    return {
-        name: {
-            "moves_period_s": rounded_up(far * 10**CLOSER),
-            "share": share,
-            "s_per_unit": list(ends(*near.derivative(name).period or (far, far))),
-        }
-        for name, (far, share) in near.shares().items()
-    }
+    closer = {name: f"±{width}e-{CLOSER}" for name, width in uncertain.items()}
+    near = solve(scene, uncertain=closer, derivatives=True, sections="highest")
+    limits = {}
+    for name, (far, share) in near.shares().items():
+        of, moves = near.derivative(name), {"moves_period_s": rounded_up(far * 10**CLOSER), "share": share}
+        slopes = {"s_per_unit": of.period or (far, far), "deg_per_h_per_unit": of.precession}
+        limits[name] = moves | {word: slope and list(ends(*slope)) for word, slope in slopes.items()}
+    return limits
 
 
 def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     """Yield what holds for all values of uncertain inputs, and which of them limits the period."""
     box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
-    told = ["period_s = {} to {}".format(*ranges["period_s"])] if ranges["period_s"] else []
+    told = [
+        f"{name} = {ranges[name][0]} to {ranges[name][1]}" if ranges[name] else f"{name} is not decided"
+        for name in MEAN
+        if any(ranges[name] for name in MEAN)
+    ]
     told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
     for word, passages in ranges["first_passages_s"].items():
         told += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
@@ -286,10 +301,14 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     if limits:
         yield "which input limits you: what each alone moves the period by, to first order, and its share"
     for name, limit in limits:
-        moved, (low, high) = f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %", limit["s_per_unit"]
-        unit = unit_of(name).replace("degrees", "degree")
-        slope = f"the period changes by {low} to {high} s{unit and ' per '}{unit}"
-        yield f"  {name} {ranges['uncertain'][name]}: {moved} ({slope})"
+        moved, unit = (
+            f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %",
+            unit_of(name).replace("degrees", "degree"),
+        )
+        slope = "the period changes by {} to {} s".format(*limit["s_per_unit"])
+        if limit["deg_per_h_per_unit"]:
+            slope += ", the precession by {} to {} degrees an hour".format(*limit["deg_per_h_per_unit"])
+        yield f"  {name} {ranges['uncertain'][name]}: {moved} ({slope}{unit and ' per '}{unit})"
 
 
 def _motion_line(motion: dict[str, Any]) -> str:

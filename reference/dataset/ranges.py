@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace as with_fields
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -180,8 +181,9 @@ def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
-    """Return the ends of the period's interval as text, or None."""
-    return ranges.period and list(ends(*ranges.period))
+    """Return the ends of the period's interval as text, or None: what follows from transits.csv."""
+    period = with_fields(ranges, proof=None).period
+    return period and list(ends(*period))
 
 
 def ends(low: Fraction, high: Fraction, places: int | None = None) -> tuple[str, str]:

@@ -115,9 +115,12 @@ class BoxRadius(Radius):
 
     def advance(self, piece: Piece) -> Covered:
         """Carry the radius over a piece, with a bound of |e| that what follows has to confirm (Lemma 11.4)."""
-        (whole, d, jump), w = self.widened(piece), piece.k.w
+        return self.grown(*self.widened(piece))
+
+    def grown(self, whole: Piece, d: Sizes, jump: arb) -> Covered:
+        """Carry the radius over a piece of the box."""
         with ctx.workprec(SHORT):
-            k, span = whole.k, ball(piece.step.high - piece.step.low)
+            k, w, span = whole.k, whole.k.w, ball(whole.step.high - whole.step.low)
             ck, gw = k.c_size + d.k**2, k.drag_size * k.omega_size * d.p
             start = upper(self.eta + jump + span * (ck * d.tau / (2 * w) + d.d2 / w + d.d1))
             far = upper(2 * start * (span * (k.below.max(k.above + k.speed**2) + gw) / (2 * w)).exp())
@@ -139,9 +142,9 @@ class Windows:
         self.course.followers.append(self)
         self.sections: Any = None
         if words:
-            from .sections import Sections  # a box without sections does not rest on their code
+            from .sections import Apsis, Sections  # a box without sections does not rest on their code
 
-            self.sections = Sections(self.course, words)
+            self.sections = Sections(self.course, words, Apsis)
 
     def advance(self, covered: Covered) -> None:
         """Take the next tube: at each output time some pendulums of the box may be in it."""

@@ -16,7 +16,7 @@ from .box import BoxBalls, BoxRadius, Windows, near, spread
 from .course import FINISHED
 from .enclosed_transits import Scan
 from .printed_box import end_of
-from .shapes import Covered, EnclosedTransit, Interval, ProvedDerivatives, State, Tangent
+from .shapes import Covered, EnclosedZero, Interval, Led, ProvedDerivatives, Sizes, State, Tangent
 from .six_columns import cut
 
 TINY = arb(2) ** -4096  # more than nothing
@@ -50,10 +50,11 @@ class Tangents(BoxRadius):
         demand(ends == [*balls.inputs[1:]], "a width is missing, or another one")
         self.ways = [Way(balls, name, half, scales[name]) for name, half in halves.items()]
         self.point, self.scene = Radius(balls.own), list[Covered]()
+        self.plain: BoxRadius | None = BoxRadius(balls)
 
     def advance(self, piece: Piece, proposal: list[Any]) -> Covered:  # type: ignore[override]
         """Carry all over a step: `proposal` has six polynomials of integers, and the bits of their unit, per input."""
-        (whole, d, _), own = self.widened(piece), Piece(self.balls.own, piece.step)
+        (whole, d, joined), own = self.widened(piece), Piece(self.balls.own, piece.step)
         self.scene, sizes, polynomials = [self.point.advance(own)], list[list[arb]](), list[Any]()
         with ctx.workprec(2 * SHORT):
             omega = times(piece.k.h, self.balls.omega)
@@ -81,14 +82,24 @@ class Tangents(BoxRadius):
                 fast = sum((way.half * (x[1] + y[1]) for way, x, y in parts), around)
                 return upper(far), upper(fast), found
 
-            e, g, _ = bounds(arb(0), arb(0))
-            e, g = upper(2 * e + TINY), upper(2 * g + TINY)
-            self.eta, gamma, found = bounds(e, g)
-            demand(self.eta < e and gamma < g, "a bound has outgrown what it rests on")
+            sure = self.by_radius(whole, d, joined, off)
+            e, g = (upper(2 * x + TINY).min(y) for x, y in zip(bounds(arb(0), arb(0))[:2], sure, strict=True))
+            eta, gamma, found = bounds(e, g)
+            holds = (eta < e or e == sure[0]) and (gamma < g or g == sure[1])
+            demand(holds, "a bound has outgrown what it rests on")
+            self.eta, gamma = eta.min(sure[0]), gamma.min(sure[1])
             for way, part in zip(self.ways, found, strict=True):
                 way.error = part[0]
             self.tangents = [Tangent(f, unit, x[0], x[2]) for (f, unit), x in zip(polynomials, found, strict=True)]
             return Covered(whole, tube(k, d, self.eta, gamma + d.p**2 * off))
+
+    def by_radius(self, whole: Piece, d: Sizes, jump: arb, off: arb) -> Vector:
+        """Return Theorem C's bounds of |r - p| and |H - K| for the box: no bounds from where they fail on."""
+        try:
+            eta = self.plain.grown(whole, d, jump).tube.eta if self.plain else arb("inf")
+        except ArithmeticError:
+            self.plain, eta = None, arb("inf")
+        return [eta, ((whole.k.w + d.k) * eta + d.p**2 * off).upper()]
 
 
 def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vector) -> list[arb]:
@@ -124,19 +135,60 @@ def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g
     return [error, momentum, upper(momentum + (k.speed + k.omega_size) * error + s1 + r1)]
 
 
+class Watched:
+    """A scan of a box, the same of the scene alone, and steps since its cluster began; derivatives of its zeros."""
+
+    def __init__(self, scan: Scan, own: Scan, apsis: bool) -> None:
+        self.scan, self.own, self.apsis = scan, own, apsis
+        self.kept, self.zeros = list[tuple[Covered, list[Tangent]]](), list[list[Vector]]()
+
+    def advance(self, covered: Covered, tangents: list[Tangent], scene: Covered, ways: list[Way]) -> None:
+        """Take the next step."""
+        self.kept.append((covered, tangents))
+        self.close(ways)
+        self.own.advance(scene)
+        self.kept = self.kept if self.scan.cluster else []
+
+    def close(self, ways: list[Way]) -> None:
+        """Take the derivatives of the zeros that were found since."""
+        for z in self.scan.found[len(self.zeros) :]:
+            self.zeros.append([self.of_zero(z, j, way) for j, way in enumerate(ways)] if z.parity == "one" else [])
+
+    def of_zero(self, z: EnclosedZero, j: int, way: Way) -> Vector:
+        """Return the derivatives of a zero's time and of its azimuth, in degrees, over all times that it may have."""
+        begun, ended = self.kept[0][0].piece.begin, self.kept[-1][0].piece.end
+        # it lies in leaves of steps that are kept, whatever rounding adds to its interval
+        demand(z.t.low < ended and begun < z.t.high, "a zero is not covered")
+        found = list[Vector]()
+        for covered, tangents in self.kept:
+            begin, end = max(z.t.low, covered.piece.begin), min(z.t.high, covered.piece.end)
+            for s in spread(covered.piece, begin, end) if begin <= end else ():
+                found.append(late_and_turned(covered, tangents[j], way, s, self.apsis))
+        return [reduce(arb.union, x) for x in zip(*found, strict=True)]
+
+    def centre(self, z: Any) -> Any:
+        """Return the scene's own zero in the interval of a single one of the box, where each has one; or None."""
+        near = [y for y in self.own.found if z.t.low <= y.t.high and y.t.low <= z.t.high]
+        return near[0] if len(near) == 1 and near[0].parity == "one" else None
+
+
 class Derivatives:
-    """Follows a box's windows: derivatives of the states at their times, and of the times of transits."""
+    """Follows a box's windows: derivatives of states at their times; of transits, highest and lowest points."""
 
     def __init__(self, windows: Windows, halves: dict[str, Fraction], scales: dict[str, int]) -> None:
         self.windows, self.balls, self.course, self.names = windows, windows.balls, windows.course, tuple(halves)
         self.bound = self.course.bound = Tangents(self.balls, halves, scales)
-        self.scan = Scan(self.balls.own) if self.course.scan else None
-        self.done, self.hulls, self.zeros, self.states = 0, list[list[Vector]](), list[list[arb]](), list[State]()
-        self.kept = list[tuple[Covered, list[Tangent]]]()
+        self.done, self.hulls, self.states, self.watched = 0, list[list[Vector]](), list[State](), dict[str, Watched]()
+        if self.course.scan:
+            self.watched[""] = Watched(self.course.scan, Scan(self.balls.own), False)
+        sections = windows.sections
+        for word, scan in zip(sections.words, sections.scans, strict=True) if sections else ():
+            if word in ("highest", "lowest"):  # in axes in which the plumb line is the same for all
+                self.watched[word] = Watched(scan, sections.scan(self.balls.own, word), True)
         self.course.followers.append(self)
 
     def advance(self, covered: Covered) -> None:
-        """Take the next step: what it may hold of output times, and the transits that are closed with it."""
+        """Take the next step: what it may hold of output times, and the zeros that are closed with it."""
         demand(not self.course.open, "a tube comes from the course alone, while it takes a step")
         (scene,), windows, tangents = self.bound.scene, self.windows, self.bound.tangents
         for n in range(self.done, len(windows.times)):
@@ -155,40 +207,13 @@ class Derivatives:
             self.done += high <= covered.piece.end
         while len(self.states) < len(windows.times) and windows.times[len(self.states)] <= scene.piece.end:
             self.states.append(output(scene, windows.times[len(self.states)]))
-        self.kept.append((covered, tangents))
-        self.close()
-        if self.scan and self.course.scan:
-            self.scan.advance(scene)
-            self.kept = self.kept if self.course.scan.cluster else []
-
-    def close(self) -> None:
-        """Take the derivatives of the transits that were found since."""
-        for z in self.course.scan.found[len(self.zeros) :] if self.course.scan else ():
-            self.zeros.append([self.of_transit(z, j) for j in range(len(self.names))] if z.parity == "one" else [])
-
-    def of_transit(self, z: EnclosedTransit, j: int) -> arb:
-        """Return the derivative of a transit's time: that of xdot over xddot, and that of the pace (Lemma 12.3)."""
-        begun, ended = self.kept[0][0].piece.begin, self.kept[-1][0].piece.end
-        # it lies in leaves of steps that are kept, whatever rounding adds to its interval
-        demand(z.t.low < ended and begun < z.t.high, "a transit is not covered")
-        found, way = list[arb](), self.bound.ways[j]
-        for covered, tangents in self.kept:
-            piece, tangent = covered.piece, tangents[j]
-            begin, end = max(z.t.low, piece.begin), min(z.t.high, piece.end)
-            with ctx.workprec(self.balls.prec):
-                for s in spread(piece, begin, end) if begin <= end else ():
-                    bend = (near(piece.v[0].derivative(), s) / piece.unit + arb(0, covered.tube.a)) / piece.k.h
-                    rate = near(tangent.rows[0].derivative(), s) / tangent.unit + arb(0, tangent.rate)
-                    time = ball(piece.step.centre) + s * piece.k.h
-                    found.append(first(arb_series([time, -rate / bend], 2) / way.twin.pace) / way.scale)
-        return reduce(arb.union, found)
+        for watched in self.watched.values():
+            watched.advance(covered, tangents, scene, self.bound.ways)
 
     def finish(self) -> ProvedDerivatives:
-        """Return what is proved, with states and transits that are as narrow as the derivatives make them."""
-        proved = self.windows.finish()
-        self.close()
+        """Return what is proved, with states and zeros that are as narrow as the derivatives make them."""
+        proved, ways = self.windows.finish(), self.bound.ways
         demand(self.done == len(self.states) == len(self.windows.times), "the steps do not end with the run")
-        ways, found = self.bound.ways, proved.transits or ()
         with ctx.workprec(self.balls.prec):
             states = tuple(
                 tuple(
@@ -196,19 +221,29 @@ class Derivatives:
                 )
                 for wide, own, rows in zip(proved.states, self.states, self.hulls, strict=True)
             )
-            own = self.scan.finish() if self.scan else []
-            transits = []
-            in_scaled_time = self.course.scan.found if self.course.scan else []
-            for z, q, row in zip(found, in_scaled_time, self.zeros, strict=False):
-                # each pendulum has one zero there, and the scene's own clock is that of the course
-                ones = [y.t for y in own if row and y.parity == "one" and q.t.low <= y.t.low and y.t.high <= q.t.high]
-                transits.append(replace(z, t=within(z.t, ones[0], ways, row)) if ones else z)
+            made = {word: self.narrowed(word, proved.sections.get(word, proved.transits)) for word in self.watched}
         derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
-        of_times = tuple(tuple(map(interval, row)) if all(x.is_finite() for x in row) else () for row in self.zeros)
-        narrow = replace(proved, states=states, transits=None if proved.transits is None else tuple(transits))
+        transits, led = made.pop("", (proved.transits, ()))
+        sections = proved.sections | {word: zeros for word, (zeros, _) in made.items()}
+        narrow = replace(proved, states=states, transits=transits, sections=sections)
         FINISHED.add(narrow)
-        FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, of_times[: len(found)]))
+        passages = {word: rows for word, (_, rows) in made.items()}
+        FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, led, passages))
         return result
+
+    def narrowed(self, word: str, proved: Any) -> tuple[Any, tuple[Led, ...]]:
+        """Return the zeros of a scan as narrow as derivatives make their times, and these; in each pendulum's time."""
+        watched, zeros, led = self.watched[word], list[Any](), list[Led]()
+        watched.close(self.bound.ways)
+        watched.own.finish()
+        pairs = zip(watched.scan.found, watched.zeros, strict=True)
+        kept = [(q, row) for q, row in pairs if not word or self.windows.sections.counts(word, q)]
+        for z, (q, row) in zip(proved, kept, strict=False):
+            known = row if all(x.is_finite() for parts in row for x in parts) else []
+            own = watched.centre(q) if known else None  # in the scene's own clock, which is that of the course
+            zeros.append(replace(z, t=within(z.t, own.t, self.bound.ways, [x[0] for x in row])) if own else z)
+            led.append(Led(own, *(tuple(map(interval, column)) for column in zip(*known, strict=True))))
+        return tuple(zeros), tuple(led)
 
 
 def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) -> Interval:
@@ -220,17 +255,34 @@ def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) 
     return Interval(max(wide.low, own.low - reach), min(wide.high, own.high + reach))
 
 
+def jets(covered: Covered, tangent: Tangent, s: arb) -> list[Vector]:
+    """Return balls of r, r', r'', ρ, ρ' at `s`."""
+    (piece, tube), h = covered, covered.piece.k.h
+    forms = [(f, piece.unit) for part in (piece.p, piece.v, [g.derivative() for g in piece.v]) for f in part]
+    forms += [(f, tangent.unit) for part in (tangent.rows, [g.derivative() for g in tangent.rows]) for f in part]
+    x = [near(f, s) / unit for f, unit in forms]
+    radii, powers = (tube.eta, tube.u, tube.a, tangent.error, tangent.rate), (1, h, h**2, 1, h)
+    return [[(q + arb(0, radii[i])) / powers[i] for q in x[3 * i : 3 * i + 3]] for i in range(5)]
+
+
+def late_and_turned(covered: Covered, tangent: Tangent, way: Way, s: arb, apsis: bool) -> Vector:
+    """Return the derivatives of time and azimuth of a zero at `s`: of r·r' across the plumb line, or of xdot (12.5)."""
+    piece, (_, m, w) = covered.piece, covered.piece.balls.c
+    with ctx.workprec(piece.balls.prec):
+        north = times(1 / (m * m + w * w).sqrt(), [arb(0), -w, m])
+        (x, y), (vx, vy), (ax, ay), (dx, dy), (ux, uy) = ([q[0], dot(q, north)] for q in jets(covered, tangent, s))
+        late = -(dx * vx + dy * vy + x * ux + y * uy) / (vx**2 + vy**2 + x * ax + y * ay) if apsis else -ux / ax
+        turned = (x * dy - y * dx + late * (x * vy - y * vx)) / (x**2 + y**2) * 180 / arb.pi()
+        time = first(arb_series([ball(piece.step.centre) + s * piece.k.h, late], 2) / way.twin.pace)
+        return [x / way.scale for x in ((time, turned) if apsis else (time,))]
+
+
 def values(covered: Covered, tangent: Tangent, way: Way, s: arb, time: arb) -> Vector:
     """Return balls of the derivatives of position and velocity, in m and m/s, at the pendulum's own time (12.3)."""
-    (piece, tube), h = covered, covered.piece.k.h
-    with ctx.workprec(piece.balls.prec):
-        forms = [(f, piece.unit) for part in (piece.p, piece.v, [g.derivative() for g in piece.v]) for f in part]
-        forms += [(f, tangent.unit) for part in (tangent.rows, [g.derivative() for g in tangent.rows]) for f in part]
-        x, later = [near(f, s) / unit for f, unit in forms], first(way.twin.pace) * time
-        radii, powers = (tube.eta, tube.u, tube.a, tangent.error, tangent.rate), (1, h, h**2, 1, h)
-        r, v, a, rho, rate = ([(q + arb(0, radii[i])) / powers[i] for q in x[3 * i : 3 * i + 3]] for i in range(5))
+    with ctx.workprec(covered.piece.balls.prec):
+        (r, v, a, rho, rate), twin = jets(covered, tangent, s), way.twin
+        later = first(twin.pace) * time
         R = [arb_series([y, z * later + u], 2) for y, z, u in zip(r, v, rho, strict=True)]
         V = [arb_series([y, z * later + u], 2) for y, z, u in zip(v, a, rate, strict=True)]
-        twin = way.twin
         moving = [*times(twin.length, twin.turned(R, -1)), *times(twin.length * twin.pace, twin.turned(V, -1))]
         return [first(q) / way.scale for q in moving]

@@ -27,7 +27,8 @@ ADVICE = "Make the inputs less uncertain, or the run shorter (run.t_end)."
 class BoxEnclosure:
     """A proof of a box as trusted code returned it, and how it was reached.
 
-    `radius` is that of the tube at the end, in m; `pace` the interval of the factors of time; `cpu_s` all of its work.
+    `radius` is that of the tube at the end, in m; `pace` the interval of the factors of time; `lean` how far unit
+    vectors across the plumb line are from the scene's, at most; `cpu_s` all of its work.
     """
 
     proved: ProvedBox
@@ -35,6 +36,7 @@ class BoxEnclosure:
     steps: int
     radius: Fraction
     pace: Interval
+    lean: Fraction
     cpu_s: float
     derivatives: ProvedDerivatives | None = None
 
@@ -88,7 +90,8 @@ def enclose_box(
         holds = float(reached / windows.pace.high) if reached else 0.0
         raise UnreachableError(f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE) from None
     radius = interval(course.bound.eta * balls.length).high
-    return BoxEnclosure(proved, bits, count, radius, windows.pace, process_time() - begun, found)
+    lean = interval(sum((2 * x.rad() for x in balls.tilt), arb(0))).high  # these balls hold the scene's own
+    return BoxEnclosure(proved, bits, count, radius, windows.pace, lean, process_time() - begun, found)
 
 
 def _growth(balls: BoxBalls) -> float:

@@ -6,7 +6,7 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
-from .balls import UNIT, Vector, add, ball, cross, demand, dot, size, times, upper
+from .balls import UNIT, Vector, add, ball, cross, demand, dot, size, times, total, upper
 from .bound import SceneBalls, state
 from .course import FINISHED, Course
 from .enclosed_transits import Scan, Slope
@@ -51,15 +51,47 @@ class Form(Slope):
         return [*turned(r, -1), *turned(times(1 / self.piece.k.h, v), -1)]
 
 
+class Apsis(Form):
+    """The form of highest and lowest points, b·v, by bounds of second order: v is along the sphere (Lemma 13.4)."""
+
+    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb) -> None:
+        super().__init__(covered, a, b, d)
+        piece, (eta, u, bend), long = self.piece, covered.tube, size(b)
+        rows, miss, bits = (
+            (*piece.p, *piece.v, *(f.derivative() for f in piece.v)),
+            dot(piece.p, piece.v),
+            piece.step.bits,
+        )
+        x = [f(UNIT) / piece.unit for f in rows]
+        aside, low, most, lost = size(cross(x[:3], b)), dot(x[:3], b).abs_lower(), size(x[3:6]), miss.derivative()
+        if low > 0:
+            first = aside * u + long * (eta * (most + u) + total(miss, 2 * bits))
+            second = eta * (size(x[6:]) + bend) + u * (2 * most + u) + total(lost, 2 * bits)
+            offs = [arb(0, upper(long / low * y)) for y in (first, aside * bend + long * second)]
+            self.forms = ((self.forms[0][0], offs[0]), (self.forms[1][0], offs[1]))
+            self.tube = self.tube._replace(u=offs[0].rad())
+
+    def row(self, s: arb) -> Vector:
+        """Return the state over the length, about the middle of `s`."""
+        piece, (eta, u, _), (middle, off) = self.piece, self.covered.tube, (arb_poly([s.mid(), 1]), s - s.mid())
+        x = [arb_poly(f)(middle)(off) / piece.unit for f in (*piece.p, *piece.v)]
+        r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
+        return [*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)]
+
+
 class Sections:
     """Scans a course for the passages of sections."""
 
-    def __init__(self, course: Course, words: tuple[str, ...]) -> None:
-        self.course, self.words = course, words
-        with ctx.workprec(course.balls.prec):
-            forms = [form(course.balls, word) for word in words]
-        self.scans = [Scan(course.balls, lambda covered, f=f: Form(covered, *f), EnclosedPassage) for f in forms]
+    def __init__(self, course: Course, words: tuple[str, ...], apsis: Any = Form) -> None:
+        self.course, self.words, self.apsis = course, words, apsis
+        self.scans = [self.scan(course.balls, word) for word in words]
         course.followers.append(self)
+
+    def scan(self, balls: SceneBalls, word: str) -> Scan:
+        """Return a scan for the passages of a section."""
+        with ctx.workprec(balls.prec):
+            f, kind = form(balls, word), self.apsis if word in WAYS else Form
+        return Scan(balls, lambda covered: kind(covered, *f), EnclosedPassage)
 
     def advance(self, covered: Covered) -> None:
         """Take the next step's tube."""
@@ -67,14 +99,17 @@ class Sections:
         for scan in self.scans:
             scan.advance(covered)
 
+    @staticmethod
+    def counts(word: str, z: EnclosedPassage) -> bool:
+        """Return whether a zero is a passage: at highest and lowest points the form has to fall or to grow."""
+        return z.parity != "one" or z.direction == WAYS.get(word, z.direction)
+
     def finish(self, proved: Any) -> ProvedSections:
         """Return the passages in the course, whose result is `proved`."""
         right = proved in FINISHED and proved.times is self.course.times
         demand(right and {scan.time for scan in self.scans} == {proved.times[-1]}, "the proof is of another course")
-        found = [(word, WAYS.get(word), scan.finish()) for word, scan in zip(self.words, self.scans, strict=True)]
-        kept = {
-            w: tuple(z for z in zeros if not way or z.parity != "one" or z.direction == way) for w, way, zeros in found
-        }
+        found = zip(self.words, self.scans, strict=True)
+        kept = {word: tuple(z for z in scan.finish() if self.counts(word, z)) for word, scan in found}
         FINISHED.add(sections := ProvedSections(proved, kept))
         return sections
 

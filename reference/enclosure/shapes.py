@@ -104,6 +104,14 @@ class ProvedBox:
     sections: dict[str, tuple[EnclosedPassage, ...]]  # by their words
 
 
+class Led(NamedTuple):
+    """A zero in the scene's own motion, or None, and its derivatives to each input, or nothing."""
+
+    own: Any
+    times: tuple[Interval, ...] = ()
+    azimuths: tuple[Interval, ...] = ()  # about the plumb line, in degrees, at highest and lowest points
+
+
 @dataclass(frozen=True, eq=False)
 class ProvedDerivatives:
     """Derivatives to `names`, for all inputs of a box: of the states at its times, of the times of transits."""
@@ -111,7 +119,8 @@ class ProvedDerivatives:
     proved: ProvedBox
     names: tuple[str, ...]
     states: tuple[tuple[State, ...], ...]  # per time, per name
-    transits: tuple[tuple[Interval, ...], ...]  # per transit, per name; none of possible ones
+    transits: tuple[Led, ...]
+    passages: dict[str, tuple[Led, ...]]  # of highest and lowest points, by word
 
 
 class Tangent(NamedTuple):

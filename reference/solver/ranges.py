@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from math import ceil
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
 from .proof_steps import COEFFICIENT_BITS, Feed
 from .reach import check_reach
+from .swing import HOUR, Swing, swing_of
 from .widths import exact_texts, widths_of
 
 
@@ -98,11 +100,13 @@ class Derivative(NamedTuple):
         grid: of position and velocity at the grid times.
         transits: of the times of transits; without rows where one of them is undecided.
         period: of the period; None where this is open.
+        precession: of the precession, in degrees an hour; None where this is open, and without the section `highest`.
     """
 
     grid: Intervals
     transits: Intervals
     period: Ends | None
+    precession: Ends | None
 
 
 @dataclass(frozen=True)
@@ -141,19 +145,64 @@ class Ranges:
 
     @property
     def period(self) -> tuple[Fraction, Fraction] | None:
-        """Mean time in s between transits in the same direction, up to the first that is undecided; None if open."""
-        times, swings = self.transits.exact("t"), self._swings
+        """Mean time in s between transits in the same direction, up to the first that is undecided; None if open.
+
+        With derivatives it is what both tell: the transits' intervals, and how far inputs move the scene's own period.
+        """
+        swings, found = self._swings, getattr(self.proof, "derivatives", None)
         if swings < 1:
             return None
-        (low, high), (last_low, last_high) = times[0], times[2 * swings]
-        return (last_low - high) / swings, (last_high - low) / swings
+        low, high = _mean([row[0] for row in self.transits.rows], swings)
+        led = [led for led in found.transits if led.own] if found else []
+        if len(led) < len(self.transits):
+            return low, high
+        (least, most), far = _mean([x.own.t for x in led], swings), sum(moved for moved, _ in self.shares().values())
+        return max(low, least - far), min(high, most + far)
+
+    @property
+    def swing(self) -> Swing | None:
+        """Frequency and precession of every pendulum, from its highest points up to the first that is undecided.
+
+        None where this is open, without the section `highest`, and for ranges that were read from a file.
+        With derivatives the precession is what both tell: these points, and how far inputs move the scene's own.
+        """
+        (wide, led), halves = self._apses, [Fraction(width) for width in self.uncertain.values()]
+        slopes = [slope for j in range(len(halves)) if (slope := self._precession(j))]
+        if wide is None or wide.precession is None or len(slopes) < len(halves):
+            return wide
+        own = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (point.own for point in led)]
+        far = sum((half * max(-x.low, x.high) for half, x in zip(halves, slopes, strict=True)), Fraction(0))
+        return wide.near(swing_of(own, self.scene.exact, self.proof.bits), far)
+
+    @cached_property
+    def _apses(self) -> tuple[Swing | None, list[Any]]:
+        """The swing from the intervals of highest points, and what derivatives tell of these: nothing unless of all."""
+        found = self.sections.get("highest")
+        if found is None or self.proof is None:
+            return None, []
+        columns = (found.table.exact(name) for name in ("t", "x", "y", "z"))
+        points, known = _decided([*zip(*columns, strict=True)], found.possible), self.proof.derivatives
+        led = [*known.passages["highest"][: len(points)]] if known else []
+        wide = swing_of(points, self.scene.exact, self.proof.bits, self.proof.lean)
+        return wide, led if all(point.own for point in led) else []
+
+    def _precession(self, j: int) -> Ends | None:
+        """Return the derivative of the precession to an input, in degrees an hour; None if open."""
+        wide, led = self._apses
+        if wide is None or wide.precession is None or not led:
+            return None
+        first, last, swings = led[0], led[-1], Fraction(len(led) - 1, 2)
+        late = last.times[j].low - first.times[j].high, last.times[j].high - first.times[j].low
+        lost = [rate * time / HOUR for rate in wide.precession for time in late]
+        low = last.azimuths[j].low - first.azimuths[j].high - max(lost)
+        high = last.azimuths[j].high - first.azimuths[j].low - min(lost)
+        rates = [turned * hz / swings * HOUR for turned in (low, high) for hz in wide.hz]
+        return Ends(min(rates), max(rates))
 
     @property
     def _swings(self) -> int:
         """The number of whole swings before the first undecided transit."""
-        first = min((low for low, _, _ in self.possible), default=None)
-        decided = [t for t in self.transits.exact("t") if first is None or t[1] < first]
-        return (len(decided) - 1) // 2
+        return (len(_decided([*zip(self.transits.exact("t"))], self.possible)) - 1) // 2
 
     def derivative(self, name: str) -> Derivative:
         """Return the derivatives to an uncertain input; they hold for every pendulum of the box.
@@ -171,15 +220,13 @@ class Ranges:
         if name not in found.names:
             raise unknown("derivative", name, "an uncertain input", found.names, f"There are {', '.join(found.names)}.")
         j = found.names.index(name)
-        zeros = [row[j] for row, z in zip(found.transits, found.proved.transits or (), strict=True) if row]
+        zeros = [led.times[j] for led in found.transits if led.times]
         ones = len(zeros) == len(self.transits) and zeros
-        swings = self._swings if ones else 0
-        first, last = (zeros[0], zeros[2 * swings]) if swings > 0 else (None, None)
-        period = Ends((last.low - first.high) / swings, (last.high - first.low) / swings) if first and last else None
         return Derivative(
             Intervals(GRID, tuple(row[j] for row in found.states)),
             Intervals(("t",), tuple((x,) for x in zeros) if ones else ()),
-            period,
+            _mean(zeros, self._swings) if ones and self._swings > 0 else None,
+            self._precession(j),
         )
 
     def shares(self) -> dict[str, tuple[Fraction, float]]:
@@ -193,6 +240,18 @@ class Ranges:
         """Return scene, uncertain inputs, and the numbers of rows and transits."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.uncertain.items())
         return f"Ranges({self.scene.id}: {box}; {len(self.times)} grid times, {len(self.transits)} transits)"
+
+
+def _mean(times: Sequence[Any], swings: int) -> Ends:
+    """Return the mean of so many swings from intervals of the times of transits, or of derivatives of these."""
+    first, last = times[0], times[2 * swings]
+    return Ends((last.low - first.high) / swings, (last.high - first.low) / swings)
+
+
+def _decided(rows: list[Any], possible: Sequence[tuple[Fraction, Fraction, str]]) -> list[Any]:
+    """Return the rows, each of which begins with an interval of time, before the first that is undecided."""
+    first = min((low for low, _, _ in possible), default=None)
+    return [row for row in rows if first is None or row[0][1] < first]
 
 
 def solve_ranges(

@@ -168,7 +168,12 @@ class Solution(GridColumns):
     def swing(self) -> Swing | None:
         """Frequency and precession as intervals, with the section `highest`; None without it, or where it is open."""
         passages = self.sections.get("highest")
-        return None if passages is None or passages.possible else swing_of(passages.table, self.scene.exact)
+        if passages is None or passages.possible:
+            return None
+        table, names = passages.table, ("t", "x", "y", "z")
+        pairs = (zip(table.exact(name), table.bound(name), strict=True) for name in names)
+        ends = ([(q - bound, q + bound) for q, bound in column] for column in pairs)
+        return swing_of([*zip(*ends, strict=True)], self.scene.exact, table.bits)
 
     @cached_property
     def function(self) -> GoldenFunction | None:

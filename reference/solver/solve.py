@@ -41,6 +41,7 @@ def solve(
     level: str | None = None,
     t_end: str | float | None = None,
     transits: bool | None = None,
+    sections: str | Sequence[str] | None = None,
     engine: str | None = None,
     report: Report | None = None,
     derivatives: bool = False,

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
 from ..model.start import Start
 from ..numbers.precision import GUARD_BITS, to_fraction, to_mpf
-from ..numbers.table import Table
 from ..scenes.inputs import Inputs
 
 CERTAIN = 1e-6  # of a right angle: how near to it the turn from one highest point to the next may come
 HOUR = 3600
+ARC, DEGREES = Fraction(21, 20), Fraction(573, 10)  # a little more than π/3, and than a radian in degrees
 
 Ends = tuple[Fraction, Fraction]
 
@@ -44,46 +45,56 @@ class Swing:
         low, high = sorted(360 / abs(rate) for rate in self.precession)
         return low, high
 
+    def near(self, other: Swing | None, far: Fraction) -> Swing:
+        """Return this swing with the part of its precession that is at most `far` from another's."""
+        if self.precession is None or other is None or other.precession is None:
+            return self
+        (low, high), (least, most) = self.precession, other.precession
+        return replace(self, precession=(max(low, least - far), min(high, most + far)))
 
-def swing_of(table: Table, inputs: Inputs) -> Swing | None:
-    """Return the swing from all highest points of a run, `columns.SECTION` with bounds; None with fewer than two."""
-    count = len(table)
-    if count < 2:
+
+def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)) -> Swing | None:
+    """Return the swing from the highest points of a run; None with fewer than two, or where their times overlap.
+
+    Args:
+        points: intervals of t, x, y and z of each, in s and m.
+        inputs: those of the scene, about whose plumb line they turn.
+        bits: that angles are computed with.
+        lean: how far unit vectors across the plumb line are from the scene's, at most, where other inputs move it.
+    """
+    if len(points) < 2 or points[-1][0][0] <= points[0][0][1]:
         return None
-    (first, *_, last), (first_bound, *_, last_bound) = table.exact("t"), table.bound("t")
-    span = last - first
-    spans = span - first_bound - last_bound, span + first_bound + last_bound
-    if spans[0] <= 0:
-        return None
-    hz = Fraction(count - 1, 2) / spans[1], Fraction(count - 1, 2) / spans[0]
-    turn = _turn(table, inputs)
+    (first, last), half = (points[i][0] for i in (0, -1)), Fraction(len(points) - 1, 2)
+    spans = last[0] - first[1], last[1] - first[0]
+    hz, turn = (half / spans[1], half / spans[0]), _turn(points, inputs, bits, lean)
     if turn is None:
         return Swing(hz, None)
-    products = [angle / time for angle in turn for time in spans]
-    return Swing(hz, (min(products) * HOUR, max(products) * HOUR))
+    rates = [angle / span * HOUR for angle in turn for span in spans]
+    return Swing(hz, (min(rates), max(rates)))
 
 
-def _turn(table: Table, inputs: Inputs) -> Ends | None:
+def _turn(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction) -> Ends | None:
     """Return the turn from the first highest point to the last in degrees."""
-    start = Start.of(inputs, table.bits + GUARD_BITS)
+    start = Start.of(inputs, bits + GUARD_BITS)
     ctx, (_, north, up) = start.ctx, start.k.pull
     strength = ctx.sqrt(north**2 + up**2)
-    columns = [list(zip(table.exact(name), table.bound(name), strict=True)) for name in ("x", "y", "z")]
     angles, errors = [], []
-    for (x, dx), (y, dy), (z, dz) in zip(*columns, strict=True):
-        east, aside = (to_mpf(q, ctx) for q in (x, y)), to_mpf(z, ctx)
-        x_, y_ = east
-        p = (north * aside - up * y_) / strength  # up is below 0: along the meridian, northwards
-        off, wide = dx + dy + dz, to_fraction(ctx.hypot(x_, p))
+    for _, *point in points:
+        x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in point)
+        dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in point)
+        p = (north * z - up * y) / strength  # up is below 0: along the meridian, northwards
+        dp = (abs(north) * dz + abs(up) * dy) / strength + to_mpf(lean, ctx) * (abs(y) + dy + abs(z) + dz)
+        off, wide = ctx.hypot(dx, dp), ctx.hypot(x, p)
         if wide <= 2 * off:
             return None
-        angles.append(ctx.atan2(p, x_))
-        errors.append(2 * off / wide + Fraction(1, 1 << table.bits))
+        angles.append(ctx.atan2(p, x))
+        errors.append(to_fraction(off / wide) * ARC + Fraction(1, 1 << bits))  # asin s <= (π/3) s up to 1/2
     halves = 0
     for (a, b), (e, f) in zip(pairwise(angles), pairwise(errors), strict=True):
         turned = float(b - a) / math.pi
         halves += round(turned)
         if abs(turned - round(turned)) + float(e + f) > 0.5 - CERTAIN:
             return None
-    whole, most = to_fraction((angles[-1] - angles[0] - halves * ctx.pi) * 180 / ctx.pi), 60 * (errors[0] + errors[-1])
+    whole = to_fraction((angles[-1] - angles[0] - halves * ctx.pi) * 180 / ctx.pi)
+    most = DEGREES * (errors[0] + errors[-1])
     return whole - most, whole + most

@@ -9,17 +9,21 @@ from itertools import pairwise
 from random import Random
 from typing import Any
 
+import mpmath as mp
 from enclosure_oracle import scene
+from passages import plumb
 
 from reference.enclosure.prove_box import enclose_box
 from reference.enclosure.shapes import Box, ProvedBox
 from reference.engines.plan import Run
 from reference.engines.registry import engines
-from reference.numbers.columns import GRID, TRANSITS
+from reference.engines.registry import run as limbs_run
+from reference.numbers.columns import GRID, SECTION, TRANSITS
 from reference.scenes.inputs import Inputs
 from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
 
 TRUTH_BITS = 133  # forty digits
+APSES = ("highest",)
 ROUNDING = Fraction(1, 10**30)  # of such a run, in parts of the largest number
 NAMES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
 PLAIN = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
@@ -100,7 +104,7 @@ def proof_of(box: Box, times: list[Fraction], halves: dict[str, Fraction] | None
     def steps(bits: int, end: Fraction) -> Any:
         return Feed(box.inputs, (end,), "limbs", 1)(bits - COEFFICIENT_BITS)
 
-    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None)
+    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, sections=APSES)
 
 
 def inputs_of(box: Box) -> dict[str, Fraction]:
@@ -145,10 +149,18 @@ def wrong_derivatives(found: Any, inputs: Inputs, name: str) -> list[str]:
         for k, (high, low, row) in enumerate(pairs):
             check(f"{column} of row {k}", high, low, row[j][i])
     times = [run.transits.exact("t") for run in (up, down)]
-    for z, row in zip(found.proved.transits or (), found.transits, strict=True):
+    for z, led in zip(found.proved.transits or (), found.transits, strict=True):
         near = [[t for t in run if z.t.low - 1000 * off <= t <= z.t.high + 1000 * off] for run in times]
-        if row and all(len(zeros) == 1 for zeros in near):
-            check(f"transit at {float(z.t.low)}", near[0][0], near[1][0], row[j])
+        if led.times and all(len(zeros) == 1 for zeros in near):
+            check(f"transit at {float(z.t.low)}", near[0][0], near[1][0], led.times[j])
+    points = [azimuths(run) for run in (up, down)]
+    for z, led in zip(found.proved.sections["highest"], found.passages["highest"], strict=True):
+        near = [[p for p in run if z.t.low - 1000 * off <= p[0] <= z.t.high + 1000 * off] for run in points]
+        if led.times and all(len(zeros) == 1 for zeros in near):
+            (high, turned), (low, before) = near[0][0], near[1][0]
+            check(f"highest point at {float(z.t.low)}", high, low, led.times[j])
+            turn = turned - before
+            check(f"azimuth at {float(z.t.low)}", turn - 360 * round(turn / 360), Fraction(0), led.azimuths[j])
     return wrong
 
 
@@ -167,7 +179,25 @@ def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
 def truth(inputs: Inputs, times: Sequence[Fraction]) -> Run:
     """Return a run by limbs, with 40 digits."""
     limbs = engines()["limbs"]
-    return limbs.run(limbs.plan(inputs, TRUTH_BITS, tuple(times), True))
+    return limbs_run(replace(limbs.plan(inputs, TRUTH_BITS, tuple(times), True), sections=APSES))
+
+
+def apses(run: Run) -> list[tuple[Fraction, ...]]:
+    """Return t, x, y, z, vx, vy, vz of the highest points of a run."""
+    table, _ = run.passages["highest"]
+    return [*zip(*(table.exact(name) for name in SECTION), strict=True)]
+
+
+def azimuths(run: Run) -> list[tuple[Fraction, Fraction]]:
+    """Return the time of each highest point, and its azimuth about the run's own plumb line in degrees."""
+    found = []
+    with mp.workprec(TRUTH_BITS):
+        (_, north, up), _ = plumb(run.plan.inputs)
+        for t, *place in ((row[0], *row[1:4]) for row in apses(run)):
+            x, y, z = (mp.mpf(q.numerator) / q.denominator for q in place)
+            angle = mp.atan2((north * z - up * y) / mp.hypot(north, up), x) * 180 / mp.pi
+            found.append((t, Fraction(int(angle * 2**120), 2**120)))
+    return found
 
 
 def outside(proved: ProvedBox, run: Run) -> list[str]:
@@ -182,6 +212,15 @@ def outside(proved: ProvedBox, run: Run) -> list[str]:
     for i, name in enumerate(GRID):
         for time, value, state in zip(proved.times, run.grid.exact(name), proved.states, strict=True):
             check(f"{name} at {float(time)}:", value, state[i].low, state[i].high)
+    for row in apses(run):
+        zeros = proved.sections["highest"]
+        inside = [z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING]
+        if len(inside) == 1 and inside[0].parity == "one":
+            for name, value in zip(SECTION, row, strict=True):
+                interval = getattr(inside[0], name)
+                check(f"{name} at a highest point:", value, interval.low, interval.high)
+        elif not inside:
+            found.append(f"highest point at {float(row[0])} is lost")
     rows = list(zip(*(run.transits.exact(name) for name in TRANSITS), strict=True))
     ones = [z for z in proved.transits if z.parity == "one"]
     if len(ones) < len(proved.transits):  # some are undecided: each zero has to lie in one of all

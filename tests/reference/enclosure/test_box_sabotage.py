@@ -5,7 +5,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from boxes import drawn, outside, truth, widened
+from boxes import APSES, drawn, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb
@@ -115,7 +115,7 @@ def runs_hold(module, names=SHORT_RUNS):
         changes, widths, end = SHORT_RUNS[name]
         box = widened(scene(t_end=str(end), **{"drag": "1e-3", **changes} if name == "drag" else changes), widths)
         times = [Fraction(end * k, 40) for k in range(41)]
-        windows = module.Windows(box, BITS + 64, times, True)
+        windows = module.Windows(box, BITS + 64, times, True, APSES)
         chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), BITS, 24).chain(Fraction(1, 16)))
         for step in until(chain, windows.course.times[-1]):
             windows.course.advance(step)
@@ -171,12 +171,12 @@ FAULTS = [
     ("zip(*self.hulls[n : n + 1], *parts, strict=True)", "zip(*parts, strict=True)"),
     ("times(length, x[:3])", "times(67, x[:3])"),
     ("times(length * pace, x[3:])", "times(length, x[3:])"),
-    ("(z.t, 1 / pace)", "(z.t, pace)"),
-    ("(z.t, 1 / pace)", "(z.t, 1)"),
-    ("(z.vy, pace)", "(z.vy, 1)"),
-    ("(z.ax, pace**2)", "(z.ax, pace)"),
-    ("(z.ax, pace**2)", "(z.ax, 1)"),
-    ("(s - s.mid())", "0"),
+    ('"t": 1 / pace', '"t": pace'),
+    ('"t": 1 / pace', '"t": arb(1)'),
+    ('"vy": pace', '"vy": arb(1)'),
+    ('"ax": pace**2', '"ax": pace'),
+    ('"ax": pace**2', '"ax": arb(1)'),
+    ("near(f, s) / piece.unit", "f(s.mid()) / piece.unit"),
     ("q + arb(0, eta)", "q"),
     ("(q + arb(0, u))", "q"),
 ]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from boxes import drawn, inputs_of, moved, outside, truth, widened
+from boxes import APSES, azimuths, drawn, inputs_of, moved, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb, arb_poly, ctx
@@ -19,7 +19,7 @@ from reference.enclosure.approximant import pair
 from reference.enclosure.bound import SceneBalls
 from reference.enclosure.box import Windows
 from reference.enclosure.prove import until
-from reference.enclosure.shapes import Box, Sizes
+from reference.enclosure.shapes import Box, Covered, Sizes, Tube
 from reference.enclosure.tangents import TangentSource, scales_of
 from reference.numbers.columns import GRID
 
@@ -163,7 +163,11 @@ def slopes_at(inputs, key, times):
     rows = [[(a - b) / (2 * off) for a, b in zip(up.grid.exact(c), down.grid.exact(c), strict=True)] for c in GRID]
     zeros = [run.transits.exact("t") for run in (up, down)]
     pairs = zip(*zeros, strict=True) if len(zeros[0]) == len(zeros[1]) else ()
-    return rows, [(a, (a - b) / (2 * off)) for a, b in pairs]
+    points = [azimuths(run) for run in (up, down)]
+    apses = [*zip(*points, strict=True)] if len(points[0]) == len(points[1]) else []
+    late = [(a, (a - b) / (2 * off)) for (a, _), (b, _) in apses]
+    turned = [(a, (x - y - 360 * round((x - y) / 360)) / (2 * off)) for (a, x), (_, y) in apses]
+    return rows, [(a, (a - b) / (2 * off)) for a, b in pairs], late, turned
 
 
 def known(name, box, times):
@@ -193,7 +197,7 @@ def runs_hold(module, names=RUNS, kinds=("box", "point", "poor", "poor box", "co
             halves = halves if whole else dict.fromkeys(halves, Fraction(0))
             rows = 13 if not poor else 5 if kind == "poor" and name == "damped" else 2
             bits = COARSE if kind == "coarse" else BITS
-            windows = Windows(here, BITS + 64, times[:rows], True)
+            windows = Windows(here, BITS + 64, times[:rows], True, APSES)
             follower = module.Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             ways = follower.bound.ways
             source = Poor(ways) if poor else TangentSource(windows.balls, ways)
@@ -210,16 +214,29 @@ def runs_hold(module, names=RUNS, kinds=("box", "point", "poor", "poor box", "co
 
 def slopes_hold(found, j, truths, case):
     """Differences of states and of single transits are inside."""
-    rows, zeros = truths
+    rows, *zeros = truths
     for i, column in enumerate(rows):
         for k, (slope, row) in enumerate(zip(column, found.states, strict=False)):
             slack = abs(slope) / 10**15
             assert row[j][i].low - slack <= slope <= row[j][i].high + slack, (*case, i, k)
-    for z, row in zip(found.proved.transits, found.transits, strict=True):
-        near = [slope for t, slope in zeros if z.t.low - Fraction(1, 10**6) <= t <= z.t.high + Fraction(1, 10**6)]
-        if row and len(near) == 1:
-            slack = abs(near[0]) / 10**15
-            assert row[j].low - slack <= near[0] <= row[j].high + slack, case
+    highest = found.proved.sections["highest"], found.passages["highest"]
+    made = [(found.proved.transits, found.transits, "times"), (*highest, "times"), (*highest, "azimuths")]
+    for slopes, (proved, every, name) in zip(zeros, made, strict=True):
+        for z, led in zip(proved, every, strict=True):
+            near = [slope for t, slope in slopes if z.t.low - Fraction(1, 10**6) <= t <= z.t.high + Fraction(1, 10**6)]
+            if led.times and len(near) == 1:
+                slack, interval = abs(near[0]) / 10**15, getattr(led, name)[j]
+                assert interval.low - slack <= near[0] <= interval.high + slack, (*case, name)
+
+
+def radius_holds(module):
+    """Theorem C's bounds of |r - p| and of |H - K| with the scene's Ω, at made-up sizes; nothing where it fails."""
+    k, d = SimpleNamespace(w=arb(0.7)), Sizes(arb(0), arb(0), arb(1.5), arb(2), arb(0), arb(0))
+    for eta, off in ((0, 1), (1, 0), (1, 1)):
+        kept = SimpleNamespace(grown=lambda *_, eta=eta: Covered(None, Tube(arb(eta), arb(0), arb(0))))
+        bound = SimpleNamespace(plain=kept)
+        found = module.Tangents.by_radius(bound, SimpleNamespace(k=k), d, arb(0), arb(off))
+        assert [float(x) for x in found] == pytest.approx([eta, 2.7 * eta + 1.5**2 * off])
 
 
 def widths_hold(module):
@@ -322,21 +339,32 @@ FAULTS = [
     ("max(low, covered.piece.begin), min(high, covered.piece.end)", "*2 * (max(low, covered.piece.begin),)"),
     ("[[x, *row] if x else row for", "[row for"),
     ("ball(time)) for s in parts", "arb(0)) for s in parts"),
-    ("+ arb(0, covered.tube.a)) / piece.k.h", ") / piece.k.h"),
-    ("+ arb(0, covered.tube.a)) / piece.k.h", "+ arb(0, covered.tube.a))"),
-    ("tangent.unit + arb(0, tangent.rate)\n", "tangent.unit\n"),
-    ("[time, -rate / bend]", "[time, rate / bend]"),
-    ("[time, -rate / bend]", "[time, arb(0)]"),
-    ("ball(piece.step.centre) + s * piece.k.h\n", "ball(piece.step.centre)\n"),
-    ("2) / way.twin.pace) / way.scale", "2)) / way.scale"),
-    ("2) / way.twin.pace) / way.scale", "2) / way.twin.pace)"),
-    ("return reduce(arb.union, found)", "return found[0]"),
-    ("q.t.low <= y.t.low and y.t.high <= q.t.high", "z.t.low <= y.t.low and y.t.high <= z.t.high"),
+    ("else -ux / ax", "else ux / ax"),
+    ("else -ux / ax", "else arb(0)"),
+    ("ball(piece.step.centre) + s * piece.k.h, late", "ball(piece.step.centre), late"),
+    ("2) / way.twin.pace)\n", "2))\n"),
+    ("[x / way.scale for x in", "[x for x in"),
+    ("return [reduce(arb.union, x) for x in zip(*found, strict=True)]", "return found[0]"),
+    ("-(dx * vx + dy * vy + x * ux", "(dx * vx + dy * vy + x * ux"),
+    ("-(dx * vx + dy * vy + x * ux + y * uy)", "-(x * ux + y * uy)"),
+    ("-(dx * vx + dy * vy + x * ux + y * uy)", "-(dx * vx + dy * vy)"),
+    ("/ (vx**2 + vy**2 + x * ax + y * ay)", "/ (x * ax + y * ay)"),
+    ("x * dy - y * dx", "x * dy + y * dx"),
+    (" + late * (x * vy - y * vx)", ""),
+    ("late * (x * vy - y * vx)", "late * (x * vy + y * vx)"),
+    ("/ (x**2 + y**2) * 180", "* 180"),
+    ("180 / arb.pi()", "1"),
+    ("[arb(0), -w, m]", "[arb(0), w, m]"),
+    ("[arb(0), -w, m]", "[arb(0), m, w]"),
+    ("* eta + d.p**2 * off)", "* eta)"),
+    ("(whole.k.w + d.k) * eta", "arb(0)"),
+    ("eta.min(sure[0]), gamma", "arb(0), gamma"),
+    ("gamma.min(sure[1])\n", "arb(0)\n"),
     ("way.half * way.scale * x.abs_upper()", "way.half * x.abs_upper()"),
     ("way.half * way.scale * x.abs_upper()", "way.half * way.scale * x.abs_upper() / 2"),
     ("max(wide.low, own.low - reach)", "max(wide.low, own.low)"),
     ("min(wide.high, own.high + reach)", "min(wide.high, own.high)"),
-    ("first(way.twin.pace) * time\n", "0 * time\n"),
+    ("first(twin.pace) * time\n", "0 * time\n"),
     ("(tube.eta, tube.u, tube.a, tangent.error, tangent.rate)", "(tube.eta, tube.u, tube.a, 0, tangent.rate)"),
     ("(tube.eta, tube.u, tube.a, tangent.error, tangent.rate)", "(tube.eta, tube.u, tube.a, tangent.error, 0)"),
     ("(tube.eta, tube.u, tube.a, tangent", "(tube.eta, 0, tube.a, tangent"),
@@ -368,6 +396,7 @@ HARMLESS = [  # the box's balls in place of the scene's hold the scene as well: 
 
 def found_by(module):
     widths_hold(module)
+    radius_holds(module)
     residuals_hold(module)
     sources_hold(module)
     runs_hold(module)

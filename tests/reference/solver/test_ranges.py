@@ -1,11 +1,17 @@
 """A scene with uncertain inputs: intervals that are proved, or a refusal that says why."""
 
 from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
+from boxes import azimuths, drawn, truth
 
 import reference
+from reference.enclosure.shapes import Box
+from reference.solver import swing
 from reference.solver.widths import UNCERTAIN
 
 MEASURED = {"pendulum.length": "±0.001", "site.gravity": "+-1e-5", "latitude": "+/-0.001"}
@@ -169,3 +175,100 @@ def test_a_wide_swing_is_followed_by_its_derivatives():
     width = (ranges.grid.high("x") - ranges.grid.low("x")).max()
     assert ranges.proof.derivatives is not None
     assert width < 1e-5
+
+
+SWINGS = {  # scene, widths, whether the turn of the plane is decided
+    "from rest": ({"release": {"x": "0.3", "y": "0.4"}}, {"length": "±0.01", "latitude": "±0.1"}, True),
+    "across the cut": (  # the points lie west and east, at azimuths near 180 degrees
+        {"release": {"x": "-1", "y": "0"}, "site": {"rotation_rate": "1e-3"}},
+        {"rotation_rate": "±1e-6", "y0": "±1e-4"},
+        True,
+    ),
+    "damped": (
+        {"pendulum": {"length": "10", "drag": "0.01"}, "release": {"x": "0.5", "y": "0.1"}},
+        {"drag": "±1e-4", "length": "±0.001", "x0": "±1e-4"},
+        True,
+    ),
+    "ellipse": (
+        {"pendulum": {"length": "10"}, "release": {"x": "1", "y": "0", "vy": "0.4"}},
+        {"vy0": "±1e-4", "gravity": "±1e-4", "length": "±1e-4"},
+        True,
+    ),
+    "lean": (
+        {"site": {"rotation_rate": "0.01", "equatorial_radius": "1000"}, "release": {"x": "1", "y": "2"}},
+        {"latitude": "±0.02", "rotation_rate": "±1e-5"},
+        True,
+    ),
+    "circle": (  # whose highest points are anywhere
+        {"pendulum": {"length": "10"}, "release": {"x": "1", "y": "0", "vy": "0.99278"}},
+        {"vy0": "±1e-3"},
+        False,
+    ),
+}
+
+
+def swings_outside(name, count, derivatives):
+    """Return what of period, precession and full turn of drawn pendulums is outside of what is proved."""
+    document, widths, decided = SWINGS[name]
+    scene = reference.parse_scene({"id": "a", **document, "run": {"t_end": "60", "grid_step": "60"}})
+    ranges = reference.solve(scene, uncertain=widths, sections="highest", derivatives=derivatives)
+    proved, rng, found = ranges.swing, Random(name), []
+    assert (proved is not None and proved.precession is not None) == decided
+    highest = ranges.sections["highest"]
+    undecided = min((low for low, _, _ in highest.possible), default=Fraction(61))
+    known = sum(high < undecided for _, high in highest.table.exact("t"))
+    for k in range(count if decided else 0):
+        run = truth(drawn(Box(*ranges.proof.proved.box), rng, corner=k % 2 == 0), [Fraction(0), Fraction(60)])
+        points, times = azimuths(run)[:known], run.transits.exact("t")
+        turned = [(b - a + 90) % 180 - 90 for (_, a), (_, b) in pairwise(points)]
+        span = points[-1][0] - points[0][0]
+        rate = sum(turned) * 3600 / span
+        period = ranges.period and (times[2 * ranges._swings] - times[0]) / ranges._swings
+        numbers = {"hz": Fraction(len(points) - 1, 2) / span, "precession": rate, "full_turn": 360 / abs(rate)}
+        numbers |= {"period": 2 * span / (len(points) - 1)}
+        intervals = [(word, value, getattr(proved, word)) for word, value in numbers.items()]
+        for word, value, interval in [*intervals, ("of transits", period, ranges.period)]:
+            if interval and not interval[0] <= value <= interval[1]:
+                found.append(f"{word} {float(value)} not in [{float(interval[0])}, {float(interval[1])}]")
+    return found
+
+
+@pytest.mark.parametrize("derivatives", [False, True])
+@pytest.mark.parametrize("name", SWINGS)
+def test_period_precession_and_full_turn_of_every_pendulum_lie_inside(name, derivatives, size):
+    assert swings_outside(name, size(6, 1000), derivatives) == []
+
+
+@pytest.mark.parametrize(
+    "old, new, name",
+    [
+        ("halves += round(turned)", "halves += 1", "across the cut"),
+        ("ctx.atan2(p, x)", "ctx.atan2(x, p)", "from rest"),
+        ("north * z - up * y", "north * z + up * y", "from rest"),
+        ("north * z - up * y", "-up * y", "lean"),
+        ("DEGREES * (errors[0] + errors[-1])", "0", "ellipse"),
+        ("ctx.hypot(dx, dp), ctx", "0 * dx, ctx", "ellipse"),
+        ("(half / spans[1], half / spans[0])", "(half / spans[0], half / spans[0])", "from rest"),
+    ],
+)
+def test_a_fault_in_the_swing_of_a_box_is_found(old, new, name, monkeypatch):
+    text, fault = Path(swing.__file__).read_text(encoding="utf-8"), dict(vars(swing))
+    assert text.count(old) == 1
+    exec(compile(text.replace(old, new), swing.__file__, "exec"), fault)
+    monkeypatch.setattr(reference.solver.ranges, "swing_of", fault["swing_of"])
+    assert swings_outside(name, 12, derivatives=False)
+
+
+def test_derivatives_narrow_period_and_precession():
+    wide, narrow = (
+        reference.solve("museum_gate", t_end="100", uncertain=MEASURED, sections="highest", derivatives=d)
+        for d in (False, True)
+    )
+    assert wide.period[0] <= narrow.period[0] < narrow.period[1] <= wide.period[1]
+    (low, high), (least, most) = wide.swing.precession, narrow.swing.precession
+    assert low < least < most < high
+    assert most - least < (high - low) / 10
+    point = reference.solve("museum_gate", t_end="100", level="enclosed", sections="highest").swing.precession
+    assert least < point[0] < point[1] < most
+    slope = narrow.derivative("latitude").precession  # of -Ω sin φ, in degrees an hour per degree
+    assert slope[0] < -15.041 * np.cos(np.radians(50)) * np.pi / 180 < slope[1]
