@@ -130,7 +130,7 @@ def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, fo
     assert (status, document["verdict"], document["section"]) == (1, "disagrees", "gate 31")
     assert document["transits"]["matched"] == document["transits"]["shifted"] == len(times)
     status, told = score(*words, file()[0])
-    assert status == 2 and "no such option together with --section" in told
+    assert status == 2 and "no file beside that of --transits" in told
     status, told = score("paris", "--section", "gate 30")
     assert status == 2 and "no such option without --transits" in told
 

@@ -95,11 +95,13 @@ def test_passages_have_the_decimals_of_the_grid_and_those_of_the_latest_time(sol
 
 
 def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(solution, monkeypatch):
-    monkeypatch.setattr("reference.solver.solution.swing_of", lambda table, inputs: (table, inputs))
-    table = Table(SECTION, 0, [])
+    monkeypatch.setattr("reference.solver.solution.swing_of", lambda points, inputs, bits: (points, inputs, bits))
+    table = Table(SECTION, 7, [(1, 2, 3, 4, 5, 6, 7)], [(1,) * 7])
+    unit = Fraction(1, 1 << 7)
+    points = [tuple(((k - 1) * unit, (k + 1) * unit) for k in range(1, 5))]
     decided, unsure = Passages(table, []), Passages(table, [], ((SURE, OPEN, "even"),))
     for sections, swing in (
-        ({"lowest": decided}, None), ({"highest": unsure}, None), ({"highest": decided}, (table, solution.scene.exact)),
+        ({"lowest": decided}, None), ({"highest": unsure}, None), ({"highest": decided}, (points, solution.scene.exact, 7)),
     ):  # fmt: skip
         assert replace(solution, sections=sections).swing == swing
 
