@@ -101,8 +101,10 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
     points = [tuple(((k - 1) * unit, (k + 1) * unit) for k in range(1, 5))]
     decided, unsure = Passages(table, []), Passages(table, [], ((SURE, OPEN, "even"),))
     for sections, swing in (
-        ({"lowest": decided}, None), ({"highest": unsure}, None), ({"highest": decided}, (points, solution.scene.exact, 7)),
-    ):  # fmt: skip
+        ({"lowest": decided}, None),
+        ({"highest": unsure}, None),
+        ({"highest": decided}, (points, solution.scene.exact, 7)),
+    ):
         assert replace(solution, sections=sections).swing == swing
 
 
