@@ -46,6 +46,7 @@ class Swept(Framed):
         tally: counts by status and costs; of the rows that were computed now, where a folder was gone on with.
         audit: what solving a sample again has found, if it was done.
         compile_s: CPU seconds of compiling.
+        audit_s: CPU seconds of the audit.
         wall_s: seconds from the start to the end.
     """
 
@@ -55,6 +56,7 @@ class Swept(Framed):
     tally: Tally = field(default_factory=Tally)
     audit: Audit | None = None
     compile_s: float = 0.0
+    audit_s: float = 0.0
     wall_s: float = 0.0
 
     def __len__(self) -> int:
@@ -253,12 +255,13 @@ def run(
         with _workers(asked, out, workers, cluster, len(parts)) as executor:
             tally = drive(asked, parts, executor, save, report)
         compile_s = executor.compile_s
-    audit = None
+    audit, audit_from = None, time.process_time()
     if asked.audit:
         read = store.read_part if store is not None else lambda part: in_memory[part].columns
         audit = audited(asked, read)
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
-    swept = Swept(asked, store, solved, tally, audit, compile_s, time.perf_counter() - started)
+    audit_s, wall_s = time.process_time() - audit_from, time.perf_counter() - started
+    swept = Swept(asked, store, solved, tally, audit, compile_s, audit_s, wall_s)
     if store is not None:
         document = asdict(audit) if audit is not None else None
         store.summarize({"rows": len(swept), "counts": swept.counts, "audit": document})

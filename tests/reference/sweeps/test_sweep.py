@@ -146,6 +146,7 @@ def test_an_audit_finds_what_is_wrong_in_any_column(paris, monkeypatch, name, am
     scene = paris.with_values(["run.t_end=60"])
     good = sweep(scene, ["site.latitude=5,10,20"], engine="heyoka", audit_rows=2)
     assert (good.audit.rows, good.audit.wrong) == (2, ())
+    assert good.audit_s > 0
     assert 0 < good.audit.worst_ratio < 1
 
     def other(*arguments, **options):
