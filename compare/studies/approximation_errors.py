@@ -7,20 +7,23 @@ position: the direction that somebody who believes the approximation would draw 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
+from reference.errors import did_you_mean
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..approximations import Motion, motions, quantities
+from ..approximations import Approximation, Motion, motions, quantities
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import Gauge
 from .row import failure
+
+Kind = TypeVar("Kind", bound=Approximation)
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period
@@ -128,9 +131,21 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
 
 
 def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
-    """Return approximations of the motion by their ids, all if None."""
-    known = motions()
-    return [known[word] for word in (known if ids is None else ids)]
+    """Return approximations of the motion by their ids, all if None.
+
+    Raises:
+        InputError: an unknown id, or one of a single number.
+    """
+    return _chosen(motions(), ids, "an approximation of the motion; those of a number stand in quantity_table")
+
+
+def _chosen(known: Mapping[str, Kind], ids: Sequence[str] | None, expected: str) -> list[Kind]:
+    words = list(known) if ids is None else ids
+    for word in words:
+        if word not in known:
+            advice = did_you_mean(word, known, "`foucault methods` lists them.")
+            raise InputError("approximations", word, expected, advice)
+    return [known[word] for word in words]
 
 
 def error_table(
@@ -155,18 +170,17 @@ def error_table(
 
 def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
     """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
-    rows, truths, known = [], dict[Any, Any](), quantities()
-    for word in known if ids is None else ids:
-        approximation = known[word]
+    rows, truths = [], dict[Any, Any]()
+    for approximation in _chosen(quantities(), ids, "an approximation of a number; motions stand in error_table"):
         try:
             value = approximation.value(scene)
             if approximation.truth not in truths:
                 truths[approximation.truth] = approximation.truth(scene)
         except FoucaultError as error:
-            rows.append(QuantityRow(word, None, None, approximation.unit, None, *failure(error)))
+            rows.append(QuantityRow(approximation.id, None, None, approximation.unit, None, *failure(error)))
         else:
             truth = value.context.mpf(truths[approximation.truth])
             relative = float(abs(value / truth - 1)) if truth else None
             printed, printed_truth = (str(value.context.nstr(number, 15)) for number in (value, truth))
-            rows.append(QuantityRow(word, printed, printed_truth, approximation.unit, relative))
+            rows.append(QuantityRow(approximation.id, printed, printed_truth, approximation.unit, relative))
     return rows

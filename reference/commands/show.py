@@ -268,7 +268,7 @@ def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
 def _limits(scene: Scene, uncertain: dict[str, str]) -> dict[str, Any]:
     """Return how far each input moves the period, to first order: by derivatives close to the scene's own inputs.
 
-    And those of period and precession to it.
+    With it go the derivatives of period and precession to the input, as intervals.
     """
     from ..dataset.ranges import ends
     from ..numbers.precision import rounded_up
@@ -301,10 +301,8 @@ def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     if limits:
         yield "which input limits you: what each alone moves the period by, to first order, and its share"
     for name, limit in limits:
-        moved, unit = (
-            f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %",
-            unit_of(name).replace("degrees", "degree"),
-        )
+        unit = unit_of(name).replace("degrees", "degree")
+        moved = f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %"
         slope = "the period changes by {} to {} s".format(*limit["s_per_unit"])
         if limit["deg_per_h_per_unit"]:
             slope += ", the precession by {} to {} degrees an hour".format(*limit["deg_per_h_per_unit"])

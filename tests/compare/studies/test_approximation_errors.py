@@ -142,6 +142,19 @@ def test_limits_of_what_does_not_apply_say_why():
         assert all(row.good == () and "circle" in row.reason for row in rows)
 
 
+@pytest.mark.parametrize("call", [error_table, sweep, limits])
+def test_a_number_is_no_motion_and_an_unknown_word_is_named(call):
+    with pytest.raises(InputError, match="rest_equation"):
+        call(PARIS, ["rest_equation"])
+    with pytest.raises(InputError, match="`foucault methods` lists them"):
+        call(PARIS, ["nothing"])
+
+
+def test_a_motion_is_no_number():
+    with pytest.raises(InputError, match="linear_g"):
+        quantity_table(PARIS, ["linear_g"])
+
+
 @pytest.mark.parametrize("t_end", [0.0, -5.0, float("inf"), float("nan")])
 def test_a_table_ends_at_a_time_after_the_release(t_end):
     with pytest.raises(InputError, match="t_end"):
