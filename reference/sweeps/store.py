@@ -16,8 +16,9 @@ from typing import Any
 
 from ..errors import InputError, plain_json
 from ..system.documents import json_document, regular
+from ..system.imports import needed
 from ..system.workspace import clear, replace_file
-from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, need_pyarrow, parquet, pyarrow_version
+from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, parquet, pyarrow_version
 from .part import Part
 from .request import Request
 
@@ -170,7 +171,7 @@ class Store:
 
 
 def _need_pyarrow() -> None:
-    need_pyarrow("--out", "no pyarrow", "the package pyarrow, which writes Parquet")
+    needed("pyarrow", "sweep", "--out", "no pyarrow", "which writes Parquet")
 
 
 def _foreign(path: Path) -> bool:
