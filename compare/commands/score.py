@@ -189,17 +189,8 @@ def command(
             return
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
-        refuse(
-            {
-                **others,
-                "--section": section,
-                "--uncertain": uncertain,
-                "--set": set_ or None,
-                "--t-end": t_end,
-                "--columns": columns,
-            },
-            "together with --suite",
-        )
+        others |= {"--section": section, "--t-end": t_end, "--columns": columns}
+        refuse(others | {"--uncertain": uncertain, "--set": set_ or None}, "together with --suite")
     if covers is not None and not 0 < covers <= 1:
         raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
     if [*(candidates or ()), transits].count("-") > 1:

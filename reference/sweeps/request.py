@@ -195,7 +195,7 @@ def request(
         InputError: a wrong axis, option or value.
     """
     if level not in LEVELS:
-        raise unknown("--level", level, "a level of trust", LEVELS, "")
+        raise unknown("--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}.")
     if audit is not None and audit < 0:
         raise InputError("--audit", audit, "a number of rows from 0")
     words = list(over)
@@ -281,7 +281,7 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
 
         return min(can, key=expected_s)
     if name not in engines:
-        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), "")
+        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
     if not engines[name].installed:
         needed = ", ".join(engines[name].requires)
         advice = f"Install it with pip install 'foucault-reference[{engines[name].extra}]'."

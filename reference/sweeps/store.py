@@ -23,6 +23,7 @@ from .part import Part
 from .request import Request
 
 PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
+PARQUET = ("pyarrow", "sweep", "--out", "no pyarrow", "which writes Parquet")  # what is needed, if it is missing
 MOST_BYTES = 1 << 40  # of a part: no limit but that of a disk
 
 
@@ -52,7 +53,7 @@ class Store:
             store = cls.opened(folder)
             store._check_same(request)
         else:
-            _need_pyarrow()
+            needed(*PARQUET)
             if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
                 raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
             store = cls(folder, request, pyarrow_version())
@@ -71,7 +72,7 @@ class Store:
         Raises:
             InputError: there is none, or its plan is damaged.
         """
-        _need_pyarrow()
+        needed(*PARQUET)
         try:
             document = json_document(folder / PLAN, "--out")
             request = Request.of(document)
@@ -168,10 +169,6 @@ class Store:
     def summarize(self, document: dict[str, Any]) -> None:
         """Write what became of the sweep."""
         _write_json(self.folder / SUMMARY, document)
-
-
-def _need_pyarrow() -> None:
-    needed("pyarrow", "sweep", "--out", "no pyarrow", "which writes Parquet")
 
 
 def _foreign(path: Path) -> bool:
