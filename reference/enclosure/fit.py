@@ -24,7 +24,7 @@ from .shapes import ProvedFunction
 
 SHALLOW = 0.96  # of the length: a bob that stays so deep, within 16 degrees, has no series of z
 SHARE = 1 / 3  # of the errors that are there anyway: what leaving out coefficients may add
-ROUNDING = 1.6  # of z, in ulp of the length: a piece whose series rounds more is halved
+ROUNDING = 1.95  # of z, in ulp of the length: a piece whose series rounds more is halved
 LEAST = Fraction(1, 1 << 59)  # length of a piece in s
 WIDER = Fraction(GRAIN + 1, GRAIN)  # unit of a step's series that has to reach farther back
 
@@ -41,18 +41,16 @@ class Fit:
         last = until = double_below(piece.end)
         while Fraction(last) > (begin := following.end) + LEAST:
             rows = position(piece, begin, Fraction(until), following.count)
-            series = [float(c) for c in rows.entries()]
-            if self.rounding_of_z(series, 3 if 2 * begin >= until else 7) > ROUNDING:
+            if self.rounding_of_z(rows.entries(), 3 if 2 * begin >= until else 7) > ROUNDING:
                 until = double_below((begin + Fraction(until)) / 2)
             else:
-                following.add(until, series)
+                following.add(until, [float(c) for c in rows.entries()])
                 until = last
 
-    def rounding_of_z(self, series: list[float], off: int) -> float:
-        """Return how far evaluating a series of z rounds, in ulp of the length; 0 where z has none."""
-        k, length = np.arange(CUT), self.following.balls.inputs.length
-        parts = np.abs(series[2 * CUT :]) * (off * k**2 + k + 1)[: len(series) - 2 * CUT]
-        return float(sum(parts.tolist()) * 2.0**-53 / ulp(float(length)))
+    def rounding_of_z(self, series: list[arb], off: int) -> float:
+        """Return how far a series of z rounds, its coefficients and its values, in ulp of the length; 0 without one."""
+        costs = ((off * k**2 + k + 1) * abs(x) * 2**-53 + abs(x - float(x)) for k, x in enumerate(series[2 * CUT :]))
+        return float(sum(costs, arb(0))) / ulp(float(self.following.balls.inputs.length))
 
     def finish(self) -> ProvedFunction:
         """Finish the proof, with the lowest degree that costs next to nothing."""

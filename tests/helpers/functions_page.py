@@ -21,7 +21,7 @@ largest distance from the vertical through the suspension. `python tests/helpers
 
 An ulp of the length is the distance to the next double. Where the bob stays within 16 degrees of rest, z comes from x
 and y and is at most 1.1 ulp off. In wider swings z moves as far as x and y do, and has a series of its own. To evaluate a series
-rounds the more, the farther it goes: a piece on which z would round more than 1.6 ulp is halved, so that every z is within 2 ulp.
+rounds the more, the farther it goes: a piece on which z would round more than 1.95 ulp is halved, so that every z is within 2 ulp.
 """
 
 

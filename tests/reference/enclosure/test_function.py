@@ -140,15 +140,15 @@ def test_a_piece_that_does_not_join_or_lie_in_its_step_is_refused(monkeypatch):
 
 
 def test_a_gap_between_pieces_is_refused(monkeypatch):
-    add, skipped = Following.add, []  # in each attempt the second piece
+    add, skipped = fit.Fit.add, []  # in each attempt the second step
 
-    def skipping(self, until, series):
-        if len(self.pieces) == 1 and self not in skipped:
+    def skipping(self):
+        if len(self.following.pieces) == 1 and self not in skipped:
             skipped.append(self)
         else:
-            add(self, until, series)
+            add(self)
 
-    monkeypatch.setattr(Following, "add", skipping)
+    monkeypatch.setattr(fit.Fit, "add", skipping)
     with pytest.raises(Exception, match="must join"):
         proved_function(short("paris", "60"))
 
