@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from reference import InputError, Scene
 from reference.numbers.precision import Array
-from reference.scenes.scene import AnyScene
+from reference.scenes.scene import AnyScene, as_scene
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits, real_array
 from .candidates.external import placeholders
@@ -66,6 +66,7 @@ def assert_agrees(
             that were found.
         InputError: an array has the wrong shape, or a number is not finite.
     """
+    scene = as_scene(scene)
     rows, times = real_array(states, "states"), real_array(t, "t")
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")

@@ -39,6 +39,7 @@ default_role = "code"
 autodoc_class_signature = "separated"  # and api.md leaves it out: nobody makes these by hand
 autodoc_member_order = "groupwise"
 autodoc_typehints = "none"  # the docstrings say it with shapes and units
+autodoc_preserve_defaults = True
 napoleon_attr_annotations = False
 napoleon_use_ivar = True
 

@@ -27,6 +27,8 @@ FILES = {
     "nothing.toml": 'pendulum = {length = "12"}\n',
     "numbers.toml": '[pendulum]\nlength = "12,3"\n[release]\nangle = "5°"\nazimuth = "0"\n[run]\nt_end = "20 min"\n',
     "width.toml": '[release]\nx = "1"\ny = "0"\n[uncertain]\nx = "0.001"\n',
+    "before.csv": "t,x,y\n-10,0.3,0.4\n60,-0.17,-0.41\n",
+    "scene.yaml": "pendulum:\n  length: 12\n",
     "short.toml": '[pendulum]\nlength = "0.4"\n[release]\nx = "0.5"\ny = "0"\n',
 }
 LINE = {  # what is typed, and what the message has to say
@@ -59,6 +61,11 @@ LINE = {  # what is typed, and what the message has to say
     "score paris --run 'echo {lat}'": "Did you mean latitude or",
     "score mine.csv --section highest": "`foucault score SCENE mine.csv`",
     "score paris mine.csv --section highest": "`foucault score SCENE --transits FILE --section WORD`",
+    "score paris before.csv": "leave out rows before it",
+    "show scene.yaml": "`foucault show --template` prints one",
+    "show paris --uncertain length=1mm": "in SI units or degrees, such as ±0.001",
+    "sweep paris --over latitude=0:10:5 --engine gpu": "There are heyoka, octet.",
+    "sweep paris --over latitude=0:10:5 --level sure": "There are computed, self_consistent, confirmed, enclosed.",
     "score --how basic": "expected c, c++, fortran",
     "score paris mine.csv --columns t,x": "a name for each of the 3 columns",
     "score paris mine.csv --units hours": "--t-end 86400 leaves out later rows",
@@ -133,6 +140,10 @@ PYTHON = {
     "compare.plot(42)": "a Scene, an id, the path of a TOML file",
     'compare.plot("paris").save("p.bmp")': "a path that ends in .svg, .png, .pdf",
     'compare.study("paris", methods=["rk5"])': "Did you mean rkng56 or rk4?",
+    'compare.study("paris", methods="rk5")': "Did you mean rkng56 or rk4?",
+    'compare.assert_agrees([0, 60], [[0.3, 0.4], [0.1, 0.2]], "paris")': "expected a Scene, an id, the path",
+    'reference.solve("paris", uncertain="length=±0.001")': "a mapping such as {'pendulum.length': '±0.001'}",
+    'reference.sweep("paris", {"site.latitude": [0]}, level="sure")': "There are computed, self_consistent",
 }
 
 

@@ -117,7 +117,8 @@ class Candidate:
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
         if t[0] < 0:
-            raise InputError(f"{name}: t", f"{t[0]:.17g} in row 1", "times from 0 on")
+            advice = "Count them from the release, and leave out rows before it."
+            raise InputError(f"{name}: t", f"{t[0]:.17g} in row 1", "times from 0 on", advice)
         steps = np.diff(t)
         if (steps <= 0).any():
             row = int(np.argmax(steps <= 0))

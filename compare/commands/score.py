@@ -54,64 +54,61 @@ def _how(language: str | None) -> None:
 
 
 SCENE = scene_argument("A scene's id, or the path of a TOML file; with --suite none.")
-CANDIDATES = typer.Argument(
-    metavar="CANDIDATE", help="Files to score: text with named columns, .npy, .npz; - is stdin."
-)
-SUITE = option("--suite", "Score each file of this folder by the scene that it is named after: paris.csv.", "DIR")
+CANDIDATES = typer.Argument(metavar="CANDIDATE", help="Files: text with named columns, .npy, .npz; - is stdin.")
+SUITE = option("--suite", "Score a folder of files named after scenes: paris.csv.", "DIR")
 HOW = option(
     "--how",
-    "Print how to write such a file in c, fortran, python, julia, javascript … and end.",
+    "Print how to write such a file in c, fortran, python …",
     "LANGUAGE",
     callback=_how,
     is_eager=True,
 )
-COLUMNS = option("--columns", "Names of a file's columns in order; - for one that is not read.", "t,x,y,…")
-UNITS = option("--units", "Units of times and lengths, such as ms,cm (default: s,m).", "A,B")
-TRANSITS = option("--transits", "Score transits too, or alone: a file with times of xdot = 0 in a column t.", "FILE")
-SECTION = option(
-    "--section", "--transits are passages of this section, such as 'gate 30', and not of xdot = 0.", "WORD"
-)
+COLUMNS = option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…")
+UNITS = option("--units", "Units of times and lengths: ms,cm (default: s,m).", "A,B")
+TRANSITS = option("--transits", "Score times of xdot = 0 too, or alone: in its column t.", "FILE")
+SECTION = option("--section", "--transits are passages of this section: 'gate 30'.", "WORD")
 RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
-NAME = option("--name", "Name of the program of --run (default: the program).", "WORD")
-SETTING = option("--setting", "Value of {setting} in --run, in s (default: 200 a period).", "S")
+NAME = option("--name", "Name of the program of --run (default: the program).", "WORD", hidden=True)
+SETTING = option("--setting", "{setting} in --run, in s (default: 200 a period).", "S")
 EXPERIMENTS = option(
     "--experiments",
-    "Where the program of --run is off, run it up to eight times with other numbers, and measure the cause.",
+    "Run it up to eight times more, to measure why it is off.",
 )
 APPROXIMATION = option(
     "--approximation",
     "Score one of the source papers' approximations, which `foucault methods` lists.",
     "ID",
     completion(_approximation_ids),
+    hidden=True,
 )
 BASELINE = option(
     "--baseline",
-    "Say what changed since an earlier version: its file or --json (.json), its command or suite.",
+    "Say what changed since a file, --json document, command or suite of an earlier version.",
     "FILE",
 )
-TOLERANCE = option("--tolerance", "Allow position errors up to this, in m (default: 1e-6 of the amplitude).", "M")
-COVERS = option(
-    "--covers", "Demand that the rows reach this share of the scene's span; 1 is all of it (default: any).", "SHARE"
-)
-T_END = option("--t-end", "Compare up to this time, in s, and ignore later rows (default: the scene's).", "S")
+TOLERANCE = option("--tolerance", "Allow errors up to this, in m (default: 1e-6 of the amplitude).", "M")
+COVERS = option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE")
+T_END = option("--t-end", "Ignore rows after this time, in s (default: the scene's).", "S")
 INPUTS = option(
     "--inputs",
-    "Read the scene's numbers as decimal or binary64; auto: as the candidate's digits suggest.",
+    "Read the scene as decimal or binary64; auto: by the file.",
     "READING",
     completion(lambda: READINGS),
 )
 PLOT = option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE")
-TIMEOUT = option("--timeout", f"Stop the program of --run after this many seconds (default: {TIMEOUT_S:g}).", "S")
-TIMINGS = option("--repeats", f"Time the program of --run this often after a warm-up (default: {REPEATS}).", "N")
-AS_MODEL = option("--as-model", "Count agreement as a named simplification of the model as agreement.")
+TIMEOUT = option("--timeout", f"Stop --run after this many seconds (default: {TIMEOUT_S:g}).", "S")
+TIMINGS = option(
+    "--repeats", f"Time the program of --run this often after a warm-up (default: {REPEATS}).", "N", hidden=True
+)
+AS_MODEL = option("--as-model", "Count agreement with a named simpler model.")
 NO_DIAGNOSIS = option("--no-diagnosis", "Do not look for the reasons of an error.")
 OUT = option(
     "--out",
-    "With --suite: write a page, a badge, CSV and JSON into this folder; with --experiments: the outputs.",
+    "With --suite: write a page and tables into this folder; with --experiments: the outputs.",
     "DIR",
 )
 JUNIT = option("--junit", "Write the outcome as JUnit XML, a test for each.", "FILE")
-GITHUB = option("--github", "Print annotations for GitHub Actions too, and write the job's summary.")
+GITHUB = option("--github", "Annotate for GitHub Actions; write the job's summary.")
 
 
 def command(
@@ -147,16 +144,8 @@ def command(
 ) -> None:
     """Score a program's output against the truth.
 
-    Exit status 0: agrees, 1: disagrees, or agrees as a simpler model (0 with --as-model), 2: cannot be judged; of
-    several candidates, the largest. With --baseline 1 means worse than that by more than the tolerance, 0 no worse,
-    whatever the verdict.
-
-    With --uncertain, or ranges in place of the scene, files are held against intervals that are proved: 0: cannot be
-    told apart, 1: disagrees.
-
-    --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
-    {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
-    {azimuth_rate} {t_end} {grid_step} {setting}.
+    --run fills in {x0}, {latitude}, {t_end} … of the scene: see docs/commands.md, also on --approximation, --name,
+    --repeats and ranges. Exit status 0: agrees (with --baseline: no worse), 1: disagrees, 2: cannot be judged.
     """
     from ..candidates.layout import Naming
     from .measuring import hold, hold_passages, ranges_named, ranges_to_prove
@@ -200,17 +189,8 @@ def command(
             return
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
-        refuse(
-            {
-                **others,
-                "--section": section,
-                "--uncertain": uncertain,
-                "--set": set_ or None,
-                "--t-end": t_end,
-                "--columns": columns,
-            },
-            "together with --suite",
-        )
+        others |= {"--section": section, "--t-end": t_end, "--columns": columns}
+        refuse(others | {"--uncertain": uncertain, "--set": set_ or None}, "together with --suite")
     if covers is not None and not 0 < covers <= 1:
         raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
     if [*(candidates or ()), transits].count("-") > 1:

@@ -142,7 +142,7 @@ def study(
         InputError: an unknown scene or method.
         UnreachableError: the truth cannot be solved for.
     """
-    requested = as_scene(scene)
+    requested, methods = as_scene(scene), methods.split(",") if isinstance(methods, str) else methods
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)

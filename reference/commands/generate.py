@@ -16,6 +16,7 @@ from ..scenes.fields import CONFIRMATIONS, LEVELS, Confirmation
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
 from ..status import Status
+from ..system.imports import needed
 from .progress import progress
 from .terminal import (
     BESIDE_RANGES,
@@ -48,11 +49,10 @@ ENGINES = (AUTO, *engine_names())
 SCENE = scene_argument(value="[SCENE]")
 OUT = option(
     "--out",
-    "Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout); "
-    "with --all the folder of all.",
+    "Write to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
     "DIR",
 )
-DIGITS = option("--digits", "Significant digits of the largest number in each column (default: the scene's).", "D")
+DIGITS = option("--digits", "Digits of the largest number in a column (default: the scene's).", "D")
 LEVEL = option(
     "--level",
     f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
@@ -61,31 +61,29 @@ LEVEL = option(
 )
 ENGINE = option(
     "--engine",
-    f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed, "
-    "for a scene that ships the one that its dataset was made with.",
+    f"Integrate with {in_words(engine_names())}; auto: the fastest, or what made the dataset that ships.",
     "E",
     completion(lambda: ENGINES),
 )
 NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
 AUDIT = option(
     "--audit/--no-audit",
-    "At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
+    "Prove it again by FLINT alone: the same digits (default: --audit).",
 )
 CONFIRM = option(
     "--confirm",
-    f"At the level enclosed, what heyoka confirms in another formulation: {in_words(CONFIRMATIONS)}; "
-    "sampled is a tenth of the grid's intervals (default: sampled; of what ships, as it was made: the whole).",
+    f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
+    "(default: sampled; of what ships, the whole).",
     "C",
     completion(lambda: CONFIRMATIONS),
 )
 NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
 FUNCTION = option(
     "--function/--no-function",
-    "At the level enclosed, make the golden function, the motion at any time (default: it is made, "
-    "but for what ships without it).",
+    "Make the golden function, the motion at any time, of a proof (default: but for what ships without it).",
 )
-NO_TABLES = option("--no-tables", "Write the golden function and its manifest alone.")
-ALL = option("--all", "Make every dataset that ships and is missing or not sealed.")
+NO_TABLES = option("--no-tables", "Write the golden function alone.")
+ALL = option("--all", "Make all that ship and are missing or not sealed.")
 
 
 def command(
@@ -113,7 +111,7 @@ def command(
 
     Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
     for every value of these inputs.
-    foucault generate --all --workers 2 makes all that ship, each in a process of its own; what is there is left.
+    foucault generate --all --workers 2 makes all that ship.
     """
     options = {
         "--t-end": ("run.t_end", t_end),
@@ -280,6 +278,7 @@ def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Genera
         return
     with ExitStack() as stack:
         if cluster is not None:
+            needed("distributed", "cluster", "--cluster", cluster, "which sends the work to its workers")
             from ..sweeps.cluster import scheduler_at
 
             scheduler = stack.enter_context(scheduler_at(cluster))

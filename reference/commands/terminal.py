@@ -38,8 +38,8 @@ Assignments = Annotated[
     list[str] | None,
     option(
         "--set",
-        "Replace one field of the scene, by this name or as in --run: x0=0.1; may be repeated.",
-        "section.key=value",
+        "Replace one field of the scene: site.latitude=0, or x0=0.1; may be repeated.",
+        "KEY=VALUE",
         completion(lambda: (f"{name}=" for name in field_names())),
     ),
 ]
@@ -47,14 +47,14 @@ Uncertain = Annotated[
     list[str] | None,
     option(
         "--uncertain",
-        "Prove intervals for every value of an input within this width: pendulum.length=±0.001, or +-0.001; "
-        "may be repeated; `none` takes the inputs as exact (default: as the scene's [uncertain] says).",
-        "KEY=±WIDTH",
+        "Prove intervals for inputs in a range: length=±0.001, or +-0.001; may be repeated; "
+        "none: take them as exact (default: the scene's [uncertain]).",
+        "KEY=±W",
     ),
 ]
 BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"  # why an option is refused
-EndTime = Annotated[str | None, option("--t-end", "End each run at this time, in s (default: the scene's).", "S")]
-Workers = Annotated[int | None, option("--workers", "Number of cores of this machine to use (default: all).", "N")]
+EndTime = Annotated[str | None, option("--t-end", "End at this time, in s (default: the scene's).", "S")]
+Workers = Annotated[int | None, option("--workers", "Use so many cores (default: all).", "N")]
 Cluster = Annotated[str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")]
 SECTION = option(
     "--section", "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.", "WORD"

@@ -197,6 +197,10 @@ class Batch(ABC):
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
         drag: whether it solves rows with drag.
         lanes: rows that it solves at a time.
+        swing_s: CPU seconds of a default row over the period of a small swing.
+        section_work: over that, what a section adds: a gate or a turn; highest or lowest points.
+        load_s: CPU seconds of loading what is kept on disk.
+        compile_s: CPU seconds of compiling what rows need, and what their sections need beside it.
         identity: what decides its digits beside the rows: orders, tolerance, versions of what it computes with.
     """
 
@@ -205,6 +209,10 @@ class Batch(ABC):
     extra: ClassVar[str]
     drag: ClassVar[bool]
     lanes: ClassVar[int] = 8
+    swing_s: ClassVar[float]
+    section_work: ClassVar[tuple[float, float]]
+    load_s: ClassVar[float] = 0.0
+    compile_s: ClassVar[tuple[float, float]]
 
     @property
     def installed(self) -> bool:
@@ -224,14 +232,9 @@ class Batch(ABC):
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
         """Solve rows in the calling thread, others free to run meanwhile; a row that fails says so in its fate."""
 
-    @abstractmethod
-    def expected_s(self, swings: float) -> float:
-        """Return the CPU seconds that default rows need from a cold start; `swings` is the sum over rows."""
-
-    @property
-    def saved_s(self) -> float:
-        """Of `expected_s` what compiling does not take here, as its outcome is kept on disk."""
-        return 0.0
+    def compiling_s(self, sections: bool) -> float:
+        """Return the CPU seconds that compiling takes here: none for what is kept on disk."""
+        return sum(self.compile_s[: 1 + sections])
 
 
 @dataclass(frozen=True)

@@ -259,7 +259,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
     except InputError as error:
         if path.suffix == ".toml":
             raise
-        advice = f"The scene stands before a trajectory: `foucault score SCENE {path.name}`."
+        advice = f"`foucault show --template` prints one. Before a trajectory: `foucault score SCENE {path.name}`."
         raise InputError(error.field, error.got, error.expected, advice) from None
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document and is_scene_id(own_name):

@@ -19,6 +19,7 @@ from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
 from ..numbers.table import bits_in
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
+from ..system.imports import needed
 from .pilot import Pilot, run_pilot
 from .proof_steps import COEFFICIENT_BITS
 from .solution import SAMPLED
@@ -50,6 +51,15 @@ def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> 
     return pilot if published == pilot.engine else run_pilot(scene.exact, times, published, samples=SAMPLES)
 
 
+def need_flint() -> None:
+    """Refuse the level enclosed where python-flint is not installed.
+
+    Raises:
+        InputError: it is not.
+    """
+    needed("flint", "enclose", "--level", "enclosed", "which the proof needs", ", or ask for the level confirmed")
+
+
 def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str = AUTO) -> Plan:
     """Return the published run as it is begun; where runs disagree, `solve` raises its precision.
 
@@ -60,6 +70,7 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: 
         engine: name of the engine, or "auto" for the fastest.
     """
     if scene.run.level == "enclosed":
+        need_flint()
         from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
 
         bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None).bits - COEFFICIENT_BITS

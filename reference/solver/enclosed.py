@@ -17,7 +17,7 @@ from ..engines import AUTO
 from ..engines.background import WORTH_A_PROCESS, expected_s, in_background, reports, send_run, slowest
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
-from ..errors import InputError, IntegrationError
+from ..errors import IntegrationError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
@@ -25,7 +25,7 @@ from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..system.workers import Emit
 from .agreement import bits_lacking, passages_lacking
-from .choice import confirming_plan, drawn_intervals, first_prec, rounded_prec
+from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .pilot import run_pilot
 from .proving import Problem, guarded, proved
 from .reach import MAX_RAISES, check_reach
@@ -58,11 +58,8 @@ def solve_enclosed(
             is out of reach.
         IntegrationError: a run lies outside the enclosure, or finds other transits or numbers.
     """
-    try:
-        from .. import enclosure
-    except ModuleNotFoundError as error:
-        advice = "Install it with pip install 'foucault-reference[enclose]', or ask for the level confirmed."
-        raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
+    need_flint()
+    from .. import enclosure
 
     problem = Problem(scene, times, engine, run_pilot(scene.exact, times), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:

@@ -17,6 +17,7 @@ from ..errors import InputError, unknown
 from ..numbers.columns import GRID, SECTION, TRANSITS, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
+from ..system.imports import needed
 from .proof_steps import COEFFICIENT_BITS, Feed
 from .reach import check_reach
 from .swing import HOUR, Swing, swing_of
@@ -270,13 +271,11 @@ def solve_ranges(
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
         UnreachableError: the box is too wide, and it tells up to which time it holds.
     """
-    try:
-        from ..enclosure.printed_box import end_of
-        from ..enclosure.prove_box import enclose_box
-        from ..enclosure.shapes import Box
-    except ModuleNotFoundError as error:
-        advice = "Install it with pip install 'foucault-reference[enclose]'."
-        raise InputError("--uncertain", "nothing", f"the package {error.name}, which the proof needs", advice) from None
+    needed("flint", "enclose", "--uncertain", "nothing", "which the proof needs")
+    from ..enclosure.printed_box import end_of
+    from ..enclosure.prove_box import enclose_box
+    from ..enclosure.shapes import Box
+
     widths = widths_of(scene, uncertain)
     inputs, times = scene.exact, times or scene.exact.grid
     end = times[-1]

@@ -17,7 +17,7 @@ SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
 PLAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in SITE)]
 UNCERTAIN = [*PLAIN, "site.inverse_flattening", *(f"release.{name}" for names in RELEASES.values() for name in names)]
 SIGNS = ("±", "+-", "+/-")
-EXAMPLE = "a width with its sign, such as ±0.001 or +-0.001"
+EXAMPLE = "a width with its sign, in SI units or degrees, such as ±0.001 or +-0.001"
 MOST_DECIMALS = 20  # of an end of an interval
 
 
@@ -28,6 +28,8 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         InputError: an unknown input, one that the scene does not have, a wrong width, or one that leaves the range of
             values that the input may have.
     """
+    if not isinstance(uncertain, Mapping):
+        raise InputError("uncertain", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
     found: dict[str, Fraction] = {}
     have = _numbers(scene.exact)
     for word, text in uncertain.items():

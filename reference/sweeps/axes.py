@@ -22,7 +22,8 @@ from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
 from ..scenes.scene import Reading, checked_value, field_names, full_name
 from ..system.documents import MAX_JSON_BYTES, regular
-from .parquet import need_pyarrow, read_columns
+from ..system.imports import needed
+from .parquet import read_columns
 
 TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
 _FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits", "run.sections")
@@ -236,7 +237,7 @@ def listed(path: Path) -> Table:
 
 def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
-    need_pyarrow("--rows", str(path), "the package pyarrow")
+    needed("pyarrow", "sweep", "--rows", str(path), "which reads Parquet")
     with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
         columns = read_columns(stream, _check_size)
     return [(full_name(key), tuple(map(_text, column))) for key, column in columns.items()]

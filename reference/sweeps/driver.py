@@ -152,7 +152,8 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
         return threads.submit(work, request, rows, folder, promote, stop)
 
     def prepare() -> None:
-        executor.compile_s += prepared(request)
+        took_s = prepared(request)  # before the sum is read, to which other threads add meanwhile
+        executor.compile_s += took_s
 
     executor, stop = Executor(workers, begin), threading.Event()
     threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=prepare)

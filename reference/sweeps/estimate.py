@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import LEAST_BEND, OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import LEAST_BEND, OK, STOPPED, XDOT, Batch, Outcomes, Rows, Wanted
 from ..model.sections import direction_of
 from ..numbers.precision import Array
 from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
@@ -181,13 +181,26 @@ def _of_zeros(
     fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
     sine = np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
     off, bend = of_place * position + of_velocity * velocity, fastest**2 * length * sine
-    bend = bend * (of_place + of_velocity * fastest)
+    bend = np.fmin(bend * (of_place + of_velocity * fastest), bend_of_pairs(rows, run.largest_angle))
     if vertical:
         passing = _fastest(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
         off, bend = of_velocity * (sine * velocity + passing * position), 8 * sine * bend
     pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * bend * off)
     undecided: Array = ~rows.still & ((np.abs(value) <= off) | pair)
     return off / run.least_ax + np.spacing(run.t_last), undecided
+
+
+def bend_of_pairs(rows: Rows, angle: Array) -> Array:
+    """Return a bound of |d²xdot/dt²| between two close transits of swings up to an angle; NaN where it is not known.
+
+    With T the force along the cord over l, x'' = Coriolis - x T. Let M be the bound and h < π/(2ω) the time between the
+    transits: |xdot| <= M h²/8 there, and x'' is zero somewhere, so that |x| <= 2Ω|v|/T + M h³/8. Below 30° T is within
+    0.86 and 1.56 ω², |T'| <= 0.45 ω³, |v| <= 1.1 ω l sin θ and |a| <= 1.2 ω² l sin θ, so that three quarters of M at
+    most come from M itself, and the rest is the Coriolis force's: M < 16 Ω ω² l sin θ.
+    """
+    turn = np.linalg.norm(rows.turn[..., 0], axis=1)
+    known = (rows.form[..., 0] == XDOT).all(axis=1) & (angle < np.pi / 6) & (rows.rate > 30 * (turn + rows.drag[:, 0]))
+    return np.where(known, 16 * turn * rows.rate**2 * rows.length[:, 0] * np.sin(angle), np.nan)
 
 
 def passages(engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:

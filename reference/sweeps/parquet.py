@@ -14,9 +14,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from ..errors import InputError
 from ..numbers.columns import POSITION, VELOCITY
-from ..system.imports import missing
 
 FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
 TIMES = "transit-times"
@@ -103,16 +101,6 @@ TRANSIT_COLUMNS = (
     Column("t_s", "float64", "time of the transit"),
     Column("direction", "int8", "+1 where xdot goes from - to +"),
 )
-
-
-def need_pyarrow(option: str, got: str, expected: str) -> None:
-    """Refuse what needs pyarrow where it is not installed.
-
-    Raises:
-        InputError: it is not.
-    """
-    if missing(["pyarrow"]):
-        raise InputError(option, got, expected, "Install it with pip install 'foucault-reference[sweep]'.")
 
 
 def pyarrow_version() -> str:

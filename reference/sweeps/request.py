@@ -20,6 +20,7 @@ from ..engines import AUTO
 from ..engines.batch_interface import Batch, Wanted
 from ..engines.registry import batches
 from ..errors import InputError, unknown
+from ..model.sections import direction_of
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
@@ -45,6 +46,7 @@ PART_S = 10.0  # CPU seconds of a part, by the cost model
 LEAST_PART, MOST_PART = 8, 65_536  # rows
 ALL = "all"
 PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
+ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
 WORTH_A_LINE_S = 1.0  # CPU seconds of rows, above which it is told that a compiled engine would be cheaper
 
 
@@ -193,7 +195,7 @@ def request(
         InputError: a wrong axis, option or value.
     """
     if level not in LEVELS:
-        raise unknown("--level", level, "a level of trust", LEVELS, "")
+        raise unknown("--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}.")
     if audit is not None and audit < 0:
         raise InputError("--audit", audit, "a number of rows from 0")
     words = list(over)
@@ -202,9 +204,8 @@ def request(
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
     table = listed(rows) if rows else grid(words, scene.inputs)
     _check_release(scene, table.values)
-    swings = _swings(scene) * table.count
-    chosen = _engine(engine, swings)
-    row_s = PROMOTED_S if level != "computed" or digits is not None else chosen.expected_s(swings) / table.count
+    chosen = _engine(engine, scene, table.count)
+    row_s = PROMOTED_S if level != "computed" or digits is not None else _row_s(chosen, scene)
     return Request(
         scene=scene,
         table=table,
@@ -239,35 +240,33 @@ def _wanted(words: Sequence[str]) -> tuple[str, ...]:
     return tuple(word for word in (*WANTS, TIMES) if word in chosen)
 
 
-def _swings(scene: Scene) -> float:
-    """Return how many small swings the scene's span holds, one at least."""
+def _row_s(engine: Batch, scene: Scene) -> float:
+    """Return the CPU seconds that an engine takes for a row, by the small swings in its span and by its sections."""
     start = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
     rate = float(start.ctx.norm(start.k.pull) ** 0.5)
-    return max(1.0, float(scene.exact.t_end) * rate / (2 * math.pi))
+    swings = ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
+    work = sum(engine.section_work[abs(direction_of(word))] for word in scene.run.sections or ())
+    return engine.swing_s * swings * (1 + work)
 
 
 def worth_compiling(request: Request) -> str:
     """Return from how many rows it pays to compile an engine that would be cheaper for each, or "" if there is none."""
-    swings, taken = _swings(request.scene), batches()[request.engine]
-    drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
-
-    def row_s(engine: Batch) -> float:
-        return engine.expected_s(swings) - engine.expected_s(0)
-
-    if request.level != "computed" or request.digits is not None or row_s(taken) * request.table.count < WORTH_A_LINE_S:
+    taken_s = _row_s(batches()[request.engine], request.scene)
+    if request.promotes or taken_s * request.table.count < WORTH_A_LINE_S:
         return ""
     for other in batches().values():
-        if other.installed and not other.saved_s and (other.drag or not drag) and row_s(other) < row_s(taken):
-            once_s = other.expected_s(0)
-            rows = (once_s - taken.expected_s(0)) / (row_s(taken) - row_s(other))
+        once_s, gained_s = other.compiling_s(bool(request.sections)), taken_s - _row_s(other, request.scene)
+        drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
+        if once_s and gained_s > 0 and other.installed and (other.drag or not drag):
+            rows = float(f"{once_s / gained_s:.1g}")
             return (
-                f"From some {float(f'{rows:.1g}'):,.0f} such rows on, in one sweep or several, {other.name} costs less "
-                f"than {taken.name}: it is compiled once, for about {once_s:.0f} s (--engine {other.name})."
+                f"From some {rows:,.0f} such rows on, in one sweep or several, {other.name} costs less "
+                f"than {request.engine}: it is compiled once, for about {once_s:.0f} s (--engine {other.name})."
             )
     return ""
 
 
-def _engine(name: str, swings: float) -> Batch:
+def _engine(name: str, scene: Scene, count: int) -> Batch:
     """Return the engine that is asked for, or the one that is expected to be done first.
 
     Raises:
@@ -275,10 +274,14 @@ def _engine(name: str, swings: float) -> Batch:
     """
     engines = batches()
     if name == AUTO:
-        installed = [engine for engine in engines.values() if engine.installed]
-        return min(installed, key=lambda engine: engine.expected_s(swings) - engine.saved_s)
+        can = [engine for engine in engines.values() if engine.installed and (engine.drag or not scene.exact.drag)]
+
+        def expected_s(engine: Batch) -> float:
+            return engine.load_s + engine.compiling_s(bool(scene.run.sections)) + count * _row_s(engine, scene)
+
+        return min(can, key=expected_s)
     if name not in engines:
-        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), "")
+        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
     if not engines[name].installed:
         needed = ", ".join(engines[name].requires)
         advice = f"Install it with pip install 'foucault-reference[{engines[name].extra}]'."

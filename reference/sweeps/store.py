@@ -16,12 +16,14 @@ from typing import Any
 
 from ..errors import InputError, plain_json
 from ..system.documents import json_document, regular
+from ..system.imports import needed
 from ..system.workspace import clear, replace_file
-from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, need_pyarrow, parquet, pyarrow_version
+from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, parquet, pyarrow_version
 from .part import Part
 from .request import Request
 
 PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
+PARQUET = ("pyarrow", "sweep", "--out", "no pyarrow", "which writes Parquet")  # what is needed, if it is missing
 MOST_BYTES = 1 << 40  # of a part: no limit but that of a disk
 
 
@@ -51,7 +53,7 @@ class Store:
             store = cls.opened(folder)
             store._check_same(request)
         else:
-            _need_pyarrow()
+            needed(*PARQUET)
             if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
                 raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
             store = cls(folder, request, pyarrow_version())
@@ -70,7 +72,7 @@ class Store:
         Raises:
             InputError: there is none, or its plan is damaged.
         """
-        _need_pyarrow()
+        needed(*PARQUET)
         try:
             document = json_document(folder / PLAN, "--out")
             request = Request.of(document)
@@ -167,10 +169,6 @@ class Store:
     def summarize(self, document: dict[str, Any]) -> None:
         """Write what became of the sweep."""
         _write_json(self.folder / SUMMARY, document)
-
-
-def _need_pyarrow() -> None:
-    need_pyarrow("--out", "no pyarrow", "the package pyarrow, which writes Parquet")
 
 
 def _foreign(path: Path) -> bool:

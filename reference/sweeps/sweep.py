@@ -19,7 +19,7 @@ from ..errors import InputError, unknown
 from ..numbers.columns import Framed, data_frame
 from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
 from ..status import Status
-from ..system.imports import missing
+from ..system.imports import missing, needed
 from ..system.workers import usable_cores
 from .axes import TEXTS
 from .driver import Executor, drive, on_this_machine
@@ -272,6 +272,7 @@ def _workers(
     asked: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
 ) -> AbstractContextManager[Executor]:
     if cluster is not None:
+        needed("distributed", "cluster", "--cluster", cluster, "which sends the rows to its workers")
         from .cluster import on_cluster
 
         return on_cluster(asked, out, cluster)

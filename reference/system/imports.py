@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pkgutil import iter_modules
 from typing import Any, Protocol, TypeVar
 
-from ..errors import no_attribute, unknown
+from ..errors import InputError, no_attribute, unknown
 
 
 def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
@@ -96,6 +96,17 @@ class Registry(Mapping[str, D]):
 def missing(modules: Iterable[str]) -> list[str]:
     """Return the modules that are not installed."""
     return [name for name in modules if not _installed(name)]
+
+
+def needed(module: str, extra: str, option: str, got: str, why: str, instead: str = "") -> None:
+    """Refuse what needs a module that is not installed, and say which extra brings it.
+
+    Raises:
+        InputError: it is not.
+    """
+    if missing([module]):
+        advice = f"Install it with pip install 'foucault-reference[{extra}]'{instead}."
+        raise InputError(option, got, f"the package {module}, {why}", advice)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:

@@ -38,9 +38,9 @@ def folder_of(sources: Iterable[Path]) -> Path | None:
     return store("machine_code", name, lambda path: path.mkdir(exist_ok=True))
 
 
-def is_kept(name: str, folder: Path | str | None) -> bool:
-    """Return whether there is machine code of a function in a folder."""
-    return folder is not None and any(Path(folder).rglob(f"*.{name}-*.nbi"))
+def kept_variants(name: str, folder: Path | str | None) -> int:
+    """Return for how many types of arguments there is machine code of a function in a folder."""
+    return 0 if folder is None else len([*Path(folder).rglob(f"*.{name}-*.nbc")])
 
 
 def kept(*sources: Path, **options: Any) -> Callable[[Function], Function]:
@@ -93,7 +93,7 @@ def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
     types, folder = tuple(map(typeof, arguments)), function.stats.cache_path
     if types in function.signatures:
         return
-    if not is_kept(function.__name__, folder):
+    if kept_variants(function.__name__, folder) <= len(function.signatures):
         announce(what, seconds)
     with ExitStack() as turn:
         if folder is not None:

@@ -8,8 +8,6 @@ from ..batch_interface import Batch, Outcomes, Rows, Wanted
 
 TOLERANCE = 2.0**-52  # of a run, the relative error of a step: order 20
 MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
-COMPILE_S = 1.5  # CPU seconds, cold
-SWING_S = 2.4e-5  # of a default row over the period of a small swing
 
 
 class HeyokaBatch(Batch):
@@ -20,6 +18,9 @@ class HeyokaBatch(Batch):
     extra = ""
     drag = True
     lanes = 1
+    swing_s = 2.2e-5
+    section_work = (0.7, 0.7)
+    compile_s = (0.4, 0.1)
 
     @property
     def identity(self) -> str:
@@ -37,10 +38,6 @@ class HeyokaBatch(Batch):
         from .loop import solve
 
         return solve(rows, wanted, _tolerance(wanted))
-
-    def expected_s(self, swings: float) -> float:
-        """Return the expected CPU seconds."""
-        return COMPILE_S + swings * SWING_S
 
 
 def _tolerance(wanted: Wanted) -> float:

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from ...numbers.precision import Array
-from ...system.machine_code import folder_of, is_kept, prepare
+from ...system.machine_code import folder_of, kept_variants, prepare
 from ..batch_interface import Batch, Outcomes, Rows, Wanted
-from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, SOURCES, TOLERANCE, outcomes, packed
+from .rows import COLUMNS, RESULTS, SOURCES, TOLERANCE, outcomes, packed
 
 ORDER, MOVED_ORDER = 24, 22  # of a run, and of the run that tells the error
-SWING_S = 1.6e-6  # of a default row over the period of a small swing
 STEPS_PER_CALL = 20_000  # then an interrupt is heard
 ROOM = 1 << 16  # times that one call may find
 
@@ -26,6 +25,10 @@ class OctetBatch(Batch):
     requires = ("numba",)
     extra = "methods"
     drag = False
+    swing_s = 0.8e-6
+    section_work = (1.2, 6.0)
+    load_s = 1.2
+    compile_s = (8.0, 2.0)
 
     @property
     def identity(self) -> str:
@@ -38,7 +41,8 @@ class OctetBatch(Batch):
 
         started = time.thread_time()
         arguments = _arguments(empty_march(), wanted, np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
-        prepare(march, "steps of eight rows at once", COMPILE_S, *arguments)
+        what = "steps of eight rows at once" + " with sections" * wanted.form
+        prepare(march, what, round(self.compile_s[wanted.form]), *arguments)
         return time.thread_time() - started
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
@@ -58,14 +62,9 @@ class OctetBatch(Batch):
         order = np.argsort(row, kind="stable")  # a row's own are in order of time
         return outcomes(rows, numbers, results, (row[order], t[order], direction[order].astype(np.int8)))
 
-    def expected_s(self, swings: float) -> float:
-        """Return the expected CPU seconds."""
-        return COMPILE_S + swings * SWING_S
-
-    @property
-    def saved_s(self) -> float:
-        """Return what is saved where the kernel, as its sources are now, is kept on disk."""
-        return COMPILE_S - READ_S if is_kept("march", folder_of(SOURCES)) else 0.0
+    def compiling_s(self, sections: bool) -> float:
+        """Return what compiling takes here; the variant for sections is kept beside that of all rows."""
+        return sum(self.compile_s[kept_variants("march", folder_of(SOURCES)) : 1 + sections])
 
 
 def _arguments(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> tuple[Any, ...]:

@@ -21,7 +21,6 @@ RESULTS = 24
 TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against the motion
 _ENGINES = Path(__file__).parents[1]
 SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]  # of the kernel
-COMPILE_S, READ_S = 15, 1.2  # CPU seconds of numba and the kernel: cold, and kept on disk
 
 
 def packed(rows: Rows, wanted: Wanted) -> Array:

@@ -10,7 +10,7 @@ import pytest
 from compare.report.sweep_report import _cell
 from reference import load_scene
 from reference.engines.octet.rows import SOURCES
-from reference.sweeps.request import worth_compiling
+from reference.sweeps.request import request, worth_compiling
 from reference.sweeps.sweep import asked_for
 from reference.system.machine_code import folder_of
 
@@ -41,7 +41,7 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     cold = asked_for(paris, latitudes, None, None, audit=0)
     line = worth_compiling(cold)
     assert cold.engine == "heyoka"
-    found = re.fullmatch(r"From some ([\d,]+) such rows on, .* once, for about 15 s \(--engine octet\)\.", line)
+    found = re.fullmatch(r"From some ([\d,]+) such rows on, .* once, for about 8 s \(--engine octet\)\.", line)
     assert found
     rows = int(found[1].replace(",", ""))
     fewer, more = (asked_for(paris, [f"pendulum.length=67:68:{step / rows}"], None, None, audit=0) for step in (2, 0.5))
@@ -52,9 +52,34 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     folder = folder_of(SOURCES)
     assert folder is not None
     folder.mkdir()
-    (folder / "march.march-1.py311.nbi").touch()
+    (folder / "march.march-1.py311.1.nbc").touch()
     kept = asked_for(paris, latitudes, None, None, audit=0)
     assert (kept.engine, worth_compiling(kept)) == ("octet", "")
+    small = load_scene("paris", {"run.t_end": 12000, "run.sections": ["gate 30"]})
+    few, many = (asked_for(small, [f"site.latitude=-90:90:{step}"], None, None, audit=0) for step in (3, 1))
+    assert (few.engine, many.engine) == ("heyoka", "octet")  # what sections need is still to be compiled, for 2 s
+    assert "once, for about 2 s" in worth_compiling(few)
+    (folder / "march.march-1.py311.2.nbc").touch()
+    kept = asked_for(small, ["site.latitude=-90:90:3"], None, None, audit=0)
+    assert (kept.engine, worth_compiling(kept)) == ("octet", "")
+    assert asked_for(damped, latitudes, None, None, audit=0).engine == "heyoka"
+
+
+def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compiled(tmp_path, monkeypatch):
+    pytest.importorskip("numba")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    paris, rows = load_scene("paris", {"run.t_end": 12000}), ["pendulum.length=60:70:0.0001"]
+    plain, gate, high = (
+        request(paris.with_values({"run.sections": words}), rows, engine="octet").rows_per_part
+        for words in ([], ["gate 30"], ["highest"])
+    )
+    assert (plain // gate, plain // high) == (2, 8)  # 1 + 1.2, and 1 + 6, as powers of two
+    for number in (1, 2):
+        folder = folder_of(SOURCES)
+        assert folder is not None
+        folder.mkdir(exist_ok=True)
+        (folder / f"march.march-1.py311.{number}.nbc").touch()
+        assert request(paris, rows, engine="octet").rows_per_part == plain
 
 
 def test_json_holds_every_row_and_the_costs(foucault):

@@ -14,7 +14,7 @@ from places import ROOT
 
 from compare.candidates.external import REPEATS, TIMEOUT_S
 from compare.commands import app as comparing
-from compare.commands import studies
+from compare.commands import score, studies
 from compare.score.judge import TOLERANCE
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
@@ -51,10 +51,23 @@ def test_every_command_has_help_and_pend_keeps_the_papers_switch_h(foucault, com
         assert foucault(command, "-h") == (0, out, "")
 
 
-def test_the_help_of_score_fits_on_two_screens(foucault, monkeypatch):
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_a_command_fits_on_two_screens(foucault, monkeypatch, command):
     monkeypatch.setenv("COLUMNS", "80")
-    lines = foucault("score", "--help")[1].splitlines()
-    assert len(lines) <= 80 and max(map(len, lines)) <= 80
+    lines = foucault(command, "--help")[1].splitlines()
+    assert len(lines) <= 50 and max(map(len, lines)) <= 80
+
+
+def test_what_the_help_of_score_leaves_out_works_and_stands_on_the_page_that_it_names(foucault, tmp_path):
+    out = foucault("score", "--help")[1]
+    page = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
+    for option, value in {"--approximation": "ID", "--name": "WORD", "--repeats": "N"}.items():
+        assert option in out and f"  {option} {value}" not in out
+        assert f"* `{option} {value}`: " in page
+    file = tmp_path / "mine.csv"
+    file.write_text("t,x,y\n0,0.3,0.4\n", encoding="utf-8")
+    command = ["score", "paris", "--t-end", "60", "--run", f"cat {file}", "--name", "mine", "--repeats", "0"]
+    assert foucault(*command)[1].startswith("mine ")
 
 
 def test_the_version_is_that_of_the_package(foucault):
@@ -67,7 +80,6 @@ def test_the_version_is_that_of_the_package(foucault):
         ("score", "--tolerance", f"{TOLERANCE:.0e}".replace("e-0", "e-") + " of the amplitude"),
         ("score", "--t-end", "the scene's"),
         ("score", "--timeout", f"{TIMEOUT_S:g}"),
-        ("score", "--repeats", f"{REPEATS}"),
         ("generate", "--t-end", "the scene's"),
         ("generate", "--digits", "the scene's"),
         ("generate", "--level", "the scene's"),
@@ -88,6 +100,7 @@ def test_the_help_states_the_default_that_the_code_has(foucault, command, option
 
 def test_limits_of_the_command_line_are_those_of_python():
     assert (studies.LIMIT_S, studies.STABILITY_LIMIT_S) == (STUDY_LIMIT_S, STABILITY_LIMIT_S)
+    assert score.REPEATS == REPEATS
     assert inspect.signature(studies.stability).parameters["limit"].default == STABILITY_LIMIT_S
 
 

@@ -91,7 +91,7 @@ def test_every_input_may_be_uncertain(name):
     [
         ({"lenght": "±1"}, "expected an input on which the motion depends"),
         ({"run.t_end": "±1"}, "expected an input on which the motion depends"),
-        ({"length": "0.001"}, "expected a width with its sign, such as ±0.001"),
+        ({"length": "0.001"}, "expected a width with its sign, in SI units or degrees, such as ±0.001"),
         ({"length": "-0.001"}, "expected a width with its sign"),
         ({"length": "±-0.001"}, "expected a width above 0"),
         ({"length": "±0"}, "expected a width above 0"),

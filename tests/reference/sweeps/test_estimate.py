@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import random
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from against_limbs import compare
 from random_rows import KINDS, random_kinds, rows_of
+from scipy.integrate import solve_ivp
 
-from reference.engines.batch_interface import Wanted
+from reference.engines.batch_interface import CLOSE_PAIR, PlumbAxes, Wanted
 from reference.engines.registry import batches
+from reference.engines.row_zeros import MODEL, Motion
+from reference.model.constants import Constants
 from reference.scenes.scene import load_scene
-from reference.sweeps.estimate import judged
+from reference.sweeps.estimate import bend_of_pairs, judged
 
 ENGINES = [name for name, engine in batches().items() if engine.installed]
 
@@ -59,3 +64,38 @@ def test_an_angle_next_to_the_top_is_as_uncertain_as_its_cosine(engine, paris):
     run = batches()[engine].solve(rows, Wanted())
     error = np.abs(np.degrees(run.largest_angle) - [float(angle) for angle in angles])
     assert (error <= judged(batches()[engine], rows, run)[0].angle).all()
+
+
+def test_between_close_transits_xdot_bends_no_more_than_is_taken(paris, tally):
+    generator, close, worst = random.Random(20261126), 0, 0.0
+    for _ in range(60):
+        length, latitude = generator.uniform(1, 100), generator.uniform(-90, 90)
+        rate, turn = (9.8 / length) ** 0.5, generator.uniform(0, 1) ** 3 / 31
+        site = {"length": length, "latitude": latitude, "equatorial_radius": 0, "rotation_rate": turn * rate}
+        site = {name: Fraction(value) for name, value in site.items()}
+        y = length * np.sin(np.radians(generator.uniform(1, 27)))
+        past = -turn * np.sin(np.radians(latitude)) * np.pi * np.array([1, 3, 5])  # the plane is in the meridian then
+        pushed = generator.choice([0, 0, 0.3]) * turn * y * rate
+        position = (generator.choice(past) * y, y, generator.uniform(-1, 1) * pushed, 0)
+        inputs = replace(paris.exact, **site, position=tuple(map(Fraction, position)))
+        rows = rows_of([inputs])
+        axes = PlumbAxes.of(rows)
+        k = Constants(turn=(0, *(part.high[0] for part in axes.turn)), pull=(0, 0, -axes.size.high[0]), drag=0.0)
+        n, V = ([part.high[0] for part in vector] for vector in (axes.n, axes.V))
+        t = np.linspace(0, 8 * np.pi / rate, 20_001)
+        states = solve_ivp(
+            lambda _, state, k=k: MODEL.derivatives(state, k, np), t[[0, -1]], [*n, *np.cross(n, V)], "DOP853", t,
+            rtol=1e-11, atol=1e-14,
+        ).y  # fmt: skip
+        motion = Motion.of(states, k)
+        angle = np.arccos(-motion.n[2].max())
+        taken = bend_of_pairs(rows, np.array([angle]))[0]
+        bend = np.abs(np.gradient(motion.a[0], t)) * length
+        zeros = np.flatnonzero(np.diff(np.sign(motion.v[0])))
+        for first, second in pairwise(zeros):
+            if t[second] - t[first] < CLOSE_PAIR * 2 * np.pi / rows.rate[0]:
+                close += 1
+                worst = max(worst, bend[first + 1 : second + 1].max(initial=0) / taken)
+    tally(f"bend between close transits: {close} pairs, at most {worst:.2g} of its bound")
+    assert close > 30
+    assert worst < 1
