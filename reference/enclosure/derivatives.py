@@ -3,9 +3,11 @@
 A derivative is scaled by a power of two, its `scale`, so that proposals are of the size of 1.
 """
 
+from bisect import bisect_left, bisect_right
 from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
+from itertools import pairwise
 from typing import Any
 
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
@@ -152,23 +154,27 @@ class Watched:
     def close(self, ways: list[Way]) -> None:
         """Take the derivatives of the zeros that were found since."""
         for z in self.scan.found[len(self.zeros) :]:
-            self.zeros.append([self.of_zero(z, j, way) for j, way in enumerate(ways)] if z.parity == "one" else [])
+            self.zeros.append(self.of_zero(z, ways) if z.parity == "one" else [])
 
-    def of_zero(self, z: EnclosedZero, j: int, way: Way) -> Vector:
+    def of_zero(self, z: EnclosedZero, ways: list[Way]) -> list[Vector]:
         """Return the derivatives of a zero's time and of its azimuth, in degrees, over all times that it may have."""
         begun, ended = self.kept[0][0].piece.begin, self.kept[-1][0].piece.end
         # it lies in leaves of steps that are kept, whatever rounding adds to its interval
         demand(z.t.low < ended and begun < z.t.high, "a zero is not covered")
-        found = list[Vector]()
+        found: list[list[Vector]] = [[] for _ in ways]
         for covered, tangents in self.kept:
             begin, end = max(z.t.low, covered.piece.begin), min(z.t.high, covered.piece.end)
             for s in spread(covered.piece, begin, end) if begin <= end else ():
-                found.append(late_and_turned(covered, tangents[j], way, s, self.apsis))
-        return [reduce(arb.union, x) for x in zip(*found, strict=True)]
+                own = motion(covered, s)
+                for way, tangent, parts in zip(ways, tangents, found, strict=True):
+                    parts.append(late_and_turned(covered, own, tangent, way, s, self.apsis))
+        return [[reduce(arb.union, x) for x in zip(*parts, strict=True)] for parts in found]
 
     def centre(self, z: Any) -> Any:
         """Return the scene's own zero in the interval of a single one of the box, where each has one; or None."""
-        near = [y for y in self.own.found if z.t.low <= y.t.high and y.t.low <= z.t.high]
+        found = self.own.found
+        first = bisect_left(found, z.t.low, key=lambda y: y.t.high)
+        near = found[first : bisect_right(found, z.t.high, key=lambda y: y.t.low)]
         return near[0] if len(near) == 1 and near[0].parity == "one" else None
 
 
@@ -197,8 +203,9 @@ class Derivatives:
             if low > covered.piece.end:
                 break
             parts = spread(covered.piece, max(low, covered.piece.begin), min(high, covered.piece.end))
+            motions = [(s, motion(covered, s)) for s in parts]
             rows = [
-                [values(covered, tangent, way, s, ball(time)) for s in parts]
+                [values(covered, own, tangent, way, s, ball(time)) for s, own in motions]
                 for tangent, way in zip(tangents, self.bound.ways, strict=True)
             ]
             before = self.hulls[n] if n < len(self.hulls) else [[] for _ in rows]
@@ -235,7 +242,8 @@ class Derivatives:
         """Return the zeros of a scan as narrow as derivatives make their times, and these; in each pendulum's time."""
         watched, zeros, led = self.watched[word], list[Any](), list[Led]()
         watched.close(self.bound.ways)
-        watched.own.finish()
+        own_zeros = pairwise(watched.own.finish())
+        demand(all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in own_zeros), "zeros must be in order")
         pairs = zip(watched.scan.found, watched.zeros, strict=True)
         kept = [(q, row) for q, row in pairs if not word or self.windows.sections.counts(word, q)]
         for z, (q, row) in zip(proved, kept, strict=False):
@@ -255,32 +263,38 @@ def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) 
     return Interval(max(wide.low, own.low - reach), min(wide.high, own.high + reach))
 
 
-def jets(covered: Covered, tangent: Tangent, s: arb) -> list[Vector]:
-    """Return balls of r, r', r'', ρ, ρ' at `s`."""
-    (piece, tube), h = covered, covered.piece.k.h
-    forms = [(f, piece.unit) for part in (piece.p, piece.v, [g.derivative() for g in piece.v]) for f in part]
-    forms += [(f, tangent.unit) for part in (tangent.rows, [g.derivative() for g in tangent.rows]) for f in part]
-    x = [near(f, s) / unit for f, unit in forms]
-    radii, powers = (tube.eta, tube.u, tube.a, tangent.error, tangent.rate), (1, h, h**2, 1, h)
-    return [[(q + arb(0, radii[i])) / powers[i] for q in x[3 * i : 3 * i + 3]] for i in range(5)]
+def motion(covered: Covered, s: arb) -> list[Vector]:
+    """Return balls of r, r', r'' at `s`."""
+    (piece, (eta, u, a)), h = covered, covered.piece.k.h
+    with ctx.workprec(piece.balls.prec):
+        forms = zip((piece.p, piece.v, [g.derivative() for g in piece.v]), (eta, u, a), (1, h, h**2), strict=True)
+        return [[(near(f, s) / piece.unit + arb(0, radius)) / power for f in part] for part, radius, power in forms]
 
 
-def late_and_turned(covered: Covered, tangent: Tangent, way: Way, s: arb, apsis: bool) -> Vector:
+def change(covered: Covered, tangent: Tangent, s: arb) -> list[Vector]:
+    """Return balls of ρ, ρ' at `s`."""
+    h, rates = covered.piece.k.h, [g.derivative() for g in tangent.rows]
+    rho, rate = ([near(f, s) / tangent.unit for f in part] for part in (tangent.rows, rates))
+    return [[q + arb(0, tangent.error) for q in rho], [(q + arb(0, tangent.rate)) / h for q in rate]]
+
+
+def late_and_turned(covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, apsis: bool) -> Vector:
     """Return the derivatives of time and azimuth of a zero at `s`: of r·r' across the plumb line, or of xdot (12.5)."""
     piece, (_, m, w) = covered.piece, covered.piece.balls.c
     with ctx.workprec(piece.balls.prec):
         north = times(1 / (m * m + w * w).sqrt(), [arb(0), -w, m])
-        (x, y), (vx, vy), (ax, ay), (dx, dy), (ux, uy) = ([q[0], dot(q, north)] for q in jets(covered, tangent, s))
+        both = own + change(covered, tangent, s)
+        (x, y), (vx, vy), (ax, ay), (dx, dy), (ux, uy) = ([q[0], dot(q, north)] for q in both)
         late = -(dx * vx + dy * vy + x * ux + y * uy) / (vx**2 + vy**2 + x * ax + y * ay) if apsis else -ux / ax
         turned = (x * dy - y * dx + late * (x * vy - y * vx)) / (x**2 + y**2) * 180 / arb.pi()
         time = first(arb_series([ball(piece.step.centre) + s * piece.k.h, late], 2) / way.twin.pace)
         return [x / way.scale for x in ((time, turned) if apsis else (time,))]
 
 
-def values(covered: Covered, tangent: Tangent, way: Way, s: arb, time: arb) -> Vector:
+def values(covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, time: arb) -> Vector:
     """Return balls of the derivatives of position and velocity, in m and m/s, at the pendulum's own time (12.3)."""
     with ctx.workprec(covered.piece.balls.prec):
-        (r, v, a, rho, rate), twin = jets(covered, tangent, s), way.twin
+        (r, v, a), (rho, rate), twin = own, change(covered, tangent, s), way.twin
         later = first(twin.pace) * time
         R = [arb_series([y, z * later + u], 2) for y, z, u in zip(r, v, rho, strict=True)]
         V = [arb_series([y, z * later + u], 2) for y, z, u in zip(v, a, rate, strict=True)]

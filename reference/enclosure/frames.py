@@ -56,7 +56,8 @@ class ColumnSource:
         whole = np.array([row + [0.0] * (M + 2 - len(row)) for row in rows[:3]]).T
         n = whole[: M + 1]
         speed = whole[1:] * np.arange(1, M + 2)[:, None] + np.cross(w, n)
-        turn = np.array([np.cross(n[: k + 1], speed[k::-1]).sum(axis=0) for k in range(M + 1)])
+        products = np.cross(n[:, None], speed[None])
+        turn = np.array([products[range(k + 1), range(k, -1, -1)].sum(axis=0) for k in range(M + 1)])
         turn[0] -= w
         field = np.zeros((6, M + 1, 6))
         field[:3, :, :3] = hats(turn).transpose(1, 0, 2)

@@ -33,6 +33,7 @@ class TangentSource:
         """Read the ways as floats."""
         self.columns, self.w0, self.drag = ColumnSource(balls), float(balls.w0), float(balls.drag)
         self.turns, self.slows = [np.array([*map(float, way.turn)]) for way in ways], [float(way.slow) for way in ways]
+        self.crosses = hats(np.array(self.turns)).transpose(0, 2, 1)
         self.ends = [np.array([*map(float, way.last)]) for way in ways]
 
     def propose(self, step: TaylorStep) -> list[Any]:
@@ -45,8 +46,8 @@ class TangentSource:
         forces = np.zeros((M + 1, 6, 6 + count))
         for j in range(count):
             turn, slow = self.turns[j] * h, self.slows[j] * h
-            forces[:, :3, 6 + j] = -_cross(turn, n)
-            forces[:, 3:, 6 + j] = -_cross(turn, K)
+            forces[:, :3, 6 + j] = -n @ self.crosses[j] * h
+            forces[:, 3:, 6 + j] = -K @ self.crosses[j] * h
             if self.drag:
                 forces[:, 3:, 6 + j] -= h * self.drag * _along(turn, n)
                 forces[0, 3:, 6 + j] += h * self.drag * turn
@@ -58,18 +59,13 @@ class TangentSource:
         for k in range(M):
             flow[k + 1] = (np.einsum("kij,kjl->il", matrices[: k + 1], flow[k::-1]) + forces[k]) / (k + 1)
         start, end = (np.tensordot(float(s) ** np.arange(M + 1), flow, 1) for s in (step.low, step.high))
-        proposals = []
-        for j in range(count):
-            y = np.linalg.solve(start[:, :6], unit * self.ends[j] - start[:, 6 + j])
+        proposals, begins = [], np.array([unit * x for x in self.ends]).T - start[:, 6:]
+        for j, y in enumerate(np.linalg.solve(start[:, :6], begins).T):
             rows = flow[:, :, :6] @ y + flow[:, :, 6 + j]
             self.ends[j] = (end[:, :6] @ y + end[:, 6 + j]) / unit
             bits = FINE - frexp(np.abs(rows).max() or 1.0)[1]
             proposals.append((np.rint(np.ldexp(rows.T, bits)).astype(np.int64).tolist(), max(bits, 0)))
         return proposals
-
-
-def _cross(a: Any, rows: Any) -> Any:
-    return rows @ hats(a[None])[0].T
 
 
 def _along(a: Any, n: Any) -> Any:

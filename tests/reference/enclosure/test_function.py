@@ -81,6 +81,17 @@ def test_no_time_is_outside_of_the_bound_of_a_function_that_ships(name, size, ta
     tally(f"{name}: {len(times)} times, x {x:.1e} of the swing, z {z:.2g} ulp, vx {vx:.1e}, {megabytes:.3f} MB")
 
 
+@pytest.mark.parametrize("name", SHIPPED)
+def test_z_is_within_two_ulp_of_the_length(name):
+    golden = load(name)
+    assert golden.function.bound["z"] <= 2 * np.spacing(float(golden.scene.exact.length))
+
+
+def test_a_piece_on_which_z_rounds_much_is_halved():
+    function = evaluator(proved_function(short("force_free", "10")))
+    assert function.bound["z"] <= 2 * np.spacing(1.0)
+
+
 def test_the_tube_and_the_orders_that_are_left_out_count(monkeypatch):
     scene = short("paris", "60")
     usual = evaluator(proved_function(scene)).bound
@@ -129,15 +140,15 @@ def test_a_piece_that_does_not_join_or_lie_in_its_step_is_refused(monkeypatch):
 
 
 def test_a_gap_between_pieces_is_refused(monkeypatch):
-    add, skipped = Following.add, []  # in each attempt the second piece
+    add, skipped = fit.Fit.add, []  # in each attempt the second step
 
-    def skipping(self, until, series):
-        if len(self.pieces) == 1 and self not in skipped:
+    def skipping(self):
+        if len(self.following.pieces) == 1 and self not in skipped:
             skipped.append(self)
         else:
-            add(self, until, series)
+            add(self)
 
-    monkeypatch.setattr(Following, "add", skipping)
+    monkeypatch.setattr(fit.Fit, "add", skipping)
     with pytest.raises(Exception, match="must join"):
         proved_function(short("paris", "60"))
 
