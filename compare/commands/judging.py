@@ -24,8 +24,7 @@ from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report.suite import outcome_forms
 from ..score.baseline import document_of, rows_of
-from ..score.outcome import Outcome
-from ..score.verdict import Score
+from ..score.verdict import Outcome, Score
 from .experimenting import GIVEN, Program
 from .options import announce
 

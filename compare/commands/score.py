@@ -27,7 +27,7 @@ from reference.commands.terminal import (
 from .options import announce, check_positive, listed
 
 if TYPE_CHECKING:
-    from ..score.outcome import Outcome
+    from ..score.verdict import Outcome
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats

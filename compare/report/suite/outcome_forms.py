@@ -19,8 +19,7 @@ from xml.etree import ElementTree
 from reference.errors import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
-from ...score.outcome import REFUSED, Outcome
-from ...score.verdict import percent
+from ...score.verdict import REFUSED, Outcome, percent
 from ..folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
 from ..page import Html, Table, findings, page, paragraph, section, text
 
