@@ -159,7 +159,7 @@ def command(
     {azimuth_rate} {t_end} {grid_step} {setting}.
     """
     from ..candidates.layout import Naming
-    from .measuring import hold, hold_passages, ranges_named, ranges_to_prove
+    from .judging import hold, hold_passages, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
@@ -221,7 +221,7 @@ def command(
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
-        from ..report.charts.drawing import check_target
+        from ..report.drawing import check_target
 
         check_target(plot)
     from .experimenting import Program
@@ -259,7 +259,7 @@ def command(
 
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
-    from ..report.suite.outcome_forms import annotation, append_summary, suite_document, summary, write_junit
+    from ..report.suite import annotation, append_summary, suite_document, summary, write_junit
 
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:

@@ -67,7 +67,7 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     Raises:
         InputError: matplotlib or numba is not installed, or the folder holds another page or cannot be written.
     """
-    from ..report.charts.drawing import check_matplotlib
+    from ..report.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files
     from .figures import FIGURES, check_methods, svg
     from .papers_page import files_of

@@ -20,9 +20,8 @@ from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
 from ..numbers.columns import GridColumns
 from ..numbers.function import GoldenFunction, States
 from ..numbers.precision import Array
-from ..scenes.fields import Level
+from ..scenes.fields import SECTION_WORD, Level
 from ..scenes.scene import Scene, parse_scene
-from ..scenes.sections import WORD
 from ..scenes.shipped import seals
 from .function import FunctionRecord, evaluated, read_function
 from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
@@ -32,7 +31,7 @@ from .sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER, Shee
 MAX_MANIFEST = 1 << 20  # bytes
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER, "sections": SECTIONS_HEADER}
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
-_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND, "section": WORD}
+_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND, "section": SECTION_WORD}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
 _HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
 

@@ -26,9 +26,8 @@ from ..scenes.scene import Scene
 from ..system.workers import Emit
 from .agreement import bits_lacking, passages_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, rounded_prec
-from .pilot import run_pilot
+from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import Problem, guarded, proved
-from .reach import MAX_RAISES, check_reach
 from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start

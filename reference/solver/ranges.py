@@ -17,8 +17,8 @@ from ..errors import InputError, unknown
 from ..numbers.columns import GRID, SECTION, TRANSITS, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
+from .pilot import check_reach
 from .proof_steps import COEFFICIENT_BITS, Feed
-from .reach import check_reach
 from .swing import HOUR, Swing, swing_of
 from .widths import exact_texts, widths_of
 

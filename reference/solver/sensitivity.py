@@ -26,8 +26,7 @@ from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, Array, real, to_fraction
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
-from .pilot import Pilot, run_pilot
-from .reach import MAX_PREC
+from .pilot import MAX_PREC, Pilot, run_pilot
 
 Quadruple = tuple[Fraction, Fraction, Fraction, Fraction]
 DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation

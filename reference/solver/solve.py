@@ -25,8 +25,7 @@ from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene, as_scene
 from .agreement import Agreement, with_passage_errors, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
-from .pilot import Pilot
-from .reach import MAX_PREC, MAX_RAISES, Pace, check_reach, out_of_reach
+from .pilot import MAX_PREC, MAX_RAISES, Pace, Pilot, check_reach, out_of_reach
 from .solution import CrossCheck, Passages, Solution, Source
 
 if TYPE_CHECKING:

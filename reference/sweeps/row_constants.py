@@ -19,9 +19,9 @@ from ..model.sections import form_along
 from ..model.start import at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..numbers.precision import Array
+from ..scenes.fields import azimuth_of
 from ..scenes.inputs import GravityIs, Inputs
 from ..scenes.scene import Scene
-from ..scenes.sections import azimuth_of
 from .axes import Table
 
 Columns = Mapping[str, DoubleDouble]

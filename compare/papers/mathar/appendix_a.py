@@ -9,11 +9,12 @@ import numpy as np
 
 from reference import load_scene
 
-from ...methods import rk4, rkng56, rkng67
+from ...methods import rk4
+from ...methods.rkng import RKNG56, RKNG67
 from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
-from ..foucpend.output import Transits
+from ..foucpend import Transits
 from ..points import paris
 from ..runs import path_in, transits
 from .paris import swings_surplus
@@ -110,10 +111,10 @@ def checks() -> list[Check]:
                     f"(R changes by {shown(_effect_of_the_digit(), 2)} m)"),
             PrintedNumber("a_radius", ", -r", "6.378137 × 10⁶ m", "6.378137e6", lambda: mpf(WGS84_RADIUS)),
             PrintedNumber("a_stages_4", ", -R", "-R 4: 4 stages", "4", lambda: MP.mpf(len(rk4.TABLEAU.a))),
-            PrintedNumber("a_stages_5", ", -R", "-R 5: 8 stages", "8", lambda: MP.mpf(len(rkng56.TABLEAU.c))),
-            PrintedNumber("a_order_5", ", -R", "-R 5: order 6", "6", **_order(rkng56.TABLEAU, "6")),
-            PrintedNumber("a_stages_6", ", -R", "-R 6: 10 stages", "10", lambda: MP.mpf(len(rkng67.TABLEAU.c))),
-            PrintedNumber("a_order_6", ", -R", "-R 6: order 7", "7", **_order(rkng67.TABLEAU, "7")),
+            PrintedNumber("a_stages_5", ", -R", "-R 5: 8 stages", "8", lambda: MP.mpf(len(RKNG56.c))),
+            PrintedNumber("a_order_5", ", -R", "-R 5: order 6", "6", **_order(RKNG56, "6")),
+            PrintedNumber("a_stages_6", ", -R", "-R 6: 10 stages", "10", lambda: MP.mpf(len(RKNG67.c))),
+            PrintedNumber("a_order_6", ", -R", "-R 6: order 7", "7", **_order(RKNG67, "7")),
             Statement("a_parabola", ", output", "transits by quadratic interpolation of three points",
                 _by_parabola, by_run=True, remark="first transit of Paris at the paper's step of 0.01 s"),
             Statement("a_two", ", output", "two transits occur per period", _two_transits),

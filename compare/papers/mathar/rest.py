@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from ...approximations.rest_angle import line_of_46, series, triangle
+from ...approximations.frequency import line_of_46, series, triangle
 from ..checks import Approximate, Check, Finding, Identity, Statement, section
 from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import horizontal_acceleration, rest

@@ -18,7 +18,7 @@ from reference.engines import background
 from reference.engines.background import Background, send_run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.scenes.fields import CONFIRMATIONS
-from reference.solver import enclosed, reach
+from reference.solver import enclosed, pilot
 
 SHORT = {"t_end": "60", "digits": 18, "level": "enclosed"}
 PARIS = reference.load_scene("paris")
@@ -101,7 +101,7 @@ def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
 
 
 def test_a_confirmation_out_of_reach_is_refused_before_the_proof(monkeypatch):
-    monkeypatch.setattr(reach, "MAX_PREC", 64)
+    monkeypatch.setattr(pilot, "MAX_PREC", 64)
     monkeypatch.setattr("reference.solver.enclosed.proved", None)
     for word in ("whole", "sampled"):
         with pytest.raises(UnreachableError, match="--confirm none"):

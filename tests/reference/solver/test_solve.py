@@ -24,8 +24,8 @@ from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.columns import GRID
 from reference.numbers.precision import DOUBLE, real
 from reference.scenes.shipped import data_root
+from reference.solver import pilot
 from reference.solver import pilot as pilot_runs
-from reference.solver import reach
 from reference.solver import solve as solver
 
 
@@ -340,7 +340,7 @@ def test_growth_beyond_every_precision_is_refused(monkeypatch, paris):
     with pytest.raises(UnreachableError, match="keep no digit"):
         pilot_runs.run_pilot(paris.exact, (Fraction(0), Fraction(60)))
     monkeypatch.undo()
-    monkeypatch.setattr(reach, "MAX_PREC", 100)
+    monkeypatch.setattr(pilot, "MAX_PREC", 100)
     with pytest.raises(UnreachableError, match=r"60 digits take \d+ bits"):
         reference.solve(paris, t_end="60", digits=60)
 
