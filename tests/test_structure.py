@@ -125,7 +125,7 @@ PUBLIC = {
     "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections Uncertain "
     "Workers check_workers chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
     "reference.dataset.render": "MEANING",
-    "reference.dataset.dense": "Dense WITHIN dense",
+    "reference.dataset.golden": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
     "reference.dataset.place": "RANGES changes golden_folder",
     "reference.engines.heyoka.model": "Numbers RoundedModel compiled",

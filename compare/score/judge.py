@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
-from reference.dataset.dense import WITHIN, Dense
+from reference.dataset.golden import WITHIN, Dense
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.numbers.precision import Array

@@ -18,7 +18,7 @@ from ..solver.solution import Solution, grid_decimals
 from ..solver.solve import solve
 from ..status import Status
 from ..system.workers import Pool
-from .golden import read_files
+from .files import read_files
 from .manifest import Content
 from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making

@@ -11,7 +11,7 @@ from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
 from .checks import function, manifest_check, motion, physics, tables
-from .golden import Files, read_files, read_manifest
+from .files import Files, read_files, read_manifest
 from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
 from .record import AUDIT, Making, generator
 from .render import render

@@ -8,7 +8,7 @@ from fractions import Fraction
 from ...errors import LONGEST_VALUE, shortened
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes
-from ..golden import Files
+from ..files import Files
 from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import ENGINE, OPTIONS, Making, bounds_of, command, completeness, following

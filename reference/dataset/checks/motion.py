@@ -23,7 +23,7 @@ from ...model.start import Start
 from ...numbers.columns import GRID, SECTION, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
-from ..golden import Files
+from ..files import Files
 from ..manifest import MANIFEST, Kind, Manifest
 from ..sheets import Sheet
 from . import function

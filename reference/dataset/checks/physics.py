@@ -18,7 +18,7 @@ from ...model.force import acceleration, energy, invariant
 from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
 from ...numbers.table import FixedPoint, Integers, integers
-from ..golden import Files
+from ..files import Files
 from ..manifest import Kind
 from ..record import INVARIANT_BITS
 from ..sheets import Sheet

@@ -11,7 +11,7 @@ from ...model.start import Start
 from ...numbers.columns import GRID, STATE
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...solver.solution import exact_decimals
-from ..golden import Files
+from ..files import Files
 from ..manifest import MANIFEST
 from ..sheets import NUMBERS, Sheet, exact
 

@@ -15,7 +15,7 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.checks import motion, physics, tables
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.sheets import NUMBERS, Sheet, binary64_sheet
 from reference.engines.registry import engines
 from reference.model.constants import constants

@@ -21,8 +21,9 @@ from small_scenes import make_scene
 import reference
 from reference.dataset import place
 from reference.dataset import write as writer
+from reference.dataset.files import read_files
 from reference.dataset.function import FunctionRecord
-from reference.dataset.golden import load, read_files
+from reference.dataset.golden import load
 from reference.dataset.manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL
 from reference.dataset.place import dataset_id, default_folder, golden_folder
 from reference.dataset.record import Making, command

@@ -11,7 +11,7 @@ import pytest
 from forgery import forge
 
 import reference
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
 from reference.engines import background
