@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from contextlib import ExitStack, closing, suppress
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from ..engines import AUTO, engine_names
-from ..errors import DatasetError, InputError, UnreachableError, in_words
+from ..errors import InputError, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS, Confirmation
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
-from ..status import Status
 from .progress import progress
 from .terminal import (
     BESIDE_RANGES,
@@ -26,7 +22,6 @@ from .terminal import (
     Sections,
     Uncertain,
     Workers,
-    check_workers,
     chosen,
     completion,
     emit,
@@ -39,7 +34,6 @@ from .terminal import (
 )
 
 if TYPE_CHECKING:
-    from ..dataset.shipping import Job, Row
     from ..scenes.scene import Scene
 
 ENGINES = (AUTO, *engine_names())
@@ -134,7 +128,9 @@ def command(
             "--engine": engine if engine != AUTO else None,
         }
         refuse(unused, "with --all")
-        _generate_all(replacements(None, options), out, workers, cluster, as_json)
+        from .generate_all import generate_all
+
+        generate_all(replacements(None, options), out, workers, cluster, as_json)
         return
     refuse({"--workers": workers, "--cluster": cluster}, "without --all")
     if scene_word is None:
@@ -146,9 +142,8 @@ def command(
         _generate_ranges(scene, level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.record import Making
-    from ..dataset.shipping import making_of, solved, summary
-    from ..dataset.write import check_target, write
+    from ..dataset.record import Making, making_of, solved
+    from ..dataset.write import check_target, summary, write
 
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
@@ -225,81 +220,3 @@ def _generate_ranges(
         typer.echo(f"passages of {word}: {len(found.table)}{left}")
     if period:
         typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")
-
-
-def _generate_all(
-    replaced: Sequence[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
-) -> None:
-    """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
-
-    Raises:
-        InputError: a wrong option, or a folder that cannot be written.
-        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
-    """
-    from ..dataset.shipping import is_done, jobs
-    from ..dataset.write import check_target
-    from ..system.workspace import clear
-
-    check_workers(workers, cluster)
-    every = jobs(replaced, out)
-    with stoppable("what is done stays, and the same command goes on"), progress() as show:
-        for job in every:
-            with suppress(OSError):  # no such folder yet
-                clear(job.folder.parent, job.folder.name)  # a dataset that is done is not written again
-        undone = [job for job in every if not is_done(job)]
-        for job in undone:
-            check_target(job.folder)
-        move, rows = show("datasets", len(undone), "datasets"), []
-        with closing(_made(undone, workers, cluster)) as outcomes:
-            for row in outcomes:
-                rows.append(row)
-                move(len(rows), item=row["scene"])
-                if not as_json:
-                    typer.echo(_line(row))
-    rows.sort(key=lambda row: str(row["dataset"]))
-    failed = [row for row in rows if row["status"] != Status.OK.value]
-    counts = {"datasets": len(every), "sealed_before": len(every) - len(undone), "failed": len(failed)}
-    if as_json:
-        emit({"rows": rows, **counts})
-    else:
-        made = len(undone) - len(failed)
-        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {made} made, {len(failed)} failed")
-    if failed:
-        typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
-        unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
-        raise typer.Exit(UnreachableError.exit_status if unreachable else 1)
-
-
-def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Generator[Row, None, None]:
-    """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
-    from ..dataset.shipping import isolated, made
-    from ..dataset.write import write_texts
-    from ..system.workers import Pool, WorkerDied, as_done, usable_cores
-
-    if not undone:
-        return
-    with ExitStack() as stack:
-        if cluster is not None:
-            from ..sweeps.cluster import scheduler_at
-
-            scheduler = stack.enter_context(scheduler_at(cluster))
-            begin, check = partial(scheduler.submit, isolated), scheduler.check
-        else:
-            pool = stack.enter_context(Pool(min(workers or usable_cores(), len(undone))))
-            begin, check = partial(pool.submit, made), None
-        for job, future in as_done(begin, undone, len(undone), check):
-            try:
-                row, texts = future.result()
-                if texts:
-                    write_texts(texts, job.folder)
-            except WorkerDied as death:
-                row = job.row(Status.CRASHED, str(death))
-            except DatasetError as error:
-                row = job.row(Status.DOUBTFUL, str(error))
-            yield row
-
-
-def _line(row: Row) -> str:
-    if row["status"] != Status.OK.value:
-        return f"{row['dataset']}: {Status(row['status']).words}: {row['reason']}"
-    return f"{row['out']}: {row['transits']} transits, {row['digits']} digits, {row['level']}, {row['cpu_s']:.1f} CPU s"

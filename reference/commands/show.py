@@ -136,7 +136,7 @@ def _compiled(scene: Scene) -> dict[str, Any]:
         UnreachableError: `generate` refuses the scene.
     """
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.shipping import making_of
+    from ..dataset.record import making_of
     from ..engines.heyoka.system import lines_and_left_out
     from ..solver.choice import first_plan, pilot_for
 

@@ -13,9 +13,8 @@ from ..scenes.shipped import golden_root, seals
 from .checks import function, manifest_check, motion, physics, tables
 from .files import Files, read_files, read_manifest
 from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
-from .record import AUDIT, Making, generator
+from .record import AUDIT, Making, generator, solved
 from .render import render
-from .shipping import solved
 
 MAX_PROBLEMS = 20  # sentences returned at most
 BEYOND = "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"

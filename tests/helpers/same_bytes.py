@@ -29,8 +29,8 @@ def confirmed() -> list[str]:
 def made_again(name: str) -> dict[str, str | bytes]:
     """Return the files of a dataset that ships, made as `generate NAME` makes it."""
     from reference.dataset.place import default_folder
+    from reference.dataset.record import making_of, solved
     from reference.dataset.render import render
-    from reference.dataset.shipping import making_of, solved
     from reference.scenes.scene import load_scene
 
     scene_id, doubles, _ = name.partition(".binary64")

@@ -15,10 +15,10 @@ from same_bytes import confirmed, made_again, shipped, swept
 from sampled import one_in
 
 import reference
+from reference.commands.generate_all import jobs
 from reference.dataset.place import default_folder
-from reference.dataset.record import Making, command
+from reference.dataset.record import Making, command, making_of, solved
 from reference.dataset.render import render
-from reference.dataset.shipping import jobs, making_of, solved
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
 from reference.numbers.precision import LONG_DOUBLE
