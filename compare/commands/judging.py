@@ -18,7 +18,7 @@ from reference.dataset.place import RANGES, golden_folder
 from reference.errors import Stopped, plain
 from reference.numbers.precision import Array
 from reference.solver.ranges import Intervals
-from reference.solver.widths import exact_texts, widths_of
+from reference.solver.uncertain import exact_texts, widths_of
 
 from .. import judge
 from ..approximations import APPROXIMATIONS, Motion

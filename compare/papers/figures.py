@@ -19,8 +19,7 @@ from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
 from ..report.drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, logarithmic, name_ends, picture, sheet
 from .digits import degrees, mpf
-from .points import paris
-from .runs import frequencies, paris_path, paris_swing_plane, window
+from .points import frequencies, paris, paris_path, paris_swing_plane, window
 
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))

@@ -133,7 +133,7 @@ def solve(
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
-        from .ranges import solve_ranges  # nor that of a box
+        from .uncertain import solve_ranges  # nor that of a box
 
         return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)
     if settings.level == "enclosed":

@@ -29,8 +29,7 @@ from ..digits import (
     vector,
 )
 from ..first_principles import AXIS, linearised, moving_velocity, rate_up, rotated, turning, turning_rates
-from ..points import Point, paris, points
-from ..runs import rotation, solved
+from ..points import Point, paris, points, rotation, solved
 
 RATE = mpf("7.292115e-5")  # rad/s, WGS84
 SIDEREAL_DAY = 2 * pi / RATE / 3600  # h

@@ -15,8 +15,7 @@ from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
 from ..foucpend import Transits
-from ..points import paris
-from ..runs import path_in, transits
+from ..points import paris, path_in, transits
 from .paris import swings_surplus
 
 WGS84_INVERSE_FLATTENING = "298.257223563"  # NIMA TR8350.2, table 3.1: defining parameter

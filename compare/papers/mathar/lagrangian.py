@@ -20,8 +20,7 @@ from ..first_principles import (
     plane_state,
     square_speed,
 )
-from ..points import Point, points
-from ..runs import paris_passage
+from ..points import Point, paris_passage, points
 from .kinematics import alpha_0, alpha_1, alpha_2
 
 

@@ -14,10 +14,10 @@ from ...approximations.mathar import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, Vector, acos, asin, cos, degrees, dot, mpf, norm, pi, shown, sin, sqrt, vector
 from ..first_principles import rest
-from ..points import paris
-from ..runs import (
+from ..points import (
     frequency,
     lead,
+    paris,
     paris_passage,
     paris_path,
     paris_swing_plane,

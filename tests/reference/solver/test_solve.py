@@ -231,7 +231,7 @@ def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(pari
 
 def test_what_a_proof_and_ranges_are_asked_for_is_handed_on_and_else_refused(monkeypatch, paris):
     monkeypatch.setattr("reference.solver.enclosed.solve_enclosed", lambda *words: words)
-    monkeypatch.setattr("reference.solver.ranges.solve_ranges", lambda *words, **named: (*words, named))
+    monkeypatch.setattr("reference.solver.uncertain.solve_ranges", lambda *words, **named: (*words, named))
     wishes, wide = {"audit": True, "confirm": "sampled", "function": True}, {"length": "±0.001"}
     scene, times, *others = reference.solve(paris, level="enclosed", engine="limbs", **wishes)
     assert (scene.run.level, times, others) == (
