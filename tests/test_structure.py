@@ -32,7 +32,6 @@ FLOORS = {
         ["errors", "status"],
     ],
     "reference/engines": [
-        ["background"],
         ["registry", "trajectory"],
         ["octet"],
         [*engine_names()],

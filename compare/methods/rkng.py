@@ -5,9 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import partial
 
+from .fixed_step import explicit, fixed_step, nystrom
 from .method import TWO_HUNDRED_STEPS, Family
-from .runge_kutta.fixed_step import explicit, fixed_step, nystrom
-from .runge_kutta.tableau import NystromTableau, fractions, triangle
+from .tableau import NystromTableau, fractions, triangle
 
 RKNG56 = NystromTableau(
     name="RKN-G-5(6)-8",

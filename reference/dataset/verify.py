@@ -10,7 +10,7 @@ from pathlib import Path
 from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
-from .checks import function, manifest_check, motion, physics, tables
+from .checks import function, motion, physics, scene_check
 from .files import Files, read_files, read_manifest
 from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
 from .record import AUDIT, Making, generator, solved
@@ -88,9 +88,12 @@ def problems_of(folder: Path) -> list[str]:
 
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    for check in (manifest_check, function) if files.manifest.alone else (tables, manifest_check, physics, function):
+    checks = [scene_check.problems, function.problems]
+    if not files.manifest.alone:
+        checks = [scene_check.table_problems, checks[0], physics.problems, checks[1]]
+    for check in checks:
         try:
-            problems = list(islice(check.problems(files), MAX_PROBLEMS))
+            problems = list(islice(check(files), MAX_PROBLEMS))
         except (ArithmeticError, BeyondDoublesError):
             problems = [BEYOND]
         if problems:

@@ -14,9 +14,8 @@ from functools import partial
 from typing import Any
 
 from ..engines import AUTO
-from ..engines.background import WORTH_A_PROCESS, expected_s, in_background, reports, send_run, slowest
 from ..engines.plan import Plan, Report, Run
-from ..engines.registry import run
+from ..engines.registry import WORTH_A_PROCESS, expected_s, in_background, reports, run, send_run, slowest
 from ..errors import InputError, IntegrationError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE

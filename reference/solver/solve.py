@@ -14,9 +14,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, overload
 
 from ..engines import AUTO
-from ..engines.background import run_both
 from ..engines.plan import Plan, Report, Run
-from ..engines.registry import checked, fastest, run
+from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE

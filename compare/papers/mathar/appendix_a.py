@@ -11,7 +11,7 @@ from reference import load_scene
 
 from ...methods import rk4
 from ...methods.rkng import RKNG56, RKNG67
-from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
+from ...methods.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
 from ..foucpend import Transits

@@ -15,8 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 from small_scenes import make_scene
 
 import reference
-from reference.dataset.checks.manifest_check import _bounds, _sections
-from reference.dataset.checks.tables import _order, _signs_on_grid
+from reference.dataset.checks.scene_check import _bounds, _order, _sections, _signs_on_grid
 from reference.dataset.files import read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, Count, Decimals, Manifest, Name, Text, differences
 from reference.dataset.place import MAX_ID, dataset_id

@@ -62,7 +62,7 @@ def jitter(monkeypatch, share: int) -> list[str]:
         return replace(found, grid=moved(found.grid, prec), transits=moved(found.transits, prec), steps=found.steps + 1)
 
     monkeypatch.setattr(Heyoka, "run", run)
-    monkeypatch.setattr("reference.engines.background.usable_cores", lambda: 1)  # nothing escapes to a child
+    monkeypatch.setattr("reference.engines.registry.usable_cores", lambda: 1)  # nothing escapes to a child
     return types
 
 

@@ -14,8 +14,8 @@ import reference
 from reference.dataset.files import read_files
 from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
-from reference.engines import background
-from reference.engines.background import Background, send_run
+from reference.engines import registry
+from reference.engines.registry import Background, send_run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.scenes.fields import CONFIRMATIONS
 from reference.solver import enclosed, pilot
@@ -148,7 +148,7 @@ def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeyp
         return solution
 
     monkeypatch.setattr(enclosed, "proved", noted)
-    monkeypatch.setattr(background, "usable_cores", lambda: 2)
+    monkeypatch.setattr(registry, "usable_cores", lambda: 2)
     monkeypatch.setattr("reference.solver.enclosed.WORTH_A_PROCESS", 0.0)
     end = 9000.0
     reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm="whole", report=seen.append)

@@ -16,10 +16,9 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.sheets import grid_sheet, transits_sheet
-from reference.engines import background, registry
-from reference.engines.background import run_both
+from reference.engines import registry
 from reference.engines.plan import Plan
-from reference.engines.registry import run
+from reference.engines.registry import run, run_both
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.columns import GRID
 from reference.numbers.precision import DOUBLE, real
@@ -354,9 +353,9 @@ def test_two_processes_give_what_one_gives(monkeypatch, paris):
     fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), transits=True)
     coarse = replace(fine, formulation="space", number=real(100))
     seen: list[float] = []
-    monkeypatch.setattr(background, "usable_cores", lambda: 1)
+    monkeypatch.setattr(registry, "usable_cores", lambda: 1)
     alone = run_both(fine, coarse, 10**9, seen.append)
-    monkeypatch.setattr(background, "usable_cores", lambda: 2)
+    monkeypatch.setattr(registry, "usable_cores", lambda: 2)
     together = run_both(fine, coarse, 10**9, seen.append)
     for one, other in zip(alone, together, strict=True):
         assert one.grid == other.grid
@@ -382,8 +381,8 @@ def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
 
 
 SCRIPT = """
-import reference, reference.engines.background
-reference.engines.background.WORTH_A_PROCESS = 0.0
+import reference, reference.engines.registry
+reference.engines.registry.WORTH_A_PROCESS = 0.0
 for level in ("confirmed", "enclosed"):
     solution = reference.solve(reference.load_scene("paris"), t_end="120", digits=20, level=level)
     print(level, len(solution.directions))

@@ -15,9 +15,9 @@ import numpy as np
 from reference.model.algebra import plus, product
 from reference.numbers.precision import Array
 
-from ..method import Method, Outcome, Work, outcome
-from ..rhs.problem import Problem
-from ..rhs.straight_line import Program, elements
+from .method import Method, Outcome, Work, outcome
+from .rhs.problem import Problem
+from .rhs.straight_line import Program, elements
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]

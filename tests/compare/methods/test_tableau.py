@@ -9,7 +9,7 @@ import pytest
 
 from compare.methods import rk4
 from compare.methods.rkng import MISPRINTS, RKNG56, RKNG67
-from compare.methods.runge_kutta.tableau import Tableau, TableauError, fractions, trees, triangle
+from compare.methods.tableau import Tableau, TableauError, fractions, trees, triangle
 
 NYSTROM = {"rkng56": RKNG56, "rkng67": RKNG67}
 
