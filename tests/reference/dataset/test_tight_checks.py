@@ -249,10 +249,10 @@ def test_the_motion_has_its_transits_sought_unless_the_scene_asks_for_none(files
 def test_transits_that_are_none_are_not_looked_at(files):
     counts = files.manifest.counts.model_copy(update={"transits": 0})
     none = files.manifest.model_copy(update={"counts": counts})
-    for check, column in ((physics, "z"), (scene_check, "bound")):
+    for check, column in ((physics.problems, "z"), (scene_check.table_problems, "bound")):
         broken = with_change(files, "transits", column, Fraction(1))
         for changed, seen in ((broken, True), (replace(broken, manifest=none), False)):
-            found = [problem for problem in check.problems(changed) if "binary64" not in problem]
+            found = [problem for problem in check(changed) if "binary64" not in problem]
             assert any("transits" in problem for problem in found) is seen, (check, found)
 
 
