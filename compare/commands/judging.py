@@ -31,7 +31,7 @@ from ..score.baseline import document_of, rows_of
 from ..score.measured import APART, measured
 from ..score.passages import score_passages
 from ..score.verdict import Outcome, Score
-from .experimenting import GIVEN, Program
+from .experimenting import GIVEN, Runnable
 from .options import announce
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
@@ -138,7 +138,7 @@ class Judging:
         """Judge transits alone."""
         return self.outcome(name, scene.id, lambda: Trial(scene, None, self.times(name)))
 
-    def program(self, program: Program, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
+    def program(self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
         """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
         scene = program.scene
 

@@ -224,7 +224,7 @@ def command(
         from ..report.drawing import check_target
 
         check_target(plot)
-    from .experimenting import Program
+    from .experimenting import Runnable
     from .judging import Judging
 
     end = None if t_end is None else float(scene.exact.t_end)
@@ -236,7 +236,7 @@ def command(
         times = judging.times(transits) if candidates else None
         outcomes = [judging.file(scene, file, times) for file in candidates or ()]
         if run is not None:
-            program = Program(scene, run, setting, timeout, out)
+            program = Runnable(scene, run, setting, timeout, out)
             if experiments:
                 program.check()
             outcomes.append(judging.program(program, name or "the program", transits, repeats, experiments))

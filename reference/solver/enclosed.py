@@ -26,7 +26,7 @@ from ..system.workers import Emit
 from .agreement import bits_lacking, passages_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, rounded_prec
 from .pilot import MAX_RAISES, check_reach, run_pilot
-from .proving import Problem, guarded, proved
+from .proving import ProofTask, guarded, proved
 from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
@@ -62,7 +62,7 @@ def solve_enclosed(
         advice = "Install it with pip install 'foucault-reference[enclose]', or ask for the level confirmed."
         raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
 
-    problem = Problem(scene, times, engine, run_pilot(scene.exact, times), function)
+    problem = ProofTask(scene, times, engine, run_pilot(scene.exact, times), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
         confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
     with ExitStack() as meanwhile:
@@ -111,13 +111,13 @@ def proved_digits(solution: Solution) -> Any:
     return tables, signs, [[parity for *_, parity in part] for part in possible]
 
 
-def _send_digits(emit: Emit, problem: Problem) -> None:
+def _send_digits(emit: Emit, problem: ProofTask) -> None:
     from ..enclosure import enclose
 
     emit(proved_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
 
 
-def _confirming_plan(problem: Problem, confirm: Confirmation, prec: int | None = None) -> Plan:
+def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:
     """Return heyoka's run in another formulation, in `prec` bits or in those that the digits need.
 
     Raises:
@@ -138,7 +138,7 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     )
 
 
-def confirmed(problem: Problem, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
+def confirmed(problem: ProofTask, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
     """Return a proved solution with the run that confirms it, at a precision that is raised until it agrees.
 
     Raises:

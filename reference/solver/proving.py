@@ -38,7 +38,7 @@ SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
 @dataclass(frozen=True)
-class Problem:
+class ProofTask:
     """A scene to be proved, and what its pilot runs told about it.
 
     Attributes:
@@ -56,7 +56,7 @@ class Problem:
     function: bool = False
 
 
-def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solution:
+def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> Solution:
     """Return a solution with every digit decided.
 
     Args:
