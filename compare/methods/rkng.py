@@ -83,18 +83,6 @@ RKNG67 = NystromTableau(
     tolerance=Fraction("1e-30"),
 )
 
-# Misprints of public copies: (table, row, column, as printed), counted from 0. Only the tests use them: put in place of
-# the entry above, each must make the order conditions fail. The first of 6(7) is the entry of column 2 printed in
-# column 1, which leaves 0 in its own. The second violates Σ position_ij c_j^q = c_i^(q+2) / ((q+1) (q+2)) by 4.877e-24
-# times c_7^q, for q = 0 to 3; the factor c_7^q identifies the column, where the 24th to the 27th digit are wrong.
-MISPRINTS = {
-    RKNG56: (("position", 4, 0, "81/840"),),
-    RKNG67: (
-        ("position", 8, 1, "-0.6816741819616552879282309588555"),
-        ("position", 9, 7, "1.6612294394931082916619461943874"),
-    ),
-}
-
 _SOURCE = "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R "
 _method = partial(fixed_step, formulations=("plane", "space"), family=Family.PAPER, stability=TWO_HUNDRED_STEPS)
 

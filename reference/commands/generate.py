@@ -142,8 +142,9 @@ def command(
         _generate_ranges(scene, level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.record import Making, making_of, solved
+    from ..dataset.record import Making, making_of
     from ..dataset.write import check_target, summary, write
+    from ..solver.solve import solve
 
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
@@ -165,7 +166,7 @@ def command(
         refuse({"--no-tables": True}, "without --function")
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        solution = solved(scene, making, report)
+        solution = solve(scene, **making.asked_of(scene), report=report)
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
@@ -195,7 +196,8 @@ def _generate_ranges(
         InputError: an input, a width, or the folder.
         UnreachableError: the box is too wide; nothing is written.
     """
-    from ..dataset.ranges import check_ranges_target, default_ranges_folder, period_texts, ranges_id, write_ranges
+    from ..dataset.place import GOLDEN
+    from ..dataset.ranges import check_ranges_target, period_texts, ranges_id, write_ranges
     from ..solver.solve import solve
 
     if out is not None:
@@ -203,7 +205,7 @@ def _generate_ranges(
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         ranges = solve(scene, uncertain=widths, level=level, engine=engine, report=report)
-    folder = out or default_ranges_folder(ranges)
+    folder = out or Path(GOLDEN, ranges_id(ranges))
     with stoppable("nothing half was written"):
         write_ranges(ranges, folder)
     counts = {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)}

@@ -14,13 +14,14 @@ import typer
 from ..dataset.files import read_files
 from ..dataset.manifest import Content
 from ..dataset.place import dataset_id, default_folder, ships
-from ..dataset.record import making_of, solved
+from ..dataset.record import making_of
 from ..dataset.render import check_proved, render
 from ..dataset.sheets import scene_inputs
 from ..dataset.write import check_target, summary, write_texts
 from ..errors import DatasetError, FoucaultError, IntegrationError, UnreachableError
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import scene_ids, seals
+from ..solver.solve import solve
 from ..status import Status
 from ..system.workers import Pool, WorkerDied, as_done, usable_cores
 from ..system.workspace import clear
@@ -82,7 +83,7 @@ def made(job: Job) -> tuple[Row, dict[str, Content]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
         making = making_of(job.scene, job.name, job.folder)
-        solution = solved(job.scene, making)
+        solution = solve(job.scene, **making.asked_of(job.scene))
         texts = render(solution, job.name, tables=making.tables)
         check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
         return job.row(Status.OK) | summary(solution, job.folder), texts

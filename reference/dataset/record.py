@@ -13,7 +13,6 @@ from typing import Any
 
 from ..engines import AUTO, engine_names
 from ..engines.heyoka.system import lines_and_left_out
-from ..engines.plan import Report
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
@@ -23,7 +22,6 @@ from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..scenes.shipped import DATA_VERSION, flag_meanings, index, scene_ids
 from ..solver.solution import Proof, Solution
-from ..solver.solve import solve
 from .manifest import (
     Bounds,
     Counts,
@@ -81,6 +79,11 @@ class Making:
         said = index().get(name, {}).get("options", self.options)
         return said if is_of_shipped_scene(scene, name) and Making.of(said) == self else self.options
 
+    def asked_of(self, scene: Scene) -> dict[str, Any]:
+        """Return what `solve` is asked for of a scene, so that it is made in this way, or refused."""
+        proof = {"audit": self.audit, "confirm": self.confirm, "function": self.function}
+        return {"engine": self.engine, "uncertain": None} | (proof if scene.run.level == "enclosed" else {})
+
 
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
     """Return how a dataset is made if nothing else is asked for: what ships as the index says, wherever it is written.
@@ -91,18 +94,6 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
         entry = index().get(name)
         return Making.of(entry["options"]) if entry else Making()
     return Making(AUTO, confirm="sampled", function=True)
-
-
-def solved(scene: Scene, making: Making, report: Report | None = None) -> Solution:
-    """Solve a scene in the way in which its dataset is to be made.
-
-    Raises:
-        InputError: the engine is not installed; no other one takes its place.
-        UnreachableError: the level or the digits cannot be reached.
-    """
-    proving = scene.run.level == "enclosed"
-    asked: dict[str, Any] = {"audit": making.audit, "confirm": making.confirm, "function": making.function}
-    return solve(scene, engine=making.engine, **(asked if proving else {}), report=report, uncertain=None)
 
 
 def manifest_of(

@@ -10,10 +10,11 @@ from pathlib import Path
 from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
+from ..solver.solve import solve
 from .checks import function, motion, physics, scene_check
 from .files import Files, read_files, read_manifest
 from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
-from .record import AUDIT, Making, generator, solved
+from .record import AUDIT, Making, generator
 from .render import render
 
 MAX_PROBLEMS = 20  # sentences returned at most
@@ -140,7 +141,8 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     files = read_files(folder)
     manifest, end = files.manifest, float(files.scene.exact.t_end)
     making = Making.of(manifest.command)
-    solution = solved(files.scene, making, report and (lambda t: report(t, end)))
+    tell = report and (lambda t: report(t, end))
+    solution = solve(files.scene, **making.asked_of(files.scene), report=tell)
     texts = render(solution, manifest.id, tables=making.tables)
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
     fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]

@@ -144,11 +144,11 @@ def solve(
     return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)
 
 
-def solve_at(scene: Scene, times: Collection[Fraction], digits: int, report: Report | None = None) -> Solution:
+def solve_at(scene: Scene, times: Collection[Fraction], digits: int) -> Solution:
     """Solve a scene at the level self_consistent and without transits, at times in s that stand for its grid."""
     scene = scene.with_values([f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"])
     every = tuple(sorted({Fraction(0), *times} | ({scene.exact.grid_step} if not any(times) else set())))
-    return _agreed(scene, every, pilot_for(scene, every), AUTO, report)
+    return _agreed(scene, every, pilot_for(scene, every), AUTO, None)
 
 
 def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = None) -> Solution | None:

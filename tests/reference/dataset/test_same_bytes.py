@@ -17,7 +17,7 @@ from sampled import one_in
 import reference
 from reference.commands.generate_all import jobs
 from reference.dataset.place import default_folder
-from reference.dataset.record import Making, command, making_of, solved
+from reference.dataset.record import Making, command, making_of
 from reference.dataset.render import render
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
@@ -142,7 +142,7 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
         assert "--engine" in err and "numba" in err and "--engine heyoka" in err
     scene = load_scene("conical")
     with pytest.raises(InputError, match="numba"):
-        solved(scene, making_of(scene, "conical", tmp_path))
+        reference.solve(scene, **making_of(scene, "conical", tmp_path).asked_of(scene))
     assert not list(tmp_path.iterdir())
 
 
