@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
 
+from ..engines.plan import Report
 from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
@@ -141,7 +142,7 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     files = read_files(folder)
     manifest, end = files.manifest, float(files.scene.exact.t_end)
     making = Making.of(manifest.command)
-    tell = report and (lambda t: report(t, end))
+    tell: Report | None = report and (lambda t: report(t, end))
     solution = solve(files.scene, **making.asked_of(files.scene), report=tell)
     texts = render(solution, manifest.id, tables=making.tables)
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
