@@ -39,7 +39,7 @@ TRANSITS = ".transits"
 DOCUMENT = ".json"  # of a baseline that is no trajectory
 
 
-class Trial(NamedTuple):
+class ToJudge(NamedTuple):
     """A candidate to judge, with its transits or transits alone, how long its program took, and its baseline."""
 
     scene: Scene
@@ -110,7 +110,7 @@ class Judging:
     options: dict[str, Any]
     baseline: str | None = None
 
-    def outcome(self, name: str, scene_id: str, trial: Callable[[], Trial]) -> Outcome:
+    def outcome(self, name: str, scene_id: str, trial: Callable[[], ToJudge]) -> Outcome:
         """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
         try:
             scene, candidate, times, timing, baseline = trial()
@@ -127,7 +127,7 @@ class Judging:
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(name, scene.id, lambda: Trial(scene, self._read(name), times, None, self._earlier()))
+        return self.outcome(name, scene.id, lambda: ToJudge(scene, self._read(name), times, None, self._earlier()))
 
     def _earlier(self) -> Candidate | str | None:
         """Read the baseline, if there is one, unless it is a document."""
@@ -136,18 +136,18 @@ class Judging:
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
-        return self.outcome(name, scene.id, lambda: Trial(scene, None, self.times(name)))
+        return self.outcome(name, scene.id, lambda: ToJudge(scene, None, self.times(name)))
 
     def program(self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
         """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
         scene = program.scene
 
-        def trial() -> Trial:
+        def trial() -> ToJudge:
             times = self.times(transits)
             candidate, timing = printed(program.command, name, repeats)
             if self.baseline is not None and not Path(self.baseline).is_file():
-                return Trial(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
-            return Trial(scene, candidate, times, timing, self._earlier())
+                return ToJudge(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
+            return ToJudge(scene, candidate, times, timing, self._earlier())
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
             output, timing = timed(program.words(scene, command), program.timeout, repeats)
@@ -170,10 +170,10 @@ class Judging:
             expected = "an approximation of the motion"
             raise InputError("--approximation", word, expected, "This one gives a number, not a motion.")
 
-        def trial() -> Trial:
+        def trial() -> ToJudge:
             times = [float(t) for t in scene.exact.grid]
             columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-            return Trial(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
+            return ToJudge(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
 
         return self.outcome(word, scene.id, trial)
 
@@ -203,9 +203,9 @@ class Judging:
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or outcome.document() for outcome in outcomes}
 
-    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> Trial:
+    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> ToJudge:
         scene, times = load_scene(files.scene), self.times(files.transits)
-        return Trial(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
+        return ToJudge(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..engines.batch_interface import CLOSE_PAIR, Outcomes, PlumbAxes, Rows, plumb_line
 from ..engines.registry import fastest
-from ..engines.row_zeros import HEIGHT, Motion, Release, Samples, Zeros, describe_highest_points
+from ..engines.row_zeros import HEIGHT, RowMotion, RowRelease, RowZeros, Samples, describe_highest_points
 from ..errors import FoucaultError, IntegrationError
 from ..model.constants import constants
 from ..numbers.columns import POSITION, STATE, VELOCITY
@@ -48,7 +48,7 @@ ROUNDING = 2.0**-48  # of the sum of a polynomial's terms in double
 
 
 @dataclass(frozen=True)
-class Course:
+class PlumbCourse:
     """The motion in the axes of the plumb line: when steps begin, their units h in s, and n's series, (steps, 3, …)."""
 
     starts: Array
@@ -87,11 +87,11 @@ class Course:
         sizes = ROUNDING * np.abs(self.series[step])
         return sizes[:, :2].sum(axis=(1, 2)), sizes[:, 2] @ np.arange(sizes.shape[2]) / self.h[step]
 
-    def at(self, times: Array) -> Motion:
+    def at(self, times: Array) -> RowMotion:
         """Return the motion at some times."""
-        return Motion(*map(tuple, self.derivatives(times)[:3]))
+        return RowMotion(*map(tuple, self.derivatives(times)[:3]))
 
-    def crossings(self, order: int, times: Array, first: float = 0.0) -> Zeros:
+    def crossings(self, order: int, times: Array, first: float = 0.0) -> RowZeros:
         """Return the zeros of a derivative of the height that signs at times tell; `first` replaces the first sign."""
         values = self.derivatives(times)[order][2]
         values[0] = first or values[0]
@@ -107,7 +107,7 @@ class Course:
             t = np.where((low < t) & (t < high), t, (low + high) / 2)
             if (np.abs(t - last) <= np.spacing(t)).all():
                 break
-        return Zeros(t, -sign)
+        return RowZeros(t, -sign)
 
 
 def _axes(step: TaylorStep, inputs: Inputs) -> tuple[int, int]:
@@ -161,8 +161,8 @@ def _of_run(rows: Rows, solution: Solution, prec: int) -> tuple[Outcomes, Array]
     """Return the highest points of a run, and what rounding may do to their times, their turn and the largest angle."""
     run, inputs = Outcomes.empty(1), solution.scene.exact
     engine = fastest(prec, steps=solution.run.steps)
-    course = Course.of(engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS), inputs)
-    release = Release.of(rows, PlumbAxes.of(rows), 0, course.at(np.zeros(1))[0])
+    course = PlumbCourse.of(engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS), inputs)
+    release = RowRelease.of(rows, PlumbAxes.of(rows), 0, course.at(np.zeros(1))[0])
     times = np.linspace(0, release.end, SAMPLES * len(course.starts) + 1)
     samples = Samples(times, course.at(times), complete=True)
     for order in range(TOP, 1, -1):
