@@ -13,7 +13,7 @@ to first order; with the rates in the place of the errors the same sum bounds th
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -68,32 +68,18 @@ class Agreement:
         finest = _resolution(published, witness)
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
-        missing = bits_lacking(gaps, decimals)
         lacking, sections = passages_lacking(published.passages, witness, decimals, digits)
-        agreed = cls._of_transits(published, witness, missing, gaps, errors, decimals, digits)
-        return replace(agreed, missing_bits=max(agreed.missing_bits, lacking), sections=sections)
-
-    @classmethod
-    def _of_transits(
-        cls,
-        published: Run,
-        witness: Run,
-        missing: int,
-        gaps: dict[str, Fraction],
-        errors: dict[str, Fraction],
-        decimals: dict[str, int],
-        digits: int,
-    ) -> Agreement:
-        if published.transits is None or witness.transits is None:
-            return cls(missing, gaps, None, errors)
-        if published.directions != witness.directions:
-            return cls(witness.plan.number.prec // 2, gaps, None, errors)
-        transits = published.transits.only(TRANSITS)
-        apart = transits.distance(witness.transits)
-        decimals = decimals_of(transits.largest(), digits) | {
-            name: places for name, places in decimals.items() if name in TRANSITS
-        }
-        return cls(max(missing, bits_lacking(apart.largest(), decimals)), gaps, apart, errors)
+        missing, apart = bits_lacking(gaps, decimals), None
+        if published.transits is not None and witness.transits is not None:
+            if published.directions == witness.directions:
+                transits = published.transits.only(TRANSITS)
+                apart = transits.distance(witness.transits)
+                decimals = {name: places for name, places in decimals.items() if name in TRANSITS}
+                of_transits = decimals_of(transits.largest(), digits) | decimals
+                missing = max(missing, bits_lacking(apart.largest(), of_transits))
+            else:
+                missing = witness.plan.number.prec // 2
+        return cls(max(missing, lacking), gaps, apart, errors, sections)
 
 
 def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
