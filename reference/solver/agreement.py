@@ -173,11 +173,17 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
         columns = {"t": late} | {
             name: parts[name] + lost[name] + np.abs(_floats(rates[name])) * length * late for name in STATE
         }
-    for i, name in enumerate(SECTION if apart is not None else ()):
-        assert apart is not None
-        columns[name] = np.maximum(columns[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))
-    fixed = [_fixed(columns[name] * ROUNDED_UP, power, table.bits) for name in SECTION]
-    return Table(SECTION, table.bits, table.values, list(zip(*fixed, strict=True)))
+    return _with_errors(table, columns, power, apart)
+
+
+def _with_errors(table: Table, columns: dict[str, Array], power: int, apart: Table | None) -> Table:
+    """Return a table with errors in units of 2**power, none less than twice the distance from another run's."""
+    for i, name in enumerate(table.columns):
+        if apart is not None:
+            least = _in_units([2 * row[i] for row in apart.values], apart.bits + power)
+            columns[name] = np.maximum(columns[name], least)
+    fixed = [_fixed(columns[name] * ROUNDED_UP, power, table.bits) for name in table.columns]
+    return Table(table.columns, table.bits, table.values, list(zip(*fixed, strict=True)))
 
 
 def _floats(numbers: FixedPoint) -> Array:
@@ -195,14 +201,7 @@ def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table |
     assert run.transits is not None
     power = bits_in(max(errors.values()))
     parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    of_transits = _errors(run, parts, power)
-    if apart is not None:
-        for i, name in enumerate(TRANSITS):
-            least = _in_units([2 * row[i] for row in apart.values], apart.bits + power)
-            of_transits[name] = np.maximum(of_transits[name], least)
-    table = run.transits.only(TRANSITS)
-    columns = [_fixed(of_transits[name] * ROUNDED_UP, power, table.bits) for name in TRANSITS]
-    return Table(TRANSITS, table.bits, table.values, list(zip(*columns, strict=True)))
+    return _with_errors(run.transits.only(TRANSITS), _errors(run, parts, power), power, apart)
 
 
 def _errors(run: Run, errors: Mapping[str, float], power: int) -> dict[str, Array]:

@@ -69,12 +69,8 @@ def solve_enclosed(
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
         whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
-        pays = problem.pilot.steps >= AUDIT_STEPS
-        second_proof = (
-            meanwhile.enter_context(in_background(pays, _send_digits, replace(problem, function=False)))
-            if audit
-            else None
-        )
+        again = in_background(problem.pilot.steps >= AUDIT_STEPS, _send_digits, replace(problem, function=False))
+        second_proof = meanwhile.enter_context(again) if audit else None
         report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
         if plan and confirm == "sampled":  # while the audit goes on

@@ -12,17 +12,15 @@ from ..engines.plan import Report
 from ..errors import InputError, unknown
 from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal
-from ..scenes.inputs import Inputs
+from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import Scene, checked_value, full_name
 from .pilot import check_reach
 from .proof_steps import COEFFICIENT_BITS, Feed
 from .ranges import Intervals, Ranges, ZeroRanges
 from .solution import exact_decimals
 
-RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
-SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
-PLAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in SITE)]
-UNCERTAIN = [*PLAIN, "site.inverse_flattening", *(f"release.{name}" for names in RELEASES.values() for name in names)]
+UNCERTAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in (*SITE, "inverse_flattening"))]
+UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
 SIGNS = ("±", "+-", "+/-")
 EXAMPLE = "a width with its sign, such as ±0.001 or +-0.001"
 MOST_DECIMALS = 20  # of an end of an interval
@@ -36,7 +34,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
             values that the input may have.
     """
     found: dict[str, Fraction] = {}
-    have = _numbers(scene.exact)
+    have = scene.exact.by_name
     for word, text in uncertain.items():
         name, width = full_name(word), str(text).strip()
         field_name = f"{'uncertain.' if scene.uncertain.get(word) == text else '--uncertain '}{word}"
@@ -87,19 +85,9 @@ def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
     return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
 
 
-def _numbers(inputs: Inputs) -> dict[str, Fraction]:
-    """Return the inputs that may be uncertain, by their full names."""
-    plain = {name: getattr(inputs, name.partition(".")[2]) for name in UNCERTAIN[: len(PLAIN)]}
-    if inputs.flattening:  # not a sphere
-        plain["site.inverse_flattening"] = 1 / inputs.flattening
-    kind = "position" if inputs.position else "angles"
-    release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
-    return plain | {f"release.{name}": value for name, value in release}
-
-
 def _ends(scene: Scene, widths: Mapping[str, Fraction]) -> list[dict[str, Fraction]]:
     """Return the lower and the upper ends of all inputs."""
-    have = _numbers(scene.exact)
+    have = scene.exact.by_name
     return [{name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)]
 
 
