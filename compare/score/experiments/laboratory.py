@@ -110,10 +110,8 @@ class Laboratory:
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""
-        problem, changes = (
-            KnownScene.of(experiment.changed(self._problem.scene)),
-            experiment.values(self._problem.scene),
-        )
+        scene = self._problem.scene
+        problem, changes = KnownScene.of(experiment.changed(scene)), experiment.values(scene)
         if experiment.finer > 1:
             changes[SETTING] = f"1/{experiment.finer} of the first"
         made, conclusion = None, "its file is read in another way than the first; nothing follows from it"
