@@ -14,8 +14,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar
 
-from .cache import store
-
 Function = TypeVar("Function", bound=Callable[..., Any])
 HERE = Path(__file__).parent
 PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
@@ -53,6 +51,8 @@ def folder_of(sources: Iterable[Path]) -> Path | None:
         return Path(chosen, name)
     if os.access(HERE, os.W_OK):
         return HERE / "__pycache__" / name
+    from .cache import store  # and NumPy, which `foucault --help` does not need
+
     return store("machine_code", name, lambda path: path.mkdir(exist_ok=True))
 
 
