@@ -232,7 +232,7 @@ class Vectors(Part):
 
 
 def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
-    """Return the vectors of a dataset from its manifest and its tables, evenly spread over their rows."""
+    """Return the vectors of a dataset, for tests in other languages, evenly spread over the rows of its tables."""
     grid, transits = tables["grid.csv"], tables.get("transits.csv", Sheet((), [], {}))
     pair = _closest_pair(transits)
     of_grid = {"release": [0], "end": [len(grid.rows) - 1]}
