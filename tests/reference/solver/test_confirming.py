@@ -101,7 +101,7 @@ def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
 
 
 def test_a_confirmation_out_of_reach_is_refused_before_the_proof(monkeypatch):
-    monkeypatch.setattr(pilot, "MAX_PREC", 64)
+    monkeypatch.setattr(pilot, "MAX_PREC", 70)  # the pilot has 69
     monkeypatch.setattr("reference.solver.enclosed.proved", None)
     for word in ("whole", "sampled"):
         with pytest.raises(UnreachableError, match="--confirm none"):

@@ -24,7 +24,6 @@ from reference.numbers.columns import GRID
 from reference.numbers.precision import DOUBLE, real
 from reference.scenes.shipped import data_root
 from reference.solver import pilot
-from reference.solver import pilot as pilot_runs
 from reference.solver import solve as solver
 
 
@@ -187,7 +186,7 @@ def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
 
 def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris):
     def optimistic(*words):
-        measured = pilot_runs.run_pilot(*words)
+        measured = pilot.run_pilot(*words)
         return replace(measured, errors={name: error / 2**60 for name, error in measured.errors.items()})
 
     monkeypatch.setattr("reference.solver.choice.run_pilot", optimistic)
@@ -328,16 +327,16 @@ def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypa
         release={"angle": "179.999999999999", "azimuth": "30"},
         run={"t_end": "60", "digits": 20},
     )
-    assert pilot_runs.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
+    assert pilot.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
     solution = reference.solve(scene)
     truth = by_higher_precision(scene, 400)
     assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
 
 
 def test_growth_beyond_every_precision_is_refused(monkeypatch, paris):
-    monkeypatch.setattr(pilot_runs, "MAX_PREC", 60)
+    monkeypatch.setattr(pilot, "MAX_PREC", 60)
     with pytest.raises(UnreachableError, match="keep no digit"):
-        pilot_runs.run_pilot(paris.exact, (Fraction(0), Fraction(60)))
+        pilot.run_pilot(paris.exact, (Fraction(0), Fraction(60)))
     monkeypatch.undo()
     monkeypatch.setattr(pilot, "MAX_PREC", 100)
     with pytest.raises(UnreachableError, match=r"60 digits take \d+ bits"):
