@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from math import ulp
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,8 @@ from .function import CUT, Following, position
 from .shapes import ProvedFunction
 
 SHALLOW = 0.96  # of the length: a bob that stays so deep, within 16 degrees, has no series of z
-SHARE = 1 / 4  # of the errors that are there anyway: what leaving out coefficients may add
+SHARE = 1 / 3  # of the errors that are there anyway: what leaving out coefficients may add
+ROUNDING = 1.6  # of z, in ulp of the length: a piece whose series rounds more is halved
 LEAST = Fraction(1, 1 << 59)  # length of a piece in s
 WIDER = Fraction(GRAIN + 1, GRAIN)  # unit of a step's series that has to reach farther back
 
@@ -36,10 +38,21 @@ class Fit:
     def add(self) -> None:
         """Propose the piece of the step that was proved last."""
         following, ((piece, _),) = self.following, self.following.covered
-        until = double_below(piece.end)
-        if Fraction(until) > following.end + LEAST:
-            rows = position(piece, following.end, Fraction(until), following.count)
-            following.add(until, [float(c) for c in rows.entries()])
+        last = until = double_below(piece.end)
+        while Fraction(last) > (begin := following.end) + LEAST:
+            rows = position(piece, begin, Fraction(until), following.count)
+            series = [float(c) for c in rows.entries()]
+            if self.rounding_of_z(series, 3 if 2 * begin >= until else 7) > ROUNDING:
+                until = double_below((begin + Fraction(until)) / 2)
+            else:
+                following.add(until, series)
+                until = last
+
+    def rounding_of_z(self, series: list[float], off: int) -> float:
+        """Return how far evaluating a series of z rounds, in ulp of the length; 0 where z has none."""
+        k, length = np.arange(CUT), self.following.balls.inputs.length
+        parts = np.abs(series[2 * CUT :]) * (off * k**2 + k + 1)[: len(series) - 2 * CUT]
+        return float(sum(parts.tolist()) * 2.0**-53 / ulp(float(length)))
 
     def finish(self) -> ProvedFunction:
         """Finish the proof, with the lowest degree that costs next to nothing."""
@@ -47,7 +60,7 @@ class Fit:
         sizes = np.abs(np.array([piece[1] for piece in pieces])).reshape(-1, count, CUT)
         there = np.array([[float(off) for off in piece[4].entries()] for piece in pieces]).reshape(-1, count, 4)
         half = np.array([[[float(2 / piece[3])]] for piece in pieces])
-        weights: dict[int, Any] = {0: (3 * k**2 + k + 3, k**0, 1.0), 2: (k**2 * (k**2 + k + 6), k**2, half)}
+        weights: dict[int, Any] = {0: (3 * k**2 + k + 1, k**0, 1.0), 2: (k**2 * (k**2 + k + 7 / 3), k**2, half)}
         for j, (kept, left, scale) in weights.items():
             rounding = (2.0**-53 * scale * sizes * kept).cumsum(2)[..., -1]
             tails = (scale * sizes * left)[..., ::-1].cumsum(2)[..., ::-1].max(0)

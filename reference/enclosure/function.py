@@ -44,7 +44,7 @@ def position(piece: Piece, low: Fraction, high: Fraction, count: int) -> arb_mat
 @lru_cache
 def weights(degree: int, off: int) -> arb_mat:
     """Return what |c_k| adds to errors, by rounding or by being left out, and to sizes: of the value, of the rate."""
-    kept = [(HALF * (off * k**2 + k + 3), 1, HALF * k**2 * (off * k**2 + 3 * k + 16) / 3, k**2) for k in range(CUT)]
+    kept = [(HALF * (off * k**2 + k + 1), 1, HALF * k**2 * (off * k**2 + 3 * k + 7) / 3, k**2) for k in range(CUT)]
     return arb_mat([*kept[: degree + 1], *((1, 1, k**2, k**2) for k in range(degree + 1, CUT))])
 
 

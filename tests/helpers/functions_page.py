@@ -20,8 +20,8 @@ largest distance from the vertical through the suspension. `python tests/helpers
 `pytest --long tests/reference/enclosure/test_function.py` compares a million random times with runs to 40 digits.
 
 An ulp of the length is the distance to the next double. Where the bob stays within 16 degrees of rest, z comes from x
-and y and is at most 1.1 ulp off. In wider swings z moves as far as x and y do, and has a series of its own. Its bound
-is of their kind then, below 2e-15 of the length, but up to 8 ulp: to evaluate a series of some 20 terms rounds often.
+and y and is at most 1.1 ulp off. In wider swings z moves as far as x and y do, and has a series of its own. To evaluate a series
+rounds the more, the farther it goes: a piece on which z would round more than 1.6 ulp is halved, so that every z is within 2 ulp.
 """
 
 

@@ -81,6 +81,17 @@ def test_no_time_is_outside_of_the_bound_of_a_function_that_ships(name, size, ta
     tally(f"{name}: {len(times)} times, x {x:.1e} of the swing, z {z:.2g} ulp, vx {vx:.1e}, {megabytes:.3f} MB")
 
 
+@pytest.mark.parametrize("name", SHIPPED)
+def test_z_is_within_two_ulp_of_the_length(name):
+    golden = load(name)
+    assert golden.function.bound["z"] <= 2 * np.spacing(float(golden.scene.exact.length))
+
+
+def test_a_piece_on_which_z_rounds_much_is_halved():
+    function = evaluator(proved_function(short("force_free", "10")))
+    assert function.bound["z"] <= 2 * np.spacing(1.0)
+
+
 def test_the_tube_and_the_orders_that_are_left_out_count(monkeypatch):
     scene = short("paris", "60")
     usual = evaluator(proved_function(scene)).bound
