@@ -27,7 +27,7 @@ from compare.score.experiments.findings import MOST_RUNS
 from compare.score.verdict import Score
 from reference import load_scene
 
-SCHEMA = json.loads(files("compare.report.suite").joinpath("score.schema.json").read_text("utf-8"))
+SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
 FEW = (1, 6, 17, 33)  # of the programs: in Python, C, JavaScript and C, one of them with {setting}
 SEEDS = (101, 102, 103)
 RTOL = 1e-6  # {setting} of programs that take a tolerance
