@@ -12,6 +12,7 @@ import pytest
 from compare.approximations import APPROXIMATIONS
 from compare.methods import METHODS
 from reference import InputError
+from reference.system import imports
 from reference.system.imports import Registry
 
 INTERFACES = {
@@ -96,3 +97,28 @@ def test_listing_loads_no_heavy_library(name):
     code = f"{listed}; print(set(sys.modules) & set({heavy.split()}))"
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert process.stdout.strip() == "set()"
+
+
+SWEEP = "sweep paris --over latitude=0,5 --t-end 60 --engine heyoka"
+
+
+@pytest.mark.parametrize(
+    ("line", "module", "extra"),
+    [
+        ("show paris --equations", "flint", "enclose"),
+        ("show paris --uncertain length=±0.001", "flint", "enclose"),
+        ("generate paris --t-end 60 --out there", "flint", "enclose"),
+        (f"{SWEEP} --cluster local:2", "distributed", "cluster"),
+        ("generate --all --out there --cluster local:2", "distributed", "cluster"),
+        (f"{SWEEP} --out there", "pyarrow", "sweep"),
+        ("sweep paris --rows rows.parquet", "pyarrow", "sweep"),
+    ],
+)
+def test_a_command_whose_package_is_missing_names_the_extra(foucault, monkeypatch, tmp_path, line, module, extra):
+    found = imports.find_spec
+    monkeypatch.setattr(imports, "find_spec", lambda name: None if name == module else found(name))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rows.parquet").touch()
+    status, out, err = foucault(*line.split())
+    assert (status, out) == (2, "")
+    assert f"pip install 'foucault-reference[{extra}]'" in err and module in err
