@@ -43,14 +43,14 @@ __all__ = ["APPROXIMATIONS", "METHODS", "Candidate", "Score", "assert_agrees", "
 __getattr__, __dir__ = lazy(
     __name__,
     {
-        "APPROXIMATIONS": "approximations",
-        "Candidate": "candidates.candidate",
-        "METHODS": "methods",
-        "Score": "score.verdict",
-        "assert_agrees": "testing",
-        "judge": "score.judge",
-        "plot": "report.plot",
-        "read": "candidates.read",
-        "study": "studies.study",
+        "approximations": "APPROXIMATIONS",
+        "candidates.candidate": "Candidate",
+        "candidates.read": "read",
+        "methods": "METHODS",
+        "report.plot": "plot",
+        "score.judge": "judge",
+        "score.verdict": "Score",
+        "studies.study": "study",
+        "testing": "assert_agrees",
     },
 )

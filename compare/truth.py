@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from reference import DatasetError, FoucaultError, Golden, InputError, Scene, Solution, load, load_scene
-from reference.dataset.dense import WITHIN, Dense, dense
+from reference.dataset.golden import WITHIN, Dense, dense
 from reference.model.constants import constants_in_double
 from reference.model.force import rates
 from reference.numbers.columns import POSITION, STATE, VELOCITY
@@ -25,7 +25,9 @@ from reference.scenes.shipped import WITHOUT_FUNCTION, data_root
 from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-DENSE_FORMAT = b"dense 6"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
+DENSE_FORMAT = (
+    b"dense 6"  # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
+)
 STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 

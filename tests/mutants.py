@@ -37,10 +37,9 @@ VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
 TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
-    "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {VERIFY}",
-    "reference/dataset/checks: manifest_check": f"{LIMITS} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
+    "reference/dataset/checks: scene_check": f"{LIMITS} {TIGHT} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
     "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION} {SOLVER}sections.py",
-    "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
+    "reference/dataset: verify files golden place render manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
     "compare/score: errors": f"{SCORE}errors.py",

@@ -14,7 +14,7 @@ from forgery import forge, seal
 from places import ROOT
 
 import reference
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
 
 GOLDEN = ROOT / "data/golden"

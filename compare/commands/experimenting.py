@@ -26,7 +26,7 @@ DOCUMENT, GIVEN = "experiments.json", "as_given"  # in the folder
 
 
 @dataclass(frozen=True)
-class Program:
+class Runnable:
     """Somebody's program, to be run more than once.
 
     Attributes:

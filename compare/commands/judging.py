@@ -1,4 +1,4 @@
-"""How `foucault score` judges: files, a program, an approximation, transits alone, a suite; each ends in an outcome."""
+"""How `foucault score` judges: files, a program, an approximation, a suite, passages; uncertain inputs too."""
 
 from __future__ import annotations
 
@@ -9,12 +9,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import typer
 
-from reference import FoucaultError, InputError, Scene, load_scene
+from reference import FoucaultError, InputError, Ranges, Scene, load_ranges, load_scene
 from reference.commands.progress import progress
-from reference.commands.terminal import stoppable
+from reference.commands.terminal import emit, refuse, stoppable
+from reference.dataset.place import RANGES, golden_folder
 from reference.errors import Stopped, plain
 from reference.numbers.precision import Array
+from reference.solver.ranges import Intervals
+from reference.solver.uncertain import exact_texts, widths_of
 
 from .. import judge
 from ..approximations import APPROXIMATIONS, Motion
@@ -22,11 +26,12 @@ from ..candidates.candidate import COLUMNS, Candidate, candidate_of
 from ..candidates.external import Timing, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
-from ..report.suite import outcome_forms
+from ..report import suite
 from ..score.baseline import document_of, rows_of
-from ..score.outcome import Outcome
-from ..score.verdict import Score
-from .experimenting import GIVEN, Program
+from ..score.measured import APART, measured
+from ..score.passages import score_passages
+from ..score.verdict import Outcome, Score
+from .experimenting import GIVEN, Runnable
 from .options import announce
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
@@ -34,7 +39,7 @@ TRANSITS = ".transits"
 DOCUMENT = ".json"  # of a baseline that is no trajectory
 
 
-class Trial(NamedTuple):
+class ToJudge(NamedTuple):
     """A candidate to judge, with its transits or transits alone, how long its program took, and its baseline."""
 
     scene: Scene
@@ -105,7 +110,7 @@ class Judging:
     options: dict[str, Any]
     baseline: str | None = None
 
-    def outcome(self, name: str, scene_id: str, trial: Callable[[], Trial]) -> Outcome:
+    def outcome(self, name: str, scene_id: str, trial: Callable[[], ToJudge]) -> Outcome:
         """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
         try:
             scene, candidate, times, timing, baseline = trial()
@@ -122,7 +127,7 @@ class Judging:
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(name, scene.id, lambda: Trial(scene, self._read(name), times, None, self._earlier()))
+        return self.outcome(name, scene.id, lambda: ToJudge(scene, self._read(name), times, None, self._earlier()))
 
     def _earlier(self) -> Candidate | str | None:
         """Read the baseline, if there is one, unless it is a document."""
@@ -131,18 +136,18 @@ class Judging:
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
-        return self.outcome(name, scene.id, lambda: Trial(scene, None, self.times(name)))
+        return self.outcome(name, scene.id, lambda: ToJudge(scene, None, self.times(name)))
 
-    def program(self, program: Program, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
+    def program(self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
         """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
         scene = program.scene
 
-        def trial() -> Trial:
+        def trial() -> ToJudge:
             times = self.times(transits)
             candidate, timing = printed(program.command, name, repeats)
             if self.baseline is not None and not Path(self.baseline).is_file():
-                return Trial(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
-            return Trial(scene, candidate, times, timing, self._earlier())
+                return ToJudge(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
+            return ToJudge(scene, candidate, times, timing, self._earlier())
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
             output, timing = timed(program.words(scene, command), program.timeout, repeats)
@@ -165,17 +170,17 @@ class Judging:
             expected = "an approximation of the motion"
             raise InputError("--approximation", word, expected, "This one gives a number, not a motion.")
 
-        def trial() -> Trial:
+        def trial() -> ToJudge:
             times = [float(t) for t in scene.exact.grid]
             columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-            return Trial(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
+            return ToJudge(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
 
         return self.outcome(word, scene.id, trial)
 
     def suite(self, folder: Path, out: Path | None, option: str = "--suite") -> list[Outcome]:
         """Judge the files of a folder by the scenes that they are named after, and write the page."""
         if out is not None:
-            outcome_forms.check(out)
+            suite.check(out)
         outcomes, earlier = [], self._earlier_suite()
         for files in suite_files(folder, option):
             name = Path(files.scene).stem
@@ -185,7 +190,7 @@ class Judging:
             error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
             outcomes.append(Outcome(name, name, error=error))
         if out is not None:
-            outcome_forms.write(outcomes, out)
+            suite.write(outcomes, out)
         return outcomes
 
     def _earlier_suite(self) -> dict[str, Score | dict[str, Any]]:
@@ -198,9 +203,9 @@ class Judging:
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or outcome.document() for outcome in outcomes}
 
-    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> Trial:
+    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> ToJudge:
         scene, times = load_scene(files.scene), self.times(files.transits)
-        return Trial(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
+        return ToJudge(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
@@ -208,3 +213,76 @@ class Judging:
 
     def _read(self, name: str | Path) -> Candidate:
         return read(name, columns=self.naming.columns, units=self.naming.units)
+
+
+def ranges_named(word: str | None) -> Ranges | None:
+    """Return the ranges that a word names, an id or a folder; None if it names none."""
+    folder = None if word is None else golden_folder(word)
+    return load_ranges(folder) if folder is not None and (folder / RANGES).is_file() else None
+
+
+def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
+    """Return ranges that have no times yet.
+
+    Raises:
+        InputError: an input, or a width.
+    """
+    return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), Intervals((), ()), [], (), "")
+
+
+def hold(
+    files: list[str],
+    transits: str | None,
+    section: str | None,
+    ranges: Ranges,
+    naming: Naming,
+    tolerance: float | None,
+    as_json: bool,
+) -> None:
+    """Hold files, or transits alone, against ranges, and print what comes of it; exit status 1 where one disagrees."""
+    if not files and transits is None:
+        raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
+    if section is not None:
+        section = _word(section, transits, ranges.scene)
+    times, found = None if transits is None else read_transits(transits, naming.units), []
+    names: list[str | None] = [*files] or [None]
+    for file in names:
+        rows = None if file is None else read(Path(file), columns=naming.columns, units=naming.units)
+        with stoppable("nothing was written"), progress() as show:
+            report: Any = show(f"the proof of {ranges.scene.id}", float(ranges.scene.exact.t_end))
+            found.append(measured(rows, times, ranges, tolerance or 0.0, str(transits), report, section))
+    if as_json:
+        emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
+    else:
+        for line in (line for one in found for line in one.lines()):
+            typer.echo(line)
+    if any(one.verdict == APART for one in found):
+        raise typer.Exit(1)
+
+
+def hold_passages(
+    transits: str | None, section: str, scene: Scene, naming: Naming, tolerance: float | None, as_json: bool
+) -> None:
+    """Score the passages of a section, and print what comes of it; exit status 1 where they disagree."""
+    section = _word(section, transits, scene)
+    times = read_transits(str(transits), naming.units)
+    with stoppable("nothing was written"), progress() as show:
+        report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
+        found = score_passages(str(transits), times, scene, section, tolerance, announce, report)
+    if as_json:
+        emit(found.document())
+    else:
+        for line in found.lines():
+            typer.echo(line)
+    if not found.agrees:
+        raise typer.Exit(1)
+
+
+def _word(section: str, transits: str | None, scene: Scene) -> str:
+    """Return the word of the one section that transits are passages of, as scenes write it."""
+    if transits is None:
+        refuse({"--section": section}, "without --transits")
+    words = scene.with_values({"run.sections": section}).run.sections or ()
+    if len(words) != 1:
+        raise InputError("--section", section, "one section", "Score the passages of each by themselves.")
+    return words[0]

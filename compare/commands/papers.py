@@ -14,7 +14,7 @@ import typer
 from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, option, stoppable
 
-from ..papers.foucpend.options import SWITCHES, Switch
+from ..papers.foucpend_options import SWITCHES, Switch
 from .options import finish
 
 OUT = option("--out", "Write a page with figures, CSV and JSON into this folder (extra plot).", "DIR")

@@ -62,9 +62,9 @@ def plot(
 
     A scene without a dataset is solved first. A file alone gives path and swing plane.
     """
-    from ..report.charts.drawing import check_target
-    from ..report.charts.motion_pictures import motion_picture, panels
+    from ..report.drawing import check_target
     from ..report.folder import write_file
+    from ..report.motion_pictures import motion_picture, panels
 
     wanted = listed(what, "--what")
     for word in wanted or ():

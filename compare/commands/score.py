@@ -27,7 +27,7 @@ from reference.commands.terminal import (
 from .options import announce, check_positive, listed
 
 if TYPE_CHECKING:
-    from ..score.outcome import Outcome
+    from ..score.verdict import Outcome
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats
@@ -148,7 +148,7 @@ def command(
     --repeats and ranges. Exit status 0: agrees (with --baseline: no worse), 1: disagrees, 2: cannot be judged.
     """
     from ..candidates.layout import Naming
-    from .measuring import hold, hold_passages, ranges_named, ranges_to_prove
+    from .judging import hold, hold_passages, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
@@ -201,10 +201,10 @@ def command(
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
-        from ..report.charts.drawing import check_target
+        from ..report.drawing import check_target
 
         check_target(plot)
-    from .experimenting import Program
+    from .experimenting import Runnable
     from .judging import Judging
 
     end = None if t_end is None else float(scene.exact.t_end)
@@ -216,7 +216,7 @@ def command(
         times = judging.times(transits) if candidates else None
         outcomes = [judging.file(scene, file, times) for file in candidates or ()]
         if run is not None:
-            program = Program(scene, run, setting, timeout, out)
+            program = Runnable(scene, run, setting, timeout, out)
             if experiments:
                 program.check()
             outcomes.append(judging.program(program, name or "the program", transits, repeats, experiments))
@@ -239,7 +239,7 @@ def command(
 
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
-    from ..report.suite.outcome_forms import annotation, append_summary, suite_document, summary, write_junit
+    from ..report.suite import annotation, append_summary, suite_document, summary, write_junit
 
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:

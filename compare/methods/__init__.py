@@ -22,8 +22,7 @@ from collections.abc import Mapping, Sequence
 from reference import InputError
 from reference.system.imports import Registry
 
-from .external import LONGEST_NAME, external, file_name
-from .method import Family, Method, Outcome, Work, available
+from .method import LONGEST_NAME, Family, Method, Outcome, Work, available, external, file_name
 from .rhs.problem import FirstOrderSystem, Problem, suited
 
 __all__ = [

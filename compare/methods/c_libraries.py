@@ -27,7 +27,7 @@ from ..candidates.external import run_program
 from .library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
 from .rhs.problem import Problem
-from .rhs.straight_line import Program
+from .rhs.straight_line import StraightLine
 
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-w")
 HEAD = 4  # numbers before the states: CPU seconds, steps, calls of the right-hand side, rows
@@ -94,7 +94,7 @@ def source(problem: Problem, parts: Sequence[str]) -> str:
     return "\n".join([sizes + (folder / "host.hpp").read_text(encoding="utf-8"), *functions, *texts])
 
 
-def _function(name: str, program: Program, variables: int, parameters: int, before: str = "") -> str:
+def _function(name: str, program: StraightLine, variables: int, parameters: int, before: str = "") -> str:
     """Return straight-line code as a function of a state that fills an array."""
     lines = [f"x{i} = x[{i}]" for i in range(variables)] + [f"k{i} = k[{i}]" for i in range(parameters)]
     for line in program.lines:

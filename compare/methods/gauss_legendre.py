@@ -16,10 +16,10 @@ import numpy as np
 
 from reference.numbers.precision import Array, context
 
+from .fixed_step import fixed_step, steps_between
 from .method import Family, Outcome, Work, outcome
 from .rhs.problem import Problem
-from .runge_kutta.fixed_step import fixed_step, steps_between
-from .runge_kutta.tableau import TableauError
+from .tableau import TableauError
 
 STAGES = 8
 MOST_ITERATIONS = 60

@@ -1,21 +1,32 @@
-"""Where a library's headers are here, and of which version they are.
+"""Compiled libraries: where their headers are here and of which version, and what they write to stdout and stderr.
 
 Looked into are the folders of the variables CPATH and CPLUS_INCLUDE_PATH, which compilers obey as well, then this
-Python's environment, then the system.
+Python's environment, then the system. What they write is captured below Python's own streams, but only in a process
+that was started to run methods, as descriptors belong to the whole process: in a user's process libraries print where
+they like.
 """
 
 from __future__ import annotations
 
+import ctypes
 import os
 import re
 import shlex
 import shutil
 import sys
 import sysconfig
+import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 SYSTEM = ("/usr/local/include", "/usr/include", "/opt/homebrew/include")
+_turn = threading.RLock()  # descriptors are the process's: of two threads the last to leave would restore the other's
+
+
+own_process = False  # set in a process that was started to run methods
 
 
 @dataclass(frozen=True)
@@ -98,3 +109,41 @@ SUNDIALS = Library(
     "SUNDIALS_VERSION",
     "apt install libsundials-dev, 6 or newer",
 )
+
+
+class Capture:
+    """The output of a library; `data` is complete when the capture has ended."""
+
+    def __init__(self) -> None:
+        self.data = b""
+
+    def words(self, longest: int = 300) -> str:
+        """Return the output on one line, cut to `longest` characters, to be quoted in a message."""
+        return " ".join(self.data.decode(errors="replace").split())[:longest]
+
+
+@contextmanager
+def captured(*descriptors: int) -> Iterator[Capture]:
+    """Redirect file descriptors (1 for stdout, 2 for stderr) to a file while a library runs, in one thread at a time.
+
+    What other threads print meanwhile is captured too. In a user's process nothing is.
+    """
+    if not own_process:
+        yield Capture()
+        return
+    with _turn, tempfile.TemporaryFile() as handle:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        originals = [os.dup(descriptor) for descriptor in descriptors]
+        capture = Capture()
+        try:
+            for descriptor in descriptors:
+                os.dup2(handle.fileno(), descriptor)
+            yield capture
+        finally:
+            ctypes.CDLL(None).fflush(None)  # empties the buffers of C's own streams
+            for descriptor, original in zip(descriptors, originals, strict=True):
+                os.dup2(original, descriptor)
+                os.close(original)
+            handle.seek(0)
+            capture.data = handle.read()

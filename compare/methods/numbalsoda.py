@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.methods.capture import captured
+from compare.methods.library import captured
 
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 from .rhs.problem import Problem

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from .fixed_step import explicit, fixed_step, runge_kutta
 from .method import TWO_HUNDRED_STEPS, Family
-from .runge_kutta.fixed_step import explicit, fixed_step, runge_kutta
-from .runge_kutta.tableau import Tableau, fractions, triangle
+from .tableau import Tableau, fractions, triangle
 
 TABLEAU = Tableau(
     name="rk4",

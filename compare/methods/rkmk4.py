@@ -13,9 +13,9 @@ from typing import Any
 from reference.model.algebra import add, cross, dot, plus, product, scale, subtract
 from reference.model.constants import Vector, is_zero
 
+from .fixed_step import Derivatives, combined, explicit, fixed_step, moved
 from .method import TWO_HUNDRED_STEPS, Family
 from .rk4 import TABLEAU
-from .runge_kutta.fixed_step import Derivatives, combined, explicit, fixed_step, moved
 
 
 def turned(n: Vector, u: Vector) -> Vector:

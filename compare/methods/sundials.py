@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from compare.methods.capture import captured
+from compare.methods.library import captured
 from reference.numbers.precision import Array
 
 from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome

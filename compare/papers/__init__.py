@@ -5,10 +5,9 @@ three methods (`three_methods.py`). A module of theirs holds a few sections; its
 every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
 
 - `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
-- `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
+- `points.py`: random points at which formulas are evaluated, the Paris pendulum, and runs of the reference;
 - `first_principles.py`: the yardstick of formulas, from the Lagrangian and its linear limit;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
-- `runs.py`: runs of the reference that numbers and sentences rest on;
 - `figures.py`: the first paper's figures, drawn again, and their captions;
 - `papers_page.py`: the rows and the figures as a page, and the rows as CSV and JSON.
 
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["build", "declared", "rows"]
 
-MATHAR = ("kinematics", "lagrangian", "rest", "slow", "paris", "appendix_a")
+MATHAR = ("kinematics", "lagrangian", "rest", "paris", "appendix_a")
 GASTEBOIS = ("rotation", "small", "swings", "lagrangian")
 SECTIONS = (*(f"mathar.{name}" for name in MATHAR), *(f"gastebois.{name}" for name in GASTEBOIS), "three_methods")
 Report = Callable[[str, int, int], None]
@@ -67,7 +66,7 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     Raises:
         InputError: matplotlib or numba is not installed, or the folder holds another page or cannot be written.
     """
-    from ..report.charts.drawing import check_matplotlib
+    from ..report.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files
     from .figures import FIGURES, check_methods, svg
     from .papers_page import files_of

@@ -15,7 +15,7 @@ from ..approximations import APPROXIMATIONS
 from ..studies.approximation_errors import TimeRow, error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, UNITS, SweepRow, sweep
 from ..studies.approximation_limits import limits as limits_of
-from .charts.drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
+from .drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
 from .folder import Report
 from .page import Html, Table, figure, page, paragraph, section
 

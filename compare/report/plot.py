@@ -18,22 +18,10 @@ from reference.scenes.scene import AnyScene, as_scene
 from ..candidates.candidate import Candidate
 from ..score.verdict import Score
 from ..truth import golden_of
-from .charts.drawing import (
-    COLOURS,
-    GUIDE,
-    Line,
-    band,
-    check_target,
-    draw,
-    legend,
-    line_style,
-    logarithmic,
-    picture,
-    sheet,
-)
-from .charts.motion_pictures import motion_picture, panels
+from .drawing import COLOURS, GUIDE, Line, band, check_target, draw, legend, line_style, logarithmic, picture, sheet
 from .folder import write_file
 from .motion import Motion
+from .motion_pictures import motion_picture, panels
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
 

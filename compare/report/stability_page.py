@@ -16,9 +16,9 @@ from ..studies.campaign import machine
 from ..studies.long_runs import LongRun, laws
 from ..studies.stability import WRONG, Cell
 from ..studies.users_program import NUMBER
-from .charts.stability_charts import LETTERS, error_growth, heat_map
 from .folder import Report
 from .page import Html, Table, facts, figure, findings, page, paragraph, section
+from .stability_charts import LETTERS, error_growth, heat_map
 from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, tidy, words
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)

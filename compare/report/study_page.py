@@ -56,7 +56,7 @@ def _lead(document: dict[str, Any]) -> Html:
 def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
     if importlib.util.find_spec("matplotlib") is None:
         return [section("Pictures", paragraph(TEXTS["no_pictures"]))]
-    from .charts import study_charts
+    from . import study_charts
 
     pictures = []
     for chart, words in TEXTS["pictures"].items():

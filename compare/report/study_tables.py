@@ -19,7 +19,7 @@ from reference.system.documents import texts_of
 from ..methods import METHODS
 from ..studies.row import Row
 from ..studies.stability import Cell
-from ..studies.study import Order, orders
+from ..studies.study import ObservedOrder, orders
 from ..studies.users_program import FILE
 from .page import Html, Table, strong
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
@@ -119,7 +119,7 @@ def advice(statuses: Collection[Status]) -> list[str]:
 def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str] = ()) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
     listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
-    of_method: dict[str, Order] = {}
+    of_method: dict[str, ObservedOrder] = {}
     for order in orders(rows, bound_m):
         of_method.setdefault(order.method, order)  # the first formulation is the method's own
     body = [
@@ -136,7 +136,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], fi
     return Table(columns, [*body, *rest]).html(TEXTS["orders"])
 
 
-def observed(order: Order | None) -> str:
+def observed(order: ObservedOrder | None) -> str:
     """Return the order that runs show, with its standard error; a dash where they do not."""
     if order is None or order.observed is None:
         return ABSENT

@@ -14,7 +14,7 @@ from reference.numbers.precision import Array, digits_that_hold
 from reference.scenes.scene import unit_of
 from reference.status import Status
 
-from .charts.drawing import BLUE, RULE, check_target, picture, sheet
+from .drawing import BLUE, RULE, check_target, picture, sheet
 from .folder import write_file
 from .page import Table
 

@@ -17,9 +17,8 @@ from reference import InputError
 from reference.system.documents import json_document
 
 from .explanation.findings import AS_IF
-from .outcome import REFUSED
 from .scored import WHOLE, Since
-from .verdict import Score, document, explained
+from .verdict import REFUSED, Score, document, explained
 
 SHARE = 0.1  # of a change: what is smaller is no part of it
 WOBBLE = 10.0  # times a change: a cause that moves the bob by more has not come with it

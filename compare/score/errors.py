@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference import Golden, Scene, Solution
-from reference.dataset.dense import Dense
+from reference.dataset.golden import Dense
 from reference.model.constants import constants_in_double
 from reference.model.force import energy, rates
 from reference.numbers.precision import Array

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
-from reference.dataset.dense import WITHIN, Dense
+from reference.dataset.golden import WITHIN, Dense
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.numbers.precision import Array
@@ -100,8 +100,7 @@ def judge(
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
     _check_times(candidate, scene)
-    scale = _beyond_the_cord(candidate, scene) if candidate.positions else None
-    if scale is not None:
+    if candidate.positions and (scale := _beyond_the_cord(candidate, scene)):
         candidate = replace(candidate, conventions=(*candidate.conventions, scale))
     problem, why = _reading(candidate, scene, inputs)
     for golden, truth in _truths(candidate, problem, times is not None, announce, report):
@@ -211,8 +210,7 @@ def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     if reach <= BEYOND * length:
         return None
     far = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
-    scale = _scale(candidate, scene)
-    if scale is None:
+    if (scale := _scale(candidate, scene)) is None:
         return Deviation("beyond_the_cord", f"{far}: pixels, or another unit? Metres are wanted")
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
@@ -226,8 +224,7 @@ def _scale(candidate: Candidate, scene: Scene) -> float | None:
     if candidate.t[0] != 0:
         return None
     x, y, _ = (float(part) for part in Start.of(scene.exact, PLACEHOLDER_BITS).position)
-    at = complex(candidate.columns["x"][0], candidate.columns["y"][0])
-    release = complex(x, y)
+    at, release = complex(candidate.columns["x"][0], candidate.columns["y"][0]), complex(x, y)
     if not release or not at:
         return None
     ratio = at / release
@@ -242,9 +239,8 @@ def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, st
         return scene, "as the scene says"
     if candidate.extended:
         return scene, "its numbers have more digits than a double: it can hold the decimal inputs"
-    return scene.with_values(
-        ["inputs=binary64"]
-    ), "its numbers are doubles, and so its inputs must have been rounded to doubles"
+    why = "its numbers are doubles, and so its inputs must have been rounded to doubles"
+    return scene.with_values(["inputs=binary64"]), why
 
 
 def _rest(scene: Scene) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from reference import InputError, Ranges
 from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
-from reference.solver.ranges import solve_ranges
+from reference.solver.uncertain import solve_ranges
 
 from ..candidates.candidate import Candidate
 

@@ -27,7 +27,7 @@ from reference.system import cache
 from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
-from ..methods import METHODS, capture
+from ..methods import METHODS, library
 from .row import Record
 
 JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
@@ -113,7 +113,7 @@ def campaign(
 
 def measured(emit: Emit, measurement: Measurement[Item, Result], items: Sequence[Item]) -> None:
     """Measure items one after the other, in a child process, and send each result."""
-    capture.own_process = True
+    library.own_process = True
     for item in items:
         emit(measurement.measure(item))
 
@@ -194,8 +194,8 @@ def machine() -> dict[str, str]:
             description[name] = version(name)
         except PackageNotFoundError:
             description[name] = "not installed"
-    for library in {method.native.name: method.native for method in METHODS.values() if method.native}.values():
-        description[library.name] = library.version or "not installed"
+    for native in {method.native.name: method.native for method in METHODS.values() if method.native}.values():
+        description[native.name] = native.version or "not installed"
     return description
 
 

@@ -100,12 +100,12 @@ def long_runs(
         scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL, grid=True
     )
     recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
-    runs = _Runs(recipe, PATIENCE_S, scene, golden.path)
+    runs = _LongRuns(recipe, PATIENCE_S, scene, golden.path)
     return campaign(runs, items, journal_path=journal_path, report=report)
 
 
 @dataclass(frozen=True)
-class _Runs(OnScene[Item, LongRun]):
+class _LongRuns(OnScene[Item, LongRun]):
     """Runs of methods over the whole span, with their errors at the grid times."""
 
     kind = LongRun

@@ -27,8 +27,7 @@ from reference.status import Status
 
 from ..methods import Method, Outcome, Problem, Work, available, suited
 from .campaign import Item, Measurement, Result, load_per_core
-from .method_errors import GridTruth, h_drift
-from .row import FAILURES, Row, failure
+from .row import FAILURES, GridTruth, Row, failure, h_drift
 
 PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cost
 LEAST_ROWS = 4  # grid rows in any span

@@ -1,14 +1,28 @@
-"""A row of a study: one method at one setting, its status (of a failure too), its errors and its cost."""
+"""A row of a study: one method at one setting, its status (of a failure too), cost, errors against the golden grid."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from fractions import Fraction
+from functools import cached_property
 from typing import Any, Self
 
-from reference import FoucaultError, IntegrationError
+import numpy as np
+
+from reference import FoucaultError, Golden, InputError, IntegrationError, Scene
+from reference.model.constants import constants, constants_in_double
+from reference.model.force import acceleration, invariant
+from reference.numbers.precision import Array, context, to_mpf
 from reference.status import Status
 
+from ..candidates.candidate import COLUMNS
+from ..methods import Outcome
+from ..observed.position_error import Column, difference, distance
+
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
+H_ROWS = 64  # rows at which h is evaluated
+_ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax
+_NUDGE = 1e-6  # of the time in which the motion changes
 
 
 def failure(error: Exception) -> tuple[Status, str]:
@@ -98,3 +112,102 @@ class Row(Record):
     def failed(self) -> bool:
         """True if it is not known what the whole span costs."""
         return self.status not in (Status.OK, Status.EXTRAPOLATED)
+
+
+@dataclass(frozen=True)
+class GridTruth:
+    """The golden grid states and transits up to a time, with which a method's run is compared.
+
+    Args:
+        golden: of the scene, its inputs read as the methods read them.
+        t_end: end of the span in s, a time of the dataset's grid.
+
+    Raises:
+        InputError: the dataset has no such time, or none before it.
+    """
+
+    golden: Golden
+    t_end: float
+
+    def __post_init__(self) -> None:
+        if len(self.times) < 2 or self.times[-1] != self.t_end:
+            last = f"{self.times[-1]:g} s" if len(self.times) else "none"
+            expected = f"a dataset whose grid has t = 0 and t = {self.t_end:g} s"
+            raise InputError("grid", f"{len(self.times)} times, the last {last}", expected, "Solve the scene to there.")
+
+    @cached_property
+    def times(self) -> Array:
+        """Grid times of the span in s."""
+        t: Array = self.golden.t
+        return np.asarray(t[t <= self.t_end])
+
+    @cached_property
+    def exact(self) -> list[list[Fraction]]:
+        """Columns x, y, z in m as printed, at the grid times."""
+        return [self.golden.exact(name)[: len(self.times)] for name in "xyz"]
+
+    @cached_property
+    def transits(self) -> Array:
+        """Times of the transits within the span in s."""
+        t = self.golden.transits["t"]
+        return np.asarray(t[t < self.times[-1]])
+
+    @cached_property
+    def transits_rounded_by(self) -> Array:
+        """Distance of the doubles in `transits` from the printed times, in s."""
+        return difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])
+
+    def position_errors(self, outcome: Outcome) -> Array:
+        """Return the distance from the truth at each row, in m, without cancellation in any number type."""
+        columns = [_column(outcome, name) for name in "xyz"]
+        return distance(
+            difference(column, true[: len(column)]) for column, true in zip(columns, self.exact, strict=True)
+        )
+
+    def transit_errors(self, scene: Scene, outcome: Outcome) -> tuple[Array, float]:
+        """Return the error of each transit's time in s, in any number type, and what is resolved of it in s.
+
+        The error is that of one Newton step from the state at the true time. What is resolved is limited by the
+        rounding of its terms, and by what Newton's step leaves out.
+
+        Args:
+            scene: its inputs read as the method read them.
+            outcome: of a run with output at t = 0 and at `transits`.
+        """
+        states, vx = outcome.states[1:], np.array([float(part) for part in _column(outcome, "vx")[1:]])
+        k = constants_in_double(scene.exact)
+        n, v = (states[:, parts] / k.length for parts in (slice(0, 3), slice(3, 6)))
+        a = np.array(np.broadcast_arrays(*acceleration(tuple(n.T), tuple(v.T), k))).T
+        nudge = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())  # s, in which little changes
+        ahead, behind = (
+            np.asarray(acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]) for dt in (nudge, -nudge)
+        )
+        away = self.transits_rounded_by
+        with np.errstate(divide="ignore", invalid="ignore"):
+            errors_s = np.abs(away - vx / (a[:, 0] * k.length))
+            curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))
+        floors = _ROUNDINGS * np.finfo(float).eps * np.abs(away) + np.where(np.isfinite(curved), curved, 0.0)
+        return np.where(np.isfinite(errors_s), errors_s, np.inf), float(floors.max())
+
+
+def h_drift(scene: Scene, outcome: Outcome) -> float | None:
+    """Return the drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
+    if scene.exact.drag:
+        return None
+    # 27 bits beyond a double, or 64 beyond an exact state: h is a small difference of large terms
+    ctx = context(80 if outcome.exact is None else outcome.exact.bits + 64)
+    k = constants(scene.exact, ctx)
+    columns = [_column(outcome, name) for name in COLUMNS]
+    values, kinetic = [], ctx.mpf(0)
+    for i in np.unique(np.linspace(0, len(columns[0]) - 1, H_ROWS).astype(int)):
+        state = [column[i] for column in columns]
+        numbers = [(to_mpf(x, ctx) if isinstance(x, Fraction) else ctx.mpf(float(x))) / k.length for x in state]
+        n, v = tuple(numbers[:3]), tuple(numbers[3:])
+        values.append(invariant(n, v, k))
+        kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
+    return float(max(abs(value - values[0]) for value in values) / kinetic) if kinetic else None
+
+
+def _column(outcome: Outcome, name: str) -> Column:
+    """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
+    return outcome.states[:, COLUMNS.index(name)] if outcome.exact is None else outcome.exact.exact(name)

@@ -28,8 +28,7 @@ from . import users_program
 from .campaign import Counted, Measurement, campaign
 from .character import Character, character, reason_of
 from .measure import Bench
-from .method_errors import GridTruth
-from .row import Record, Row
+from .row import GridTruth, Record, Row
 from .study_plan import declared, on_doubles
 
 LIMIT_S = 3.0  # CPU seconds of a cell

@@ -83,7 +83,7 @@ class Study:
 
 
 @dataclass(frozen=True)
-class _Runs(OnScene[Item, Row]):
+class _MethodRuns(OnScene[Item, Row]):
     """Runs of methods and of programs on a scene, with their costs and errors."""
 
     limit_s: float
@@ -147,7 +147,7 @@ def study(
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
     commands = programs or {}
-    runs = _Runs(
+    runs = _MethodRuns(
         [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
         PATIENCE * limit_s,
         problem,
@@ -164,7 +164,7 @@ def study(
 
 
 @dataclass(frozen=True)
-class Order:
+class ObservedOrder:
     """Declared and observed order of a method in a formulation.
 
     Attributes:
@@ -185,7 +185,7 @@ class Order:
     settings: int = 0
 
 
-def orders(rows: Sequence[Row], bound_m: float) -> list[Order]:
+def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
     """Return the orders of all methods that declare one, each in each of its formulations.
 
     Args:
@@ -199,13 +199,13 @@ def orders(rows: Sequence[Row], bound_m: float) -> list[Order]:
     return [_order(*key, group, bound_m) for key, group in groups.items()]
 
 
-def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -> Order:
+def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -> ObservedOrder:
     declared = METHODS[method].order or 0
     laws = [law for law in _laws(rows, bound_m) if law.standard_error <= TOLD_APART]
     if not laws:
-        return Order(method, formulation, declared)
+        return ObservedOrder(method, formulation, declared)
     law = max(laws, key=lambda law: (law.points, -law.standard_error))
-    return Order(method, formulation, declared, -law.exponent, law.standard_error, law.points)
+    return ObservedOrder(method, formulation, declared, -law.exponent, law.standard_error, law.points)
 
 
 def _laws(rows: Sequence[Row], bound_m: float) -> Iterator[PowerLaw]:

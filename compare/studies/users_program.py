@@ -21,7 +21,7 @@ from ..candidates.candidate import Candidate, NotFiniteError
 from ..candidates.external import SETTING, FailedError, OutOfTimeError, arguments, run_program
 from ..candidates.read import read, read_stream
 from ..methods import METHODS
-from ..methods.external import LONGEST_NAME
+from ..methods.method import LONGEST_NAME
 from ..observed.position_error import difference, distance
 from ..truth import truth_at
 from .campaign import load_per_core

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from contextlib import ExitStack, closing, suppress
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from ..engines import AUTO, engine_names
-from ..errors import DatasetError, InputError, UnreachableError, in_words
+from ..errors import InputError, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS, Confirmation
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
-from ..status import Status
-from ..system.imports import needed
 from .progress import progress
 from .terminal import (
     BESIDE_RANGES,
@@ -27,7 +22,6 @@ from .terminal import (
     Sections,
     Uncertain,
     Workers,
-    check_workers,
     chosen,
     completion,
     emit,
@@ -40,7 +34,6 @@ from .terminal import (
 )
 
 if TYPE_CHECKING:
-    from ..dataset.shipping import Job, Row
     from ..scenes.scene import Scene
 
 ENGINES = (AUTO, *engine_names())
@@ -49,10 +42,11 @@ ENGINES = (AUTO, *engine_names())
 SCENE = scene_argument(value="[SCENE]")
 OUT = option(
     "--out",
-    "Write to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
+    "Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout); "
+    "with --all the folder of all.",
     "DIR",
 )
-DIGITS = option("--digits", "Digits of the largest number in a column (default: the scene's).", "D")
+DIGITS = option("--digits", "Significant digits of the largest number in each column (default: the scene's).", "D")
 LEVEL = option(
     "--level",
     f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
@@ -61,29 +55,31 @@ LEVEL = option(
 )
 ENGINE = option(
     "--engine",
-    f"Integrate with {in_words(engine_names())}; auto: the fastest, or what made the dataset that ships.",
+    f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed, "
+    "for a scene that ships the one that its dataset was made with.",
     "E",
     completion(lambda: ENGINES),
 )
 NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
 AUDIT = option(
     "--audit/--no-audit",
-    "Prove it again by FLINT alone: the same digits (default: --audit).",
+    "At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
 )
 CONFIRM = option(
     "--confirm",
-    f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
-    "(default: sampled; of what ships, the whole).",
+    f"At the level enclosed, what heyoka confirms in another formulation: {in_words(CONFIRMATIONS)}; "
+    "sampled is a tenth of the grid's intervals (default: sampled; of what ships, as it was made: the whole).",
     "C",
     completion(lambda: CONFIRMATIONS),
 )
 NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
 FUNCTION = option(
     "--function/--no-function",
-    "Make the golden function, the motion at any time, of a proof (default: but for what ships without it).",
+    "At the level enclosed, make the golden function, the motion at any time (default: it is made, "
+    "but for what ships without it).",
 )
-NO_TABLES = option("--no-tables", "Write the golden function alone.")
-ALL = option("--all", "Make all that ship and are missing or not sealed.")
+NO_TABLES = option("--no-tables", "Write the golden function and its manifest alone.")
+ALL = option("--all", "Make every dataset that ships and is missing or not sealed.")
 
 
 def command(
@@ -111,7 +107,7 @@ def command(
 
     Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
     for every value of these inputs.
-    foucault generate --all --workers 2 makes all that ship.
+    foucault generate --all --workers 2 makes all that ship, each in a process of its own; what is there is left.
     """
     options = {
         "--t-end": ("run.t_end", t_end),
@@ -132,7 +128,9 @@ def command(
             "--engine": engine if engine != AUTO else None,
         }
         refuse(unused, "with --all")
-        _generate_all(replacements(None, options), out, workers, cluster, as_json)
+        from .generate_all import generate_all
+
+        generate_all(replacements(None, options), out, workers, cluster, as_json)
         return
     refuse({"--workers": workers, "--cluster": cluster}, "without --all")
     if scene_word is None:
@@ -144,9 +142,9 @@ def command(
         _generate_ranges(scene, level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.record import Making
-    from ..dataset.shipping import making_of, solved, summary
-    from ..dataset.write import check_target, write
+    from ..dataset.record import Making, making_of
+    from ..dataset.write import check_target, summary, write
+    from ..solver.solve import solve
 
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
@@ -168,7 +166,7 @@ def command(
         refuse({"--no-tables": True}, "without --function")
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        solution = solved(scene, making, report)
+        solution = solve(scene, **making.asked_of(scene), report=report)
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
@@ -198,7 +196,8 @@ def _generate_ranges(
         InputError: an input, a width, or the folder.
         UnreachableError: the box is too wide; nothing is written.
     """
-    from ..dataset.ranges import check_ranges_target, default_ranges_folder, period_texts, ranges_id, write_ranges
+    from ..dataset.place import GOLDEN
+    from ..dataset.ranges import check_ranges_target, period_texts, ranges_id, write_ranges
     from ..solver.solve import solve
 
     if out is not None:
@@ -206,7 +205,7 @@ def _generate_ranges(
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         ranges = solve(scene, uncertain=widths, level=level, engine=engine, report=report)
-    folder = out or default_ranges_folder(ranges)
+    folder = out or Path(GOLDEN, ranges_id(ranges))
     with stoppable("nothing half was written"):
         write_ranges(ranges, folder)
     counts = {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)}
@@ -223,82 +222,3 @@ def _generate_ranges(
         typer.echo(f"passages of {word}: {len(found.table)}{left}")
     if period:
         typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")
-
-
-def _generate_all(
-    replaced: Sequence[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
-) -> None:
-    """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
-
-    Raises:
-        InputError: a wrong option, or a folder that cannot be written.
-        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
-    """
-    from ..dataset.shipping import is_done, jobs
-    from ..dataset.write import check_target
-    from ..system.workspace import clear
-
-    check_workers(workers, cluster)
-    every = jobs(replaced, out)
-    with stoppable("what is done stays, and the same command goes on"), progress() as show:
-        for job in every:
-            with suppress(OSError):  # no such folder yet
-                clear(job.folder.parent, job.folder.name)  # a dataset that is done is not written again
-        undone = [job for job in every if not is_done(job)]
-        for job in undone:
-            check_target(job.folder)
-        move, rows = show("datasets", len(undone), "datasets"), []
-        with closing(_made(undone, workers, cluster)) as outcomes:
-            for row in outcomes:
-                rows.append(row)
-                move(len(rows), item=row["scene"])
-                if not as_json:
-                    typer.echo(_line(row))
-    rows.sort(key=lambda row: str(row["dataset"]))
-    failed = [row for row in rows if row["status"] != Status.OK.value]
-    counts = {"datasets": len(every), "sealed_before": len(every) - len(undone), "failed": len(failed)}
-    if as_json:
-        emit({"rows": rows, **counts})
-    else:
-        made = len(undone) - len(failed)
-        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {made} made, {len(failed)} failed")
-    if failed:
-        typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
-        unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
-        raise typer.Exit(UnreachableError.exit_status if unreachable else 1)
-
-
-def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Generator[Row, None, None]:
-    """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
-    from ..dataset.shipping import isolated, made
-    from ..dataset.write import write_texts
-    from ..system.workers import Pool, WorkerDied, as_done, usable_cores
-
-    if not undone:
-        return
-    with ExitStack() as stack:
-        if cluster is not None:
-            needed("distributed", "cluster", "--cluster", cluster, "which sends the work to its workers")
-            from ..sweeps.cluster import scheduler_at
-
-            scheduler = stack.enter_context(scheduler_at(cluster))
-            begin, check = partial(scheduler.submit, isolated), scheduler.check
-        else:
-            pool = stack.enter_context(Pool(min(workers or usable_cores(), len(undone))))
-            begin, check = partial(pool.submit, made), None
-        for job, future in as_done(begin, undone, len(undone), check):
-            try:
-                row, texts = future.result()
-                if texts:
-                    write_texts(texts, job.folder)
-            except WorkerDied as death:
-                row = job.row(Status.CRASHED, str(death))
-            except DatasetError as error:
-                row = job.row(Status.DOUBTFUL, str(error))
-            yield row
-
-
-def _line(row: Row) -> str:
-    if row["status"] != Status.OK.value:
-        return f"{row['dataset']}: {Status(row['status']).words}: {row['reason']}"
-    return f"{row['out']}: {row['transits']} transits, {row['digits']} digits, {row['level']}, {row['cpu_s']:.1f} CPU s"

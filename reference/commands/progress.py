@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import typer
 
 from ..errors import plain, terminal_of
-from ..system.first_use import announced_to
+from ..system.machine_code import announced_to
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
 MEASURED_S = 5.0  # shortest time from which the rest is estimated

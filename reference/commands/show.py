@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 import typer
 
 from ..errors import FoucaultError, InputError, UnreachableError
-from ..scenes.scene import Scene, load_scene, unit_of
+from ..scenes.fields import SceneTable
+from ..scenes.scene import Scene, load_scene, parse_scene
 from ..scenes.shipped import WITHOUT_FUNCTION, flag_meanings, scene_ids
-from ..scenes.template import template as as_template
 from .terminal import AsJson, Assignments, Uncertain, emit, option, refuse, scene_argument, widths_by_name
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean
@@ -19,11 +20,6 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
-FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
-PROVED_DIGITS = 15  # of the highest points from which period and precession follow
-SWING = {"swing_hz": "hz", "period_s": "period", "precession_deg_per_h": "precession", "full_turn_h": "full_turn"}
-MEAN = ("period_s", "precession_deg_per_h", "full_turn_h")  # of uncertain inputs
-CLOSER = 6  # powers of ten by which inputs are less uncertain where the derivatives to them are taken
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -32,6 +28,11 @@ TEMPLATE = option("--template", "Print the scene as a TOML file to begin with, e
 EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
 PROVED = option("--proved", "Also prove intervals of period and precession over the run, which takes as long as that.")
 SENSITIVITY = option("--sensitivity", "Also show how many digits the flow costs between release and end.")
+BEGIN = """\
+# A scene of the Foucault pendulum. docs/scene.md explains each field, drag and the azimuth with an example.
+# Numbers stand in quotes, so that they are taken exactly as written. A field that you leave out has its default.
+"""
+COLUMN = 34  # where comments begin
 
 
 def scenes(as_json: AsJson = False) -> None:
@@ -67,7 +68,7 @@ def command(
         refuse({**unused, "--proved": proved}, "together with --template")
         if scene_word is None:
             refuse({"--set": set_}, "without SCENE")
-        typer.echo(as_template(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
+        typer.echo(scene_file(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
         return
     if scene_word is None:
         raise InputError(
@@ -88,9 +89,13 @@ def command(
 
         document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
     if proved:
-        document["proved"] = _proved(scene)
+        from .proved import proved_swing
+
+        document["proved"] = proved_swing(scene)
     if widths := widths_by_name(uncertain, scene):
-        document["ranges"] = _ranges(scene, widths)
+        from .proved import proved_ranges
+
+        document["ranges"] = proved_ranges(scene, widths)
     if as_json:
         emit(document)
         return
@@ -109,9 +114,13 @@ def command(
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
     typer.echo(_motion_line(document["motion"]))
     if proved:
-        typer.echo(_proved_line(document["proved"]))
+        from .proved import swing_line
+
+        typer.echo(swing_line(document["proved"]))
     if widths:
-        for line in _ranges_lines(document["ranges"]):
+        from .proved import ranges_lines
+
+        for line in ranges_lines(document["ranges"]):
             typer.echo(line)
     if sensitivity:
         lost = document["digits_lost"]
@@ -136,7 +145,7 @@ def _compiled(scene: Scene) -> dict[str, Any]:
         UnreachableError: `generate` refuses the scene.
     """
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.shipping import making_of
+    from ..dataset.record import making_of
     from ..engines.heyoka.system import lines_and_left_out
     from ..solver.choice import first_plan, pilot_for
 
@@ -208,107 +217,6 @@ def _motion(scene: Scene) -> dict[str, Any]:
     return found if len(found) > 1 else {"reason": row["reason"] or "the bob does not swing to and fro"}
 
 
-def _proved(scene: Scene) -> dict[str, Any]:
-    """Return proven intervals of frequency, period, precession and full turn over the run, from its highest points.
-
-    Raises:
-        UnreachableError: the level enclosed is out of reach.
-    """
-    from ..solver.solve import solve
-
-    scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "false"})
-    swing = solve(scene, level="enclosed", digits=PROVED_DIGITS, sections="highest").swing
-    return {"over_s": scene.run.t_end, **_told(swing, SWING)}
-
-
-def _told(swing: Any, names: Iterable[str]) -> dict[str, list[str] | None]:
-    """Return intervals of what a swing has, as text; None where one is open."""
-    from ..dataset.ranges import ends
-
-    found = {name: getattr(swing, SWING[name], None) for name in names}
-    return {name: interval and list(ends(*interval)) for name, interval in found.items()}
-
-
-def _proved_line(proved: dict[str, Any]) -> str:
-    """Return in a line what is proved of the swing."""
-    told = [f"{name} = {value[0]} to {value[1]}" for name, value in proved.items() if isinstance(value, list)]
-    return f"[proved, over {proved['over_s']} s] " + (", ".join(told) or "no swing is decided")
-
-
-def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
-    """Return proven intervals of period, precession, full turn, the first transits and passages, for uncertain inputs.
-
-    Raises:
-        InputError: an input, or a width.
-        UnreachableError: the box is too wide.
-    """
-    from ..dataset.ranges import ends
-    from ..solver.solve import solve
-
-    asked = scene.run.sections or ()
-    scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
-    ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*asked, "highest"))])
-    tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in asked}}
-    first = {
-        word: [list(ends(*interval)) for interval in table.exact("t")[:FIRST] if len(table)]
-        for word, table in tables.items()
-    }
-    return {
-        "over_s": scene.run.t_end,
-        "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
-        "period_s": ranges.period and list(ends(*ranges.period)),
-        **_told(ranges.swing, MEAN[1:]),
-        "first_transits_s": first.pop("transit"),
-        "first_passages_s": first,
-        "possible": len(ranges.possible),
-        "limits": _limits(scene, ranges.uncertain),
-    }
-
-
-def _limits(scene: Scene, uncertain: dict[str, str]) -> dict[str, Any]:
-    """Return how far each input moves the period, to first order: by derivatives close to the scene's own inputs.
-
-    With it go the derivatives of period and precession to the input, as intervals.
-    """
-    from ..dataset.ranges import ends
-    from ..numbers.precision import rounded_up
-    from ..solver.solve import solve
-
-    closer = {name: f"±{width}e-{CLOSER}" for name, width in uncertain.items()}
-    near = solve(scene, uncertain=closer, derivatives=True, sections="highest")
-    limits = {}
-    for name, (far, share) in near.shares().items():
-        of, moves = near.derivative(name), {"moves_period_s": rounded_up(far * 10**CLOSER), "share": share}
-        slopes = {"s_per_unit": of.period or (far, far), "deg_per_h_per_unit": of.precession}
-        limits[name] = moves | {word: slope and list(ends(*slope)) for word, slope in slopes.items()}
-    return limits
-
-
-def _ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
-    """Yield what holds for all values of uncertain inputs, and which of them limits the period."""
-    box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
-    told = [
-        f"{name} = {ranges[name][0]} to {ranges[name][1]}" if ranges[name] else f"{name} is not decided"
-        for name in MEAN
-        if any(ranges[name] for name in MEAN)
-    ]
-    told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
-    for word, passages in ranges["first_passages_s"].items():
-        told += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
-        told += [] if passages else [f"no passage of {word} is decided"]
-    yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
-    limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
-    if limits:
-        yield "which input limits you: what each alone moves the period by, to first order, and its share"
-    for name, limit in limits:
-        unit = unit_of(name).replace("degrees", "degree")
-        moved = f"{limit['moves_period_s']} s, {100 * limit['share']:.1f} %"
-        slope = "the period changes by {} to {} s".format(*limit["s_per_unit"])
-        if limit["deg_per_h_per_unit"]:
-            slope += ", the precession by {} to {} degrees an hour".format(*limit["deg_per_h_per_unit"])
-        yield f"  {name} {ranges['uncertain'][name]}: {moved} ({slope}{unit and ' per '}{unit})"
-
-
 def _motion_line(motion: dict[str, Any]) -> str:
     """Return what the motion does in a line, its numbers with the digits that their errors leave."""
     if "reason" in motion:
@@ -319,3 +227,36 @@ def _motion_line(motion: dict[str, Any]) -> str:
     pairs = zip(names[::2], names[1::2], strict=True)
     told = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
     return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(told)
+
+
+def scene_file(scene: Scene | None) -> str:
+    """Return a scene as a TOML file with comments; without one, the defaults with a measured g and a release."""
+    mine = {"id": "mine", "title": "my pendulum", "site": {"gravity_is": "effective"}}
+    given = scene or parse_scene({**mine, "release": {"angle": "5", "azimuth": "0"}})
+    parts = [BEGIN, *_lines(given)]
+    for name in Scene.model_fields:
+        if isinstance(table := getattr(given, name), SceneTable):
+            parts += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
+    if given.uncertain:
+        meaning = Scene.model_fields["uncertain"].description
+        widths = (f"{_toml(name)} = {_toml(width)}" for name, width in given.uncertain.items())
+        parts += ["", f"[uncertain]  # {meaning}", *widths]
+    return "\n".join(parts) + "\n"
+
+
+def _lines(table: SceneTable) -> Iterator[str]:
+    """Yield a line for each field of a table, commented out where it has no value."""
+    for name, info in type(table).model_fields.items():
+        value = getattr(table, name)
+        if isinstance(value, SceneTable | dict):
+            continue
+        example = ["highest", "gate 30"] if name == "sections" else "0"
+        written = f"{'# ' if value is None else ''}{name} = {_toml(example if value is None else value)}"
+        extra: Any = info.json_schema_extra or {}
+        unit = f"{extra['unit']}; " if extra else ""
+        yield f"{written:{COLUMN}}  # {unit}{info.description}"
+
+
+def _toml(value: Any) -> str:
+    """Return a value as TOML writes it, which of texts, lists, whole numbers and truth values is what JSON writes."""
+    return json.dumps(value, ensure_ascii=False)

@@ -1,203 +1,32 @@
-"""Read a golden dataset: every byte once, nothing but what was hashed; its columns as doubles, texts or fractions."""
+"""A golden dataset as read: its columns as doubles, texts or fractions; between its rows the scene is solved again."""
 
 from __future__ import annotations
 
-import hashlib
-import io
-import json
-import os
-import re
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import ValidationError
 
-from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
-from ..numbers.columns import GridColumns
-from ..numbers.function import GoldenFunction, States
+from ..errors import DatasetError, InputError
+from ..numbers.columns import POSITION, STATE, VELOCITY, GridColumns
+from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
 from ..scenes.fields import Level
-from ..scenes.scene import Scene, parse_scene
-from ..scenes.sections import WORD
-from ..scenes.shipped import seals
-from .function import FunctionRecord, evaluated, read_function
-from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
-from .place import RANGES, golden_folder
-from .sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER, Sheet
+from ..scenes.scene import Scene
+from .files import Files, read_files
+from .function import evaluated
+from .manifest import FUNCTION, Manifest
+from .place import golden_folder
+from .sheets import TRANSITS_HEADER, Sheet
 
-MAX_MANIFEST = 1 << 20  # bytes
-HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER, "sections": SECTIONS_HEADER}
-_BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
-_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND, "section": WORD}
-_DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
-_HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
-
-
-@dataclass(frozen=True)
-class Files:
-    """The files of a dataset, read once: those of their hashes, well formed.
-
-    Attributes:
-        folder: where they stand.
-        manifest: `manifest.json`, with its seal intact.
-        scene: the scene that it describes.
-        texts: every other file of text, by name.
-        function: the golden function and its description, None if it has none.
-        tables: the CSV tables among them, by name.
-        foreign: names of other files in the folder, which are ignored.
-    """
-
-    folder: Path
-    manifest: Manifest
-    scene: Scene
-    texts: dict[str, str]
-    function: tuple[FunctionRecord, GoldenFunction] | None
-    tables: dict[str, Sheet]
-    foreign: list[str]
-
-
-def read_files(folder: Path) -> Files:
-    """Read a dataset and check its seal, its hashes and the form of its tables.
-
-    Raises:
-        InputError: there is no dataset, or it cannot be read.
-        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
-    """
-    manifest = read_manifest(folder)
-    name_of_scene = manifest.id.partition("+")[0].removesuffix(f".{manifest.inputs}")
-    top = manifest.model_dump(include={"title", "source", "flags", "inputs"})
-    try:
-        scene = parse_scene({"id": name_of_scene, **top, **manifest.scene})
-    except FoucaultError as error:
-        raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
-    texts: dict[str, str] = {}
-    tables: dict[str, Sheet] = {}
-    problems, numbers = [], b""
-    for name, record in manifest.files.items():
-        try:
-            size = (folder / name).stat().st_size
-            if size != record.bytes:  # so that nothing larger is read
-                problems.append(f"{name}: {size} bytes, the manifest says {record.bytes}")
-                continue
-            data = (folder / name).read_bytes()
-            if hashlib.sha256(data).hexdigest() != record.sha256:
-                problems.append(f"{name}: a byte was changed (sha256 differs)")
-            elif name == FUNCTION[1]:
-                numbers = data
-            else:
-                texts[name] = data.decode()
-                if name.endswith(".csv"):
-                    tables[name] = _table(name, texts[name], manifest)
-        except OSError as error:
-            problems.append(f"{name}: {error.strerror}")
-        except UnicodeDecodeError:
-            problems.append(f"{name}: not UTF-8")
-        except ValueError as error:
-            problems.append(f"{name}: {error}")
-    if problems:
-        raise DatasetError(str(folder), problems)
-    try:
-        function = read_function(texts[FUNCTION[0]], numbers) if FUNCTION[0] in texts else None
-    except ValueError as error:
-        raise DatasetError(str(folder), [f"{FUNCTION[0]} {error}"]) from None
-    foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
-    return Files(folder, manifest, scene, texts, function, tables, foreign)
-
-
-def read_manifest(folder: Path) -> Manifest:
-    """Read a dataset's manifest alone and check its seal.
-
-    Raises:
-        InputError: there is no dataset, or it cannot be read.
-        DatasetError: the manifest is missing or malformed, or breaks its schema or its seal.
-    """
-
-    def refused(problem: str) -> DatasetError:
-        return DatasetError(str(folder), [f"{MANIFEST} {problem}"])
-
-    try:
-        if MANIFEST not in os.listdir(folder):
-            raise _no_dataset(folder)
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        raise _no_dataset(folder) from None
-    except OSError as error:
-        raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
-    try:
-        if (size := (folder / MANIFEST).stat().st_size) > MAX_MANIFEST:
-            raise refused(f"has {size} bytes, {MAX_MANIFEST} are the most")
-        text = (folder / MANIFEST).read_bytes().decode()
-        document = json.loads(text)
-        manifest = Manifest.model_validate(document)
-    except OSError as error:
-        raise refused(f"cannot be read: {error.strerror}") from None
-    except ValidationError as error:
-        older = document.get("schema_version") if isinstance(document, dict) else None
-        if older in range(1, FORMAT):
-            raise refused(f"is of format {older}: make the dataset again with `foucault generate`") from None
-        details = error.errors()[0]
-        where = ".".join(map(str, details["loc"]))
-        raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
-    except (ValueError, RecursionError) as error:
-        raise refused(f"is not JSON in UTF-8: {error}") from None
-    if manifest.text() != text:
-        raise refused("is not in the form in which it is written: spaces, the order of keys, or a key twice")
-    if manifest.expected_seal() != manifest.seal:
-        raise refused("does not fit its seal: a byte was changed")
-    return manifest
-
-
-def _no_dataset(folder: Path) -> InputError:
-    if (folder / RANGES).is_file():
-        return InputError(
-            "PATH", str(folder), "a golden dataset", "These are ranges: reference.load_ranges reads them."
-        )
-    advice = did_you_mean(folder.name, () if folder.exists() else seals(), "Make it with `foucault generate`.")
-    return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
-
-
-def _table(name: str, text: str, manifest: Manifest) -> Sheet:
-    """Return a table from its text; ValueError says what is wrong with it."""
-    kind = name.partition(".")[0]
-    patterns = _patterns(name, kind, manifest)
-    counts = manifest.sections.counts if kind == "sections" and manifest.sections else None
-    count = getattr(manifest.counts, kind) if counts is None else sum(counts.values())
-    lines, header = io.StringIO(text), tuple(patterns)
-    if next(lines, "") != ",".join(header) + "\n":
-        raise ValueError(f"the header must be {','.join(header)}")
-    if text.count("\n") != count + 1 or not text.endswith("\n"):
-        raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
-    whole = re.compile(",".join(f"(?:{pattern})" for pattern in patterns.values()), re.ASCII)
-    rows = []
-    for number, line in enumerate(lines, 1):
-        cells = tuple(line[:-1].split(","))
-        if not whole.fullmatch(line[:-1]):
-            raise ValueError(f"row {number}: {_wrong_cell(cells, patterns)}")
-        rows.append(cells)
-    return Sheet(header, rows, {})
-
-
-def _patterns(name: str, kind: str, manifest: Manifest) -> dict[str, str]:
-    """Return the pattern of each column's numbers, in the order of the columns."""
-    doubles, decimals = name.endswith(".binary64.csv"), manifest.decimals.get(kind, {})  # type: ignore[call-overload]
-    decimals = manifest.sections.decimals if kind == "sections" and manifest.sections else decimals
-    patterns = {}
-    for column in HEADERS[kind]:
-        places = decimals.get(column)
-        plain = "-?[0-9]{1,308}" + (f"[.][0-9]{{{places}}}" if places else "")
-        patterns[column] = _PATTERNS.get(column, _DOUBLE if doubles else plain)
-    return patterns | ({f"{column}_hex": _HEXFLOAT for column in NUMBERS[kind]} if doubles else {})
-
-
-def _wrong_cell(cells: Sequence[str], patterns: dict[str, str]) -> str:
-    if len(cells) != len(patterns):
-        return f"{len(cells)} numbers, not {len(patterns)}"
-    pairs = zip(patterns.items(), cells, strict=True)
-    name, cell = next((name, cell) for (name, form), cell in pairs if not re.fullmatch(form, cell, re.ASCII))
-    return f"{name} = {cell[:80]!r} is not a number of this column's form"
+WITHIN = 2.0**-58  # error allowed, relative to the cord length: enough to judge programs in double
+ROUNDED = 2.0**-40  # relative, of the times that a program has added up
+PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two doubles
 
 
 @dataclass(frozen=True, repr=False)
@@ -279,8 +108,6 @@ class Golden(GridColumns):
         """
         if self.function is not None:
             return self.function.at(t)
-        from .dense import states_at
-
         return states_at(self, t)
 
     @property
@@ -337,3 +164,88 @@ def _sections(files: Files) -> dict[str, PrintedTable]:
     said = files.manifest.sections
     rows = {word: [row for row in sheet.rows if row[0] == word] for word in said.counts}
     return {word: PrintedTable(replace(sheet, rows=own), said.bounds) for word, own in rows.items()}
+
+
+@dataclass(frozen=True)
+class Dense:
+    """A trajectory at chosen times, finer than binary64.
+
+    Attributes:
+        t: times in s, shape (rows,), increasing, without repeats.
+        states: nearest doubles of x, y, z (m), vx, vy, vz (m/s), shape (rows, 6).
+        low: low parts, shape (rows, 6): the values are states + low.
+        bound_m: bound on the error of every position, in m.
+        bound_m_s: bound on that of every velocity, in m/s.
+    """
+
+    t: Array
+    states: Array = field(repr=False)
+    low: Array = field(repr=False)
+    bound_m: float
+    bound_m_s: float
+
+    @classmethod
+    def of(cls, times: Array, table: Any, rows: Any) -> Dense:
+        """Build from some rows of a table that has bounds."""
+        exact = [[column[i] for i in rows] for column in map(table.exact, STATE)]
+        states = np.array([[float(x) for x in column] for column in exact]).T
+        pairs = (zip(column, near, strict=True) for column, near in zip(exact, states.T.tolist(), strict=True))
+        low = np.array([[float(x - Fraction(y)) for x, y in pair] for pair in pairs]).T
+        bounds = (
+            max(max(table.bound(name)) + PAIR * max(map(abs, exact[STATE.index(name)])) for name in kind)
+            for kind in (POSITION, VELOCITY)
+        )
+        return cls(times, states, low, *map(float, bounds))
+
+
+def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
+    """Evaluate the solution of a golden dataset at any times that it spans.
+
+    Args:
+        golden: the dataset: its rows are taken where all times are those of its grid.
+        times: in s, in any order; repeated ones are merged.
+        within: error aimed at, relative to the cord length; the bound that was reached is `bound_m`.
+
+    Raises:
+        InputError: a time is not finite, negative, or more than a grid step beyond the end of the dataset.
+        UnreachableError: the scene cannot be solved so closely.
+    """
+    requested = np.unique(np.asarray(times, dtype=np.float64).ravel())
+    grid = golden.times
+    _check(requested, grid)
+    exact = [Fraction(t) for t in requested.tolist()]
+    row = {t: i for i, t in enumerate(grid)}
+    if row.keys() >= set(exact):
+        return Dense.of(requested, golden.grid, [row[t] for t in exact])
+    from ..solver.solve import solve_at
+
+    solution = solve_at(golden.scene, exact, math.ceil(-math.log10(within)) + 1)
+    row = {t: i for i, t in enumerate(solution.times)}
+    return Dense.of(requested, solution.grid, [row[t] for t in exact])
+
+
+def states_at(golden: Golden, times: npt.ArrayLike) -> States:
+    """Return the states at times of any shape and in any order, rounded to doubles.
+
+    Raises:
+        InputError: a time is not finite, or outside of the dataset's span.
+    """
+    moments = moments_of(times, golden.times[-1])
+    if not moments.size:
+        return States.of(moments, np.empty((6, 0)), {})
+    found = dense(golden, moments)
+    rows = found.states[np.searchsorted(found.t, moments.ravel())]
+    largest = np.abs(found.states).max(axis=0)
+    bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
+    rounding = {name: float(np.spacing(size)) for name, size in zip(STATE, largest, strict=True)}
+    return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
+
+
+def _check(times: Array, grid: tuple[Fraction, ...]) -> None:
+    if not len(times):
+        raise InputError("t", "no times", "at least one time in s")
+    end = 2 * grid[-1] - grid[-2]  # where a program that counts steps may end, but for the rounding of its times
+    if not np.isfinite(times).all() or times[0] < 0 or times[-1] > float(end) * (1 + ROUNDED):
+        outside = times[~np.isfinite(times)] if not np.isfinite(times).all() else times[[0]] if times[0] < 0 else times
+        advice = f"The scene ends at run.t_end = {float(grid[-1]):.17g}: --set run.t_end=… solves a longer one."
+        raise InputError("t", f"{outside[-1]:.17g}", f"times from 0 to {float(end):.17g} s", advice)

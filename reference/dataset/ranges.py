@@ -19,7 +19,7 @@ from ..solver.ranges import Ends, Intervals, Ranges, ZeroRanges
 from ..solver.solution import exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
-from .place import GOLDEN, MAX_ID, RANGES, dataset_id, golden_folder
+from .place import MAX_ID, RANGES, dataset_id, golden_folder
 from .sheets import scene_inputs
 from .write import check_target, filled, replace, writable_place
 
@@ -34,11 +34,6 @@ def ranges_id(ranges: Ranges) -> str:
     if len(name) + len(box) >= MAX_ID:
         box = f"sha256={hashlib.sha256(box.encode()).hexdigest()[:16]}"
     return f"{name}+-{box}"
-
-
-def default_ranges_folder(ranges: Ranges) -> Path:
-    """Return the folder that ranges are written to."""
-    return Path(GOLDEN) / ranges_id(ranges)
 
 
 def check_ranges_target(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""The manifest of a solution: what was solved, how, to which bounds, and what agrees with it; without its files."""
+"""How a dataset is made, and its manifest: what was solved, how, to which bounds, what agrees; without its files."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
-from ..engines import engine_names
+from ..engines import AUTO, engine_names
 from ..engines.heyoka.system import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
@@ -33,7 +34,7 @@ from .manifest import (
     RunRecord,
     SectionsRecord,
 )
-from .place import changes, changes_in, dataset_id, is_of_shipped_scene, shipped_scene
+from .place import changes, changes_in, dataset_id, is_of_shipped_scene, shipped_scene, ships
 from .sheets import Sheet, column_bounds, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
@@ -77,6 +78,22 @@ class Making:
         """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
         said = index().get(name, {}).get("options", self.options)
         return said if is_of_shipped_scene(scene, name) and Making.of(said) == self else self.options
+
+    def asked_of(self, scene: Scene) -> dict[str, Any]:
+        """Return what `solve` is asked for of a scene, so that it is made in this way, or refused."""
+        proof = {"audit": self.audit, "confirm": self.confirm, "function": self.function}
+        return {"engine": self.engine, "uncertain": None} | (proof if scene.run.level == "enclosed" else {})
+
+
+def making_of(scene: Scene, name: str, folder: Path) -> Making:
+    """Return how a dataset is made if nothing else is asked for: what ships as the index says, wherever it is written.
+
+    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two codes.
+    """
+    if ships(folder) or is_of_shipped_scene(scene, name):
+        entry = index().get(name)
+        return Making.of(entry["options"]) if entry else Making()
+    return Making(AUTO, confirm="sampled", function=True)
 
 
 def manifest_of(

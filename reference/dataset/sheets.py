@@ -10,8 +10,8 @@ from typing import Any
 from ..numbers.columns import GRID, STATE, TRANSITS
 from ..numbers.precision import fixed_decimal, rounded_up
 from ..numbers.table import Integers, Table, integers
+from ..scenes.fields import SECTION_SEPARATOR
 from ..scenes.scene import Scene
-from ..scenes.sections import SEPARATOR
 from ..solver.solution import Solution, exact_decimals, grid_decimals, section_decimals, transit_decimals
 
 GRID_HEADER = ("t", *GRID)
@@ -132,7 +132,7 @@ def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
 
     def text(value: Any) -> str:
         if isinstance(value, tuple):
-            return SEPARATOR.join(value)
+            return SECTION_SEPARATOR.join(value)
         return str(value).lower() if isinstance(value, bool) else str(value)
 
     return {section: {key: text(value) for key, value in table.items()} for section, table in document.items()}

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
 
+from ..engines.plan import Report
 from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
-from .checks import function, manifest_check, motion, physics, tables
-from .golden import Files, read_files, read_manifest
+from ..solver.solve import solve
+from .checks import function, motion, physics, scene_check
+from .files import Files, read_files, read_manifest
 from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
 from .record import AUDIT, Making, generator
 from .render import render
-from .shipping import solved
 
 MAX_PROBLEMS = 20  # sentences returned at most
 BEYOND = "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"
@@ -89,9 +90,12 @@ def problems_of(folder: Path) -> list[str]:
 
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    for check in (manifest_check, function) if files.manifest.alone else (tables, manifest_check, physics, function):
+    checks = [scene_check.problems, function.problems]
+    if not files.manifest.alone:
+        checks = [scene_check.table_problems, checks[0], physics.problems, checks[1]]
+    for check in checks:
         try:
-            problems = list(islice(check.problems(files), MAX_PROBLEMS))
+            problems = list(islice(check(files), MAX_PROBLEMS))
         except (ArithmeticError, BeyondDoublesError):
             problems = [BEYOND]
         if problems:
@@ -138,7 +142,8 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     files = read_files(folder)
     manifest, end = files.manifest, float(files.scene.exact.t_end)
     making = Making.of(manifest.command)
-    solution = solved(files.scene, making, report and (lambda t: report(t, end)))
+    tell: Report | None = report and (lambda t: report(t, end))
+    solution = solve(files.scene, **making.asked_of(files.scene), report=tell)
     texts = render(solution, manifest.id, tables=making.tables)
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
     fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]

@@ -1,4 +1,4 @@
-"""Write a dataset: its files are checked in a temporary folder and put in place together, whole or not at all."""
+"""Write a dataset: its files are checked in a temporary folder and put in place together, or not at all; tell of it."""
 
 from __future__ import annotations
 
@@ -6,16 +6,20 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from ..errors import DatasetError, InputError
+from ..numbers.columns import POSITION
 from ..scenes.shipped import keep_seal
-from ..solver.solution import Solution
+from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
 from .manifest import FUNCTION, MANIFEST, Content
 from .place import ships
 from .record import OPTIONS
 from .render import check_proved, render
+from .sheets import column_bounds
 from .verify import problems_of
 
 
@@ -111,3 +115,33 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
         if ships(target):
             manifest = json.loads(texts[MANIFEST])
             keep_seal(target.name, manifest["seal"], next(OPTIONS.finditer(manifest["command"]))[0])
+
+
+def summary(solution: Solution, folder: Path) -> dict[str, Any]:
+    """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
+    bounds = column_bounds(solution.grid, grid_decimals(solution))
+    proof_s = sum((solution.proof.cpu_s if solution.proof else {}).values())
+    checks_s = sum(check.cpu_s for check in solution.checks) + proof_s
+    guard = None
+    if solution.guard is not None:  # its distances are fractions
+        guard = {
+            name: float(value) if isinstance(value, Fraction) else value for name, value in vars(solution.guard).items()
+        }
+    return {
+        "scene": solution.scene.id,
+        "out": str(folder),
+        "level": solution.level,
+        "digits": solution.scene.run.digits,
+        "engine": solution.run.engine,
+        "confirmed": solution.proof.confirmed if solution.proof else None,
+        "transits": len(solution.directions),
+        "bound_m": max(float(bounds[column]) for column in POSITION),
+        "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,
+        "run_cpu_s": solution.run.cpu_s,
+        "check_cpu_s": checks_s,
+        "pilot_cpu_s": solution.pilot_s,
+        "compile_s": solution.run.compile_s,
+        "number": solution.run.number,
+        "steps": solution.run.steps,
+        "guard": guard,
+    }

@@ -29,7 +29,7 @@ ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
 USELESS = 2**12  # a state known this many times less closely than requested ends an attempt at once
 TINY = -1e9  # stands for the logarithm of a width that is 0
-PARTS = ("candidate", "proof", "function")  # the first is the approximant
+PARTS = ("approximant", "proof", "function")
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
 
@@ -154,7 +154,7 @@ class _Run:
         if first is None:
             raise UnreachableError("enclosure: the approximant is empty.")
         bits, order = first.bits, len(first.coefficients[0]) - 1
-        self.clock.lap("candidate")
+        self.clock.lap("approximant")
         balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
         course = Course(balls, self.times, columns is not None, self.transits)
@@ -168,7 +168,7 @@ class _Run:
 
             fit, steps = Fit(course), on_doubles(steps)
         for step in until(steps, self.end):
-            self.clock.lap("candidate")
+            self.clock.lap("approximant")
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
             self.clock.lap("proof")
             if fit:

@@ -2,8 +2,7 @@
 
 - `batch_interface`: many scenes in double, what goes in and what comes out.
 - `plan`: the input of an engine, `Plan`, its output, `Run`, and what it declares, `Engine`.
-- `registry`: the engines by name, which of them a run takes, and the run itself.
-- `background`: a run, or other work, at the same time as this process works.
+- `registry`: the engines by name, which of them a run takes, and the run itself, here or in the background.
 - `trajectory`: single unconfirmed runs as binary64, of any system and with changed constants.
 - `heyoka/`: everything that uses heyoka, in any number type.
 - `limbs/`: an integrator in machine code for many digits; needs numba.

@@ -36,7 +36,7 @@ MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80
 GRAZING = "Ask for more digits, or leave this section out (run.sections)."
 
 
-class Search:
+class SectionSearch:
     """The passages of one section: `take` every step in order."""
 
     def __init__(self, word: str, form: Form, prec: int) -> None:
@@ -186,7 +186,7 @@ def passages(
         IntegrationError: a section that the motion touches, or stays in, as far as the digits tell.
     """
     start = Start.of(plan.inputs, plan.number.prec + SPARE_BITS + GUARD_BITS)
-    searches = [Search(word, form_of(word, start), plan.number.prec) for word in plan.sections]
+    searches = [SectionSearch(word, form_of(word, start), plan.number.prec) for word in plan.sections]
     unit = 1 << plan.number.prec + SPARE_BITS
     sin, cos = ((int(to_fraction(x) * unit)) for x in ((start.k.sin, start.k.cos) if start.k.rate else (1, 0)))
     for step in steps:

@@ -1,20 +1,30 @@
-"""The engines by name, which of them a run takes, and the run itself."""
+"""The engines by name, which of them a run takes, and the run itself, here or, if it is worth it, in the background."""
 
 from __future__ import annotations
 
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, wait
+from contextlib import contextmanager
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from time import process_time
+from typing import Any
 
-from ..errors import InputError
+from ..errors import FoucaultError, InputError
 from ..system.imports import switched_off
+from ..system.workers import Emit, Worker, usable_cores
 from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
 from .plan import Engine, Pace, Plan, Report, Run
 
 SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
+REPORT_S = 0.2  # seconds between two reports of progress
+WORTH_A_PROCESS = 1.0  # estimated CPU seconds from which a process pays for its start
+COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
 
 
 @cache
@@ -73,3 +83,113 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
 
     begun, steps = process_time(), engine.expanded(plan, plan.number.prec + SERIES_BITS)
     return replace(done, passages=passages(plan, steps), cpu_s=done.cpu_s + process_time() - begun)
+
+
+def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None) -> tuple[Run, Run]:
+    """Do two runs, at the same time if the machine has two cores and the work is worth another process.
+
+    Args:
+        first: runs in this process.
+        second: runs in the background if that pays.
+        steps: about how many steps either takes.
+        report: called with the simulated time, the mean of both.
+    """
+    first_s, second_s = (expected_s(plan, steps) for plan in (first, second))
+    worth = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
+    end = float(first.times[-1])
+    with in_background(worth, send_run, second) as other:
+        first_run = run(first, report and (lambda t: report((t + other.reached) / 2)))
+        return first_run, other.result(report and (lambda t: report((end + t) / 2)))
+
+
+def expected_s(plan: Plan, steps: int) -> float:
+    """Return about how many CPU seconds a run takes that would be `steps` steps in double."""
+    return engines()[plan.engine].expected_s(steps, plan.number.prec)
+
+
+def send_run(emit: Emit, plan: Plan) -> None:
+    """Do a run and send it; to be done in the background."""
+    emit(run(plan, reports(emit)))
+
+
+def reports(emit: Emit) -> Report:
+    """Return a report that sends the simulated time, not too often."""
+    last_report = time.monotonic()
+
+    def report(t: float) -> None:
+        nonlocal last_report
+        if time.monotonic() - last_report > REPORT_S:
+            last_report = time.monotonic()
+            emit(float(t))
+
+    return report
+
+
+@contextmanager
+def in_background(worth: bool, work: Callable[..., None], *arguments: Any) -> Iterator[Background]:
+    """Do work in the background, where that is worth a process and the machine has two cores; else when it is wanted.
+
+    `work(emit, *arguments)` stands at the top level of a module; it sends simulated times, as `reports` does, and then
+    its result.
+    """
+    worker = Worker(work, *arguments) if worth and usable_cores() >= 2 else None
+    try:
+        yield Background(worker, work, *arguments)
+    finally:
+        if worker is not None:
+            worker.stop()
+
+
+class Background:
+    """Work that is done in another process, or by this one once its result is wanted.
+
+    Attributes:
+        reached: simulated time in s that it has reached.
+    """
+
+    def __init__(self, worker: Worker | None, work: Callable[..., None], *arguments: Any) -> None:
+        self.reached = 0.0
+        self._report: Report | None = None
+        self._result: Future[Any] = Future()
+        self._here = None if worker is not None else partial(work, self._take, *arguments)
+        if worker is not None:
+            threading.Thread(target=self._take_all, args=(worker,), daemon=True).start()
+
+    @property
+    def at_work(self) -> bool:
+        """Whether another process is at work."""
+        return self._here is None and not self._result.done()
+
+    def result(self, report: Report | None = None) -> Any:
+        """Wait for the result and return it; `report` is called with the simulated time meanwhile.
+
+        Raises:
+            FoucaultError: the work failed, as it would have done here.
+        """
+        if self._here is not None:
+            self._report = report
+            self._here()
+        while not wait([self._result], REPORT_S).done:
+            if report is not None:
+                report(self.reached)
+        return self._result.result()
+
+    def _take(self, item: Any) -> None:
+        if not isinstance(item, float):
+            self._result.set_result(item)
+            return
+        self.reached = item
+        if self._report is not None:
+            self._report(item)
+
+    def _take_all(self, worker: Worker) -> None:
+        try:
+            while not self._result.done():
+                self._take(worker.receive())
+        except FoucaultError as error:
+            self._result.set_exception(error)
+
+
+def slowest(report: Report, others: list[Background]) -> Report:
+    """Return a report that tells the time which all work has reached: the caller's, and others' that is going on."""
+    return lambda t: report(min([t, *(other.reached for other in others if other.at_work)]))

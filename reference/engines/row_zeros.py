@@ -30,7 +30,7 @@ MOST_LATE = (
 
 
 @dataclass(frozen=True)
-class Zeros:
+class RowZeros:
     """Times of the zeros of a rate, increasing, and its signs after them."""
 
     times: Array
@@ -49,7 +49,7 @@ class Zeros:
 
 
 @dataclass(frozen=True)
-class Motion:
+class RowMotion:
     """Position n over l, n' and n'' in the axes of the plumb line, each three numbers or arrays."""
 
     n: Any
@@ -83,7 +83,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Release:
+class RowRelease:
     """The release of a row: quantities that follow from its inputs before it is solved.
 
     Attributes:
@@ -109,7 +109,7 @@ class Release:
     angle: float
 
     @classmethod
-    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: Motion, form: Any = XDOT) -> Self:
+    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any = XDOT) -> Self:
         """Return what is known of a row whose motion at the release is given, and in these axes the form."""
         rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
@@ -128,7 +128,7 @@ class Release:
             angle=np.arctan2(np.hypot(x, p), -u),
         )
 
-    def after(self, zeros: Zeros, kind: int) -> Zeros:
+    def after(self, zeros: RowZeros, kind: int) -> RowZeros:
         """Return the zeros of a kind in the span, without that of the release, which it reports at 1e-17 s or so."""
         none = self.still and kind == TRANSIT
         least = np.inf if none else self.quiet if self.zero[kind] else 0.0
@@ -140,10 +140,10 @@ class Samples:
     """A row's motion at times from the release to the end; `complete` where no pair of zeros can be lost."""
 
     times: Array
-    motion: Motion
+    motion: RowMotion
     complete: bool = False
 
-    def lost(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> bool:
+    def lost(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> bool:
         """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
         signs = np.concatenate([[release.signs[kind]], zeros.directions])
         there = signs[np.searchsorted(zeros.times, self.times[1:])]
@@ -151,11 +151,11 @@ class Samples:
         alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * there > 0).all()
         return not (alternate and (self.complete or not self._dips(zeros, at, release, kind)[0].size))
 
-    def finer(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> Array:
+    def finer(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> Array:
         """Return the times of samples, with more of them where the form of a kind may dip to zero."""
         return np.union1d(self.times, np.linspace(*self._dips(zeros, at, release, kind), FINER + 1)[1:-1])
 
-    def _dips(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> tuple[Array, Array]:
+    def _dips(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> tuple[Array, Array]:
         """Return the neighbours among samples and zeros between which a form may go through zero and back.
 
         The cubic through the values and slopes there says how low the minimum between them is, but for its error: that
@@ -180,7 +180,7 @@ class Samples:
 
 
 def describe_transits(
-    outcomes: Outcomes, row: int, release: Release, zeros: Zeros, at: Motion, samples: Samples
+    outcomes: Outcomes, row: int, release: RowRelease, zeros: RowZeros, at: RowMotion, samples: Samples
 ) -> None:
     """Fill in a row's transits: the zeros, and the motion at them."""
     t, (_, ax) = zeros.times, at.form(release.forms[TRANSIT])
@@ -194,7 +194,7 @@ def describe_transits(
 
 
 def describe_highest_points(
-    outcomes: Outcomes, row: int, release: Release, zeros: Zeros, at: Motion, samples: Samples
+    outcomes: Outcomes, row: int, release: RowRelease, zeros: RowZeros, at: RowMotion, samples: Samples
 ) -> None:
     """Fill in a row's highest points, the zeros at which the height begins to fall, and its largest angle.
 
@@ -212,7 +212,7 @@ def describe_highest_points(
     if not (len(t) and release.rate and bend >= LEAST_BEND):
         return
     late = at.v[2] / at.a[2]
-    zeros = Zeros(zeros.times - late, zeros.directions)
+    zeros = RowZeros(zeros.times - late, zeros.directions)
     if samples.lost(zeros, at, release, HEIGHT) or not (np.abs(late) * release.rate < MOST_LATE).all():
         outcomes.fate[row] = DOUBTFUL
         return

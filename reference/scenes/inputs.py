@@ -20,6 +20,8 @@ GravityIs = Literal["ellipsoid", "effective"]
 SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ only by the rounding of the inputs
 MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
 MAX_LENGTH = 2000  # characters of a number
+SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")  # numbers of a site
+RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
 _EXPONENT_DIGITS = 9  # a Decimal can hold these; far above what is allowed
 _LONGEST_KEY = 80  # characters of a wrong key that a message quotes
 
@@ -61,6 +63,17 @@ class Inputs:
         if whole and self.t_end - times[-1] < self.grid_step * SAME_TIME:
             times.pop()
         return [*times, self.t_end]
+
+    @property
+    def by_name(self) -> dict[str, Fraction]:
+        """The numbers on which the motion depends, by their names in a scene file, such as "site.gravity"."""
+        values = {"pendulum.length": self.length, "pendulum.drag": self.drag}
+        values |= {f"site.{name}": getattr(self, name) for name in SITE}
+        if self.flattening:  # not a sphere
+            values["site.inverse_flattening"] = 1 / self.flattening
+        kind = "angles" if self.position is None else "position"
+        release = zip(RELEASES[kind], getattr(self, kind), strict=True)
+        return values | {f"release.{name}": value for name, value in release}
 
     @property
     def at_rest(self) -> bool:

@@ -89,8 +89,7 @@ class Scene(SceneTable):
     def with_values(self, values: Words) -> Scene:
         """Return the scene with fields replaced, by words `section.key=value` or `x0=value`, or a mapping of keys."""
         document = self.model_dump(exclude_none=True)
-        for assignment in words_of(values):
-            _assign(document, assignment)
+        _assign(document, values)
         return parse_scene(document)
 
 
@@ -110,21 +109,18 @@ def _word(value: Any) -> str:
     return str(value)
 
 
-def _assign(document: dict[str, Any], assignment: str) -> None:
-    key, sign, value = assignment.partition("=")
-    parts = full_name(key).split(".")
-    if not sign or len(parts) > 2 or not all(parts):
-        raise InputError("--set", assignment, "section.key=value, such as site.latitude=0")
-    table = document
-    for part in parts[:-1]:
-        inner = table.setdefault(part, {})
-        if not isinstance(inner, dict):
-            raise InputError("--set", assignment, f"a section, and {part} is a single field")
-        table = inner
-    if parts == ["flags"]:
-        document["flags"] = [flag for flag in value.split(",") if flag]
-    else:
-        table[parts[-1]] = value.strip()
+def _assign(document: dict[str, Any], values: Words) -> None:
+    """Replace fields of a scene that is given as nested mappings."""
+    for assignment in words_of(values):
+        key, sign, value = assignment.partition("=")
+        section, _, name = full_name(key).rpartition(".")
+        if not sign or not name or "." in section:
+            raise InputError("--set", assignment, "section.key=value, such as site.latitude=0")
+        table = document.setdefault(section, {}) if section else document
+        if not isinstance(table, dict):
+            raise InputError("--set", assignment, f"a section, and {section} is a single field")
+        flags = (section, name) == ("", "flags")
+        table[name] = [flag for flag in value.split(",") if flag] if flags else value.strip()
 
 
 def field_names() -> list[str]:
@@ -235,9 +231,8 @@ def _wrong_in_run(scene: Scene) -> Iterator[InputError]:
     if scene.exact.t_end < LEAST_T_END:
         yield InputError("run.t_end", run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
     elif scene.exact.t_end / scene.exact.grid_step > MAX_ROWS:
-        yield InputError(
-            "run.grid_step", run.grid_step, f"at most {MAX_ROWS} grid times up to t_end", "Take a longer step."
-        )
+        expected = f"at most {MAX_ROWS} grid times up to t_end"
+        yield InputError("run.grid_step", run.grid_step, expected, "Take a longer step.")
 
 
 def load_scene(name: str | Path, values: Words = ()) -> Scene:
@@ -264,8 +259,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document and is_scene_id(own_name):
         document["id"] = own_name
-    for assignment in words_of(values):
-        _assign(document, assignment)
+    _assign(document, values)
     return parse_scene(document)
 
 

@@ -13,7 +13,7 @@ to first order; with the rates in the place of the errors the same sum bounds th
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -68,32 +68,18 @@ class Agreement:
         finest = _resolution(published, witness)
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
-        missing = bits_lacking(gaps, decimals)
         lacking, sections = passages_lacking(published.passages, witness, decimals, digits)
-        agreed = cls._of_transits(published, witness, missing, gaps, errors, decimals, digits)
-        return replace(agreed, missing_bits=max(agreed.missing_bits, lacking), sections=sections)
-
-    @classmethod
-    def _of_transits(
-        cls,
-        published: Run,
-        witness: Run,
-        missing: int,
-        gaps: dict[str, Fraction],
-        errors: dict[str, Fraction],
-        decimals: dict[str, int],
-        digits: int,
-    ) -> Agreement:
-        if published.transits is None or witness.transits is None:
-            return cls(missing, gaps, None, errors)
-        if published.directions != witness.directions:
-            return cls(witness.plan.number.prec // 2, gaps, None, errors)
-        transits = published.transits.only(TRANSITS)
-        apart = transits.distance(witness.transits)
-        decimals = decimals_of(transits.largest(), digits) | {
-            name: places for name, places in decimals.items() if name in TRANSITS
-        }
-        return cls(max(missing, bits_lacking(apart.largest(), decimals)), gaps, apart, errors)
+        missing, apart = bits_lacking(gaps, decimals), None
+        if published.transits is not None and witness.transits is not None:
+            if published.directions == witness.directions:
+                transits = published.transits.only(TRANSITS)
+                apart = transits.distance(witness.transits)
+                decimals = {name: places for name, places in decimals.items() if name in TRANSITS}
+                of_transits = decimals_of(transits.largest(), digits) | decimals
+                missing = max(missing, bits_lacking(apart.largest(), of_transits))
+            else:
+                missing = witness.plan.number.prec // 2
+        return cls(max(missing, lacking), gaps, apart, errors, sections)
 
 
 def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
@@ -187,11 +173,17 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
         columns = {"t": late} | {
             name: parts[name] + lost[name] + np.abs(_floats(rates[name])) * length * late for name in STATE
         }
-    for i, name in enumerate(SECTION if apart is not None else ()):
-        assert apart is not None
-        columns[name] = np.maximum(columns[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))
-    fixed = [_fixed(columns[name] * ROUNDED_UP, power, table.bits) for name in SECTION]
-    return Table(SECTION, table.bits, table.values, list(zip(*fixed, strict=True)))
+    return _with_errors(table, columns, power, apart)
+
+
+def _with_errors(table: Table, columns: dict[str, Array], power: int, apart: Table | None) -> Table:
+    """Return a table with errors in units of 2**power, none less than twice the distance from another run's."""
+    for i, name in enumerate(table.columns):
+        if apart is not None:
+            least = _in_units([2 * row[i] for row in apart.values], apart.bits + power)
+            columns[name] = np.maximum(columns[name], least)
+    fixed = [_fixed(columns[name] * ROUNDED_UP, power, table.bits) for name in table.columns]
+    return Table(table.columns, table.bits, table.values, list(zip(*fixed, strict=True)))
 
 
 def _floats(numbers: FixedPoint) -> Array:
@@ -209,14 +201,7 @@ def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table |
     assert run.transits is not None
     power = bits_in(max(errors.values()))
     parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    of_transits = _errors(run, parts, power)
-    if apart is not None:
-        for i, name in enumerate(TRANSITS):
-            least = _in_units([2 * row[i] for row in apart.values], apart.bits + power)
-            of_transits[name] = np.maximum(of_transits[name], least)
-    table = run.transits.only(TRANSITS)
-    columns = [_fixed(of_transits[name] * ROUNDED_UP, power, table.bits) for name in TRANSITS]
-    return Table(TRANSITS, table.bits, table.values, list(zip(*columns, strict=True)))
+    return _with_errors(run.transits.only(TRANSITS), _errors(run, parts, power), power, apart)
 
 
 def _errors(run: Run, errors: Mapping[str, float], power: int) -> dict[str, Array]:

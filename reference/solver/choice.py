@@ -60,22 +60,21 @@ def need_flint() -> None:
     needed("flint", "enclose", "--level", "enclosed", "which the proof needs", ", or ask for the level confirmed")
 
 
-def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str = AUTO) -> Plan:
+def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
     """Return the published run as it is begun; where runs disagree, `solve` raises its precision.
 
     Args:
         scene: with its digits and level.
         times: its output times in s.
         pilot: its pilot run.
-        engine: name of the engine, or "auto" for the fastest.
     """
     if scene.run.level == "enclosed":
         need_flint()
         from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
 
         bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None).bits - COEFFICIENT_BITS
-        return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, transits=False)
-    return published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
+        return fastest(bits, steps=pilot.steps).plan(scene.exact, bits, times, transits=False)
+    return published_plan(scene, times, pilot, first_prec(scene, pilot, AUTO), AUTO)
 
 
 def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
@@ -103,10 +102,12 @@ def published_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec
 
 
 def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int) -> Plan:
-    """Return heyoka's run that confirms another one: in another formulation, of `prec` bits."""
-    number = DOUBLE if prec == DOUBLE.prec else real(prec)
-    sections = scene.run.sections or ()
-    return Plan(scene.exact, confirming_formulation(pilot), number, times, scene.run.transits, sections=sections)
+    """Return heyoka's run that confirms another one: in another formulation, of `prec` bits.
+
+    It is `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed.
+    """
+    number, formulation = DOUBLE if prec == DOUBLE.prec else real(prec), "space" if pilot.tension > 0 else "spin"
+    return Plan(scene.exact, formulation, number, times, scene.run.transits, sections=scene.run.sections or ())
 
 
 def drawn_intervals(scene: Scene) -> list[int]:
@@ -119,11 +120,6 @@ def drawn_intervals(scene: Scene) -> list[int]:
     word, count = sha256(inputs.encode()).hexdigest(), len(scene.exact.grid) - 1
     drawn = sorted(range(count), key=lambda i: sha256(f"{word} {i + 1}".encode()).digest())
     return sorted(drawn[: ceil(Fraction(count, SAMPLED))])
-
-
-def confirming_formulation(pilot: Pilot) -> str:
-    """Return `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed."""
-    return "space" if pilot.tension > 0 else "spin"
 
 
 def second_order_bits(scene: Scene, pilot: Pilot) -> int:

@@ -14,9 +14,8 @@ from functools import partial
 from typing import Any
 
 from ..engines import AUTO
-from ..engines.background import WORTH_A_PROCESS, expected_s, in_background, reports, send_run, slowest
 from ..engines.plan import Plan, Report, Run
-from ..engines.registry import run
+from ..engines.registry import WORTH_A_PROCESS, expected_s, in_background, reports, run, send_run, slowest
 from ..errors import IntegrationError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
@@ -26,9 +25,8 @@ from ..scenes.scene import Scene
 from ..system.workers import Emit
 from .agreement import bits_lacking, passages_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
-from .pilot import run_pilot
-from .proving import Problem, guarded, proved
-from .reach import MAX_RAISES, check_reach
+from .pilot import MAX_RAISES, check_reach, run_pilot
+from .proving import ProofTask, guarded, proved
 from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
@@ -61,19 +59,15 @@ def solve_enclosed(
     need_flint()
     from .. import enclosure
 
-    problem = Problem(scene, times, engine, run_pilot(scene.exact, times), function)
+    problem = ProofTask(scene, times, engine, run_pilot(scene.exact, times), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
         confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
     with ExitStack() as meanwhile:
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
         whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
-        pays = problem.pilot.steps >= AUDIT_STEPS
-        second_proof = (
-            meanwhile.enter_context(in_background(pays, _send_digits, replace(problem, function=False)))
-            if audit
-            else None
-        )
+        again = in_background(problem.pilot.steps >= AUDIT_STEPS, _send_digits, replace(problem, function=False))
+        second_proof = meanwhile.enter_context(again) if audit else None
         report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
         if plan and confirm == "sampled":  # while the audit goes on
@@ -110,13 +104,13 @@ def proved_digits(solution: Solution) -> Any:
     return tables, signs, [[parity for *_, parity in part] for part in possible]
 
 
-def _send_digits(emit: Emit, problem: Problem) -> None:
+def _send_digits(emit: Emit, problem: ProofTask) -> None:
     from ..enclosure import enclose
 
     emit(proved_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
 
 
-def _confirming_plan(problem: Problem, confirm: Confirmation, prec: int | None = None) -> Plan:
+def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:
     """Return heyoka's run in another formulation, in `prec` bits or in those that the digits need.
 
     Raises:
@@ -137,7 +131,7 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     )
 
 
-def confirmed(problem: Problem, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
+def confirmed(problem: ProofTask, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
     """Return a proved solution with the run that confirms it, at a precision that is raised until it agrees.
 
     Raises:

@@ -11,9 +11,8 @@ from fractions import Fraction
 from itertools import chain, islice
 
 from ..engines import AUTO
-from ..engines.background import WORTH_A_PROCESS
 from ..engines.plan import Run
-from ..engines.registry import MANY_STEPS, engines, fastest
+from ..engines.registry import MANY_STEPS, WORTH_A_PROCESS, engines, fastest
 from ..errors import IntegrationError
 from ..numbers.taylor_step import TaylorStep
 from ..scenes.inputs import Inputs

@@ -38,7 +38,7 @@ SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
 @dataclass(frozen=True)
-class Problem:
+class ProofTask:
     """A scene to be proved, and what its pilot runs told about it.
 
     Attributes:
@@ -56,7 +56,7 @@ class Problem:
     function: bool = False
 
 
-def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solution:
+def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> Solution:
     """Return a solution with every digit decided.
 
     Args:
@@ -110,12 +110,8 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
     gaps = checked_states(grid, times, approximant).largest()
     check = replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
-    zeros = enclosed.proved.transits or ()
-    decided, undecided = [z for z in zeros if z.kind == "one"], [z for z in zeros if z.kind != "one"]
-    directions = [z.direction for z in decided]
-    transits = None
-    if enclosed.proved.transits is not None:
-        transits = Table.of_intervals(TRANSITS, [[getattr(z, name) for name in TRANSITS] for z in decided], bits)
+    zeros = _passages(enclosed.proved.transits or (), TRANSITS, times[-1], bits)
+    transits = None if enclosed.proved.transits is None else zeros.table
     size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
     proof = Proof(
         method=enclosed.method,
@@ -131,17 +127,16 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         function=enclosed.function,
         sections=enclosed.sections,
     )
-    # all zeros lie in (0, T]; the ball of a cluster may be a little wider
-    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)
-    source = Source.of(approximant)
-    solution = Solution(scene, times, grid, transits, directions, source, (check,), pilot.cpu_s, proof, possible)
-    found = enclosed.sections.passages if enclosed.sections else {}
-    return replace(solution, sections={word: _passages(zeros, times[-1], bits) for word, zeros in found.items()})
+    found, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
+    sections = {word: _passages(passages, SECTION, times[-1], bits) for word, passages in found.items()}
+    known = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
+    return Solution(*known, sections=sections)
 
 
-def _passages(zeros: Any, end: Fraction, bits: int) -> Passages:
+def _passages(zeros: Any, columns: tuple[str, ...], end: Fraction, bits: int) -> Passages:
+    """Return zeros as a table; they lie in (0, end], and the ball of a cluster may be a little wider."""
     ones, others = ([z for z in zeros if (z.kind == "one") is single] for single in (True, False))
-    table = Table.of_intervals(SECTION, [[getattr(z, name) for name in SECTION] for z in ones], bits)
+    table = Table.of_intervals(columns, [[getattr(z, name) for name in columns] for z in ones], bits)
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
     return Passages(table, [z.direction for z in ones], possible)
 

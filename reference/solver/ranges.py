@@ -6,22 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from math import ceil
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines import AUTO
-from ..engines.plan import Report
 from ..errors import InputError, unknown
-from ..numbers.columns import GRID, SECTION, TRANSITS, Framed, data_frame
+from ..numbers.columns import GRID, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
-from ..system.imports import needed
-from .proof_steps import COEFFICIENT_BITS, Feed
-from .reach import check_reach
 from .swing import HOUR, Swing, swing_of
-from .widths import exact_texts, widths_of
 
 
 class Ends(NamedTuple):
@@ -253,61 +246,3 @@ def _decided(rows: list[Any], possible: Sequence[tuple[Fraction, Fraction, str]]
     """Return the rows, each of which begins with an interval of time, before the first that is undecided."""
     first = min((low for low, _, _ in possible), default=None)
     return [row for row in rows if first is None or row[0][1] < first]
-
-
-def solve_ranges(
-    scene: Scene,
-    uncertain: Mapping[str, Any],
-    engine: str = AUTO,
-    report: Report | None = None,
-    times: Sequence[Fraction] | None = None,
-    derivatives: bool = False,
-) -> Ranges:
-    """Prove what holds for a scene with uncertain inputs, at its grid times, with the transits if it asks for them.
-
-    Other `times` take the place of the grid's, from 0 on, increasing. With `derivatives` it proves these too.
-
-    Raises:
-        InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
-        UnreachableError: the box is too wide, and it tells up to which time it holds.
-    """
-    needed("flint", "enclose", "--uncertain", "nothing", "which the proof needs")
-    from ..enclosure.printed_box import end_of
-    from ..enclosure.prove_box import enclose_box
-    from ..enclosure.shapes import Box
-
-    widths = widths_of(scene, uncertain)
-    inputs, times = scene.exact, times or scene.exact.grid
-    end = times[-1]
-    texts = exact_texts(widths)
-    box = Box(inputs, *(end_of(inputs, texts, side) for side in (-1, 1)))
-    swing = abs(float(inputs.gravity / inputs.length)) ** 0.5
-    steps = ceil(float(end) * max(swing, abs(float(inputs.rotation_rate)), 1 / float(end)))
-    feeds: list[Feed] = []
-
-    def approximant(bits: int, latest: Fraction) -> Any:
-        check_reach(steps, bits, scene.run.digits)
-        feeds.append(Feed(inputs, (latest,), engine, steps))
-        return feeds[-1](bits - COEFFICIENT_BITS)
-
-    try:
-        tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(
-            box, list(times), approximant, scene.run.transits, tell, widths, derivatives, scene.run.sections or ()
-        )
-    finally:
-        for feed in feeds:
-            feed.stop()
-    transits = ZeroRanges.of(proof.proved.transits or (), TRANSITS, end)
-    return Ranges(
-        scene,
-        texts,
-        tuple(times),
-        Intervals(GRID, proof.proved.states),
-        transits.table,
-        transits.directions,
-        transits.possible,
-        feeds[-1].begun,
-        {word: ZeroRanges.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
-        proof,
-    )

@@ -24,10 +24,9 @@ from ..model.formulations import FORMULATIONS
 from ..model.start import Start
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, Array, real, to_fraction
-from ..scenes.inputs import Inputs
+from ..scenes.inputs import RELEASES, Inputs
 from ..scenes.scene import Scene
-from .pilot import Pilot, run_pilot
-from .reach import MAX_PREC
+from .pilot import MAX_PREC, Pilot, run_pilot
 
 Quadruple = tuple[Fraction, Fraction, Fraction, Fraction]
 DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation
@@ -89,9 +88,6 @@ def _perturbed_constants(inputs: Inputs, nudge: Fraction) -> Inputs:
     return replace(inputs, latitude=latitude, **values)
 
 
-_SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
-_POSITION = ("x", "y", "vx", "vy")
-_ANGLES = ("angle", "azimuth", "angle_rate", "azimuth_rate")
 _PREC = 320  # bits
 _NUDGE = Fraction(1, 1 << 100)  # central differences in 320 bits: exact to about 2**-200
 _TOLERANCE = 1e-11  # of the variational equations, whose results are used to three digits
@@ -114,14 +110,7 @@ class Sensitivity:
     @cached_property
     def values(self) -> dict[str, Fraction]:
         """Each input's exact value, by its name in the scene file, such as "site.gravity"."""
-        inputs = self.scene.exact
-        values = {"pendulum.length": inputs.length, "pendulum.drag": inputs.drag}
-        values |= {f"site.{name}": getattr(inputs, name) for name in _SITE}
-        if inputs.flattening:
-            values["site.inverse_flattening"] = 1 / inputs.flattening
-        names, numbers = (_POSITION, inputs.position) if inputs.position is not None else (_ANGLES, inputs.angles)
-        assert numbers is not None
-        return values | {f"release.{name}": value for name, value in zip(names, numbers, strict=True)}
+        return self.scene.exact.by_name
 
     def derivative(self, name: str) -> Array:
         """Return the derivatives of x, y, z (m) and vx, vy, vz (m/s) with respect to one input, shape (times, 6).
@@ -187,9 +176,9 @@ def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
     if key == "inverse_flattening":
         fields = {"flattening": 1 / value}
     elif section == "release":
-        names, kind = (_POSITION, "position") if key in _POSITION else (_ANGLES, "angles")
-        numbers = [value if other == key else old for other, old in zip(names, getattr(inputs, kind), strict=True)]
-        fields = {kind: tuple(numbers)}
+        kind = next(kind for kind, names in RELEASES.items() if key in names)
+        old = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
+        fields = {kind: tuple(value if name == key else before for name, before in old)}
     return replace(inputs, **fields)
 
 

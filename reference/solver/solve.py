@@ -14,9 +14,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, overload
 
 from ..engines import AUTO
-from ..engines.background import run_both
 from ..engines.plan import Plan, Report, Run
-from ..engines.registry import checked, fastest, run
+from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
@@ -25,8 +24,7 @@ from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene, as_scene
 from .agreement import Agreement, with_passage_errors, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
-from .pilot import Pilot
-from .reach import MAX_PREC, MAX_RAISES, Pace, check_reach, out_of_reach
+from .pilot import MAX_PREC, MAX_RAISES, Pace, Pilot, check_reach, out_of_reach
 from .solution import CrossCheck, Passages, Solution, Source
 
 if TYPE_CHECKING:
@@ -134,7 +132,7 @@ def solve(
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
-        from .ranges import solve_ranges  # nor that of a box
+        from .uncertain import solve_ranges  # nor that of a box
 
         return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)
     if settings.level == "enclosed":
@@ -146,11 +144,11 @@ def solve(
     return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)
 
 
-def solve_at(scene: Scene, times: Collection[Fraction], digits: int, report: Report | None = None) -> Solution:
+def solve_at(scene: Scene, times: Collection[Fraction], digits: int) -> Solution:
     """Solve a scene at the level self_consistent and without transits, at times in s that stand for its grid."""
     scene = scene.with_values([f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"])
     every = tuple(sorted({Fraction(0), *times} | ({scene.exact.grid_step} if not any(times) else set())))
-    return _agreed(scene, every, pilot_for(scene, every), AUTO, report)
+    return _agreed(scene, every, pilot_for(scene, every), AUTO, None)
 
 
 def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = None) -> Solution | None:

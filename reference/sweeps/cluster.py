@@ -22,7 +22,7 @@ from distributed.versions import get_package_info
 
 from ..errors import FoucaultError, InputError
 from ..system.workers import Pool, WorkerDied
-from .driver import Executor, isolated, prepared, work
+from .driver import Executor, isolated, prepared, solve_and_save
 from .part import Part
 from .request import Request, request_of
 
@@ -190,4 +190,4 @@ def _prepare(text: str) -> float:
 
 def compute(text: str, rows: range, folder: Path | None) -> Part:
     """Compute rows on a worker."""
-    return work(request_of(text), rows, folder, partial(isolated, _alone))
+    return solve_and_save(request_of(text), rows, folder, partial(isolated, _alone))

@@ -37,7 +37,7 @@ class Executor:
 
     Attributes:
         workers: how many.
-        begin: begins a part, or some of its rows: the result is that of `work`, or `WorkerDied` is raised.
+        begin: begins a part, or some of its rows: the result is that of `solve_and_save`, or `WorkerDied` is raised.
         check: raises if nothing will come any more; None where that cannot be.
         compile_s: CPU seconds of compiling.
     """
@@ -67,7 +67,7 @@ def drive(
         request: the sweep.
         parts: which of its parts.
         executor: what computes them.
-        keep: called with every part that `work` did not save.
+        keep: called with every part that `solve_and_save` did not save.
         report: called with the number of rows that were done since the last call.
     """
     total, died = Tally(), list[range]()
@@ -92,7 +92,7 @@ def drive(
             report(1)
         solved = Part.joined(alone)
         total += solved.tally
-        if solved.columns:  # else the row is a whole part, which `work` has saved
+        if solved.columns:  # else the row is a whole part, which `solve_and_save` has saved
             keep(request.part_of(rows.start), solved)
     return total
 
@@ -105,7 +105,7 @@ def _crashed(request: Request, rows: range, reason: str) -> Part:
     return part
 
 
-def work(
+def solve_and_save(
     request: Request,
     rows: range,
     folder: Path | None,
@@ -149,7 +149,7 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
         return
 
     def begin(rows: range) -> Future[Any]:
-        return threads.submit(work, request, rows, folder, promote, stop)
+        return threads.submit(solve_and_save, request, rows, folder, promote, stop)
 
     def prepare() -> None:
         took_s = prepared(request)  # before the sum is read, to which other threads add meanwhile
@@ -179,7 +179,7 @@ def prepared(request: Request) -> float:
 
 def compute(text: str, rows: range, folder: Path | None) -> Part:
     """Compute rows in a process of their own."""
-    return work(request_of(text), rows, folder)
+    return solve_and_save(request_of(text), rows, folder)
 
 
 def isolated(pool: Pool, request: Request, row: int, *, doubtful: bool) -> Promoted:

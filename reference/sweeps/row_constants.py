@@ -19,16 +19,15 @@ from ..model.sections import form_along
 from ..model.start import at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..numbers.precision import Array
-from ..scenes.inputs import GravityIs, Inputs
+from ..scenes.fields import azimuth_of
+from ..scenes.inputs import RELEASES, GravityIs, Inputs
 from ..scenes.scene import Scene
-from ..scenes.sections import azimuth_of
 from .axes import Table
 
 Columns = Mapping[str, DoubleDouble]
 
 SITE = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
-POSITION = ("x", "y", "vx", "vy")
-ANGLES = ("angle", "azimuth", "angle_rate", "azimuth_rate")
+POSITION, ANGLES = RELEASES.values()
 _AT_ONCE = 8192  # rows whose working arrays fit into a processor's cache
 _NEARLY = 1e-9
 _SAME = 2.0**-94  # of the parts of a sum: if it is less, it is zero

@@ -14,13 +14,14 @@ from typing import Any, Protocol, TypeVar
 from ..errors import InputError, no_attribute, unknown
 
 
-def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+def lazy(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Return the functions `__getattr__` and `__dir__` of a package, which import its names at their first use.
 
     Args:
         package: the package's own name.
-        homes: the module that defines each name, relative to the package.
+        modules: the names that each module defines, by its own name relative to the package.
     """
+    homes = {name: module for module, names in modules.items() for name in names.split()}
 
     def attribute(name: str) -> Any:
         if name in homes:

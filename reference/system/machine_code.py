@@ -1,4 +1,4 @@
-"""Machine code that numba keeps on disk, in a folder for the very sources that it is made of.
+"""Machine code that numba keeps on disk, in a folder for the very sources that it is made of; it is announced.
 
 numba itself looks at the file of a function alone: after a change of what the function calls it would take old machine
 code for new. Of several processes that need a function one compiles it; the others wait and take what it has kept.
@@ -7,20 +7,36 @@ code for new. Of several processes that need a function one compiles it; the oth
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
-from contextlib import ExitStack, suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from hashlib import sha256
 from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar
 
-from .cache import store
-from .first_use import announce
-
 Function = TypeVar("Function", bound=Callable[..., Any])
 HERE = Path(__file__).parent
 PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
 _declaring = Lock()
+_listeners: list[Callable[[str], None]] = []
+_announced: set[str] = set()
+
+
+@contextmanager
+def announced_to(listener: Callable[[str], None]) -> Iterator[None]:
+    """Have `listener` called with one sentence for each piece of work that is done for the first time meanwhile."""
+    _listeners.append(listener)
+    try:
+        yield
+    finally:
+        _listeners.remove(listener)
+
+
+def announce(what: str, seconds: int) -> None:
+    """Tell the last listener, once in a process, that `what` is compiled, and that this takes about `seconds`."""
+    if what not in _announced and _listeners:
+        _announced.add(what)
+        _listeners[-1](f"First use on this machine: {what} are compiled, once, for about {seconds} seconds.")
 
 
 def folder_of(sources: Iterable[Path]) -> Path | None:
@@ -35,6 +51,8 @@ def folder_of(sources: Iterable[Path]) -> Path | None:
         return Path(chosen, name)
     if os.access(HERE, os.W_OK):
         return HERE / "__pycache__" / name
+    from .cache import store  # and NumPy, which `foucault --help` does not need
+
     return store("machine_code", name, lambda path: path.mkdir(exist_ok=True))
 
 

@@ -13,7 +13,7 @@ import pytest
 from forgery import forge, moved
 
 import reference
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.verify import verify
 from reference.dataset.write import write

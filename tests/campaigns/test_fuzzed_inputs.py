@@ -69,7 +69,8 @@ def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(size, foucault,
     for place in (
         "compare.score.judge.golden_of",
         "compare.studies.study.golden_of",
-        "reference.dataset.shipping.solve",
+        "reference.solver.solve.solve",
+        "reference.commands.generate_all.solve",
     ):
         monkeypatch.setattr(place, stop)
     for i in range(size(40, 1000)):

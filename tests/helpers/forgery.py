@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from reference.dataset.golden import Files, read_files
+from reference.dataset.files import Files, read_files
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.record import invariant_drift
 from reference.dataset.render import derived_texts

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from places import ROOT
 
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.manifest import FUNCTION
 from reference.scenes.shipped import golden_root
 

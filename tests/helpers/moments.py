@@ -86,9 +86,9 @@ def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
     from foucault import main
 
     if few := os.environ.get("SCENES_THAT_SHIP"):  # instead of all that do
-        from reference.dataset import shipping
+        from reference.commands import generate_all
 
-        shipping.scene_ids, shipping.seals = few.split, dict
+        generate_all.scene_ids, generate_all.seals = few.split, dict
     times: list[float] = []
     done = False
 

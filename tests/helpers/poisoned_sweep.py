@@ -28,9 +28,9 @@ def solved(*_: Any, **__: Any) -> Any:
 
 def compute_here(document: str, rows: range, folder: Any) -> Any:
     """Compute rows as `driver.compute` does, with a solver that is done at once, but die at the row."""
-    from reference.sweeps.driver import work
+    from reference.sweeps.driver import solve_and_save
     from reference.sweeps.request import request_of
 
     if POISON in rows:
         os.kill(os.getpid(), signal.SIGKILL)
-    return work(request_of(document), rows, folder, solved)
+    return solve_and_save(request_of(document), rows, folder, solved)

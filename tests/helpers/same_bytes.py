@@ -28,15 +28,16 @@ def confirmed() -> list[str]:
 
 def made_again(name: str) -> dict[str, str | bytes]:
     """Return the files of a dataset that ships, made as `generate NAME` makes it."""
+    import reference
     from reference.dataset.place import default_folder
+    from reference.dataset.record import making_of
     from reference.dataset.render import render
-    from reference.dataset.shipping import making_of, solved
     from reference.scenes.scene import load_scene
 
     scene_id, doubles, _ = name.partition(".binary64")
     scene = load_scene(scene_id, ["inputs=binary64"] if doubles else [])
     making = making_of(scene, name, default_folder(scene, name))
-    return render(solved(scene, making), name, tables=making.tables)
+    return render(reference.solve(scene, **making.asked_of(scene)), name, tables=making.tables)
 
 
 def shipped(name: str) -> dict[str, str | bytes]:

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 
 from reference.dataset.function import FunctionRecord
 from reference.dataset.manifest import Manifest
-from reference.dataset.vectors import Vectors
+from reference.dataset.render import Vectors
 from reference.scenes.scene import Scene
 
 SCHEMAS: dict[str, type[BaseModel]] = {

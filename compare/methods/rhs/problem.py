@@ -22,7 +22,7 @@ from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
 
-from .straight_line import Program, elements, generated
+from .straight_line import StraightLine, elements, generated
 from .tracing import differentiated, record
 
 SMALLEST_SIZE = 1e-12  # least swing of a variable, so that tolerances for a bob at rest are not zero
@@ -60,12 +60,12 @@ class FirstOrderSystem:
         return cls(variables, rates, dict(parameter for symbol, parameter in symbols if symbol in used))
 
     @cached_property
-    def program(self) -> Program:
+    def program(self) -> StraightLine:
         """The derivatives as straight-line code of the variables and the parameters."""
         return self.traced(self.rates)
 
     @cached_property
-    def jacobian(self) -> Program:
+    def jacobian(self) -> StraightLine:
         """∂ derivative / ∂ variable, row by row, as straight-line code of the variables and the parameters."""
         return differentiated(self.program, self.inputs[: len(self.variables)])
 
@@ -74,7 +74,7 @@ class FirstOrderSystem:
         """Names in generated code: x0, x1, … for the variables, k0, k1, … for the parameters."""
         return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(f"k{i}" for i in range(len(self.parameters)))
 
-    def traced(self, function: Callable[..., Sequence[Any]], *more: str) -> Program:
+    def traced(self, function: Callable[..., Sequence[Any]], *more: str) -> StraightLine:
         """Trace a function of state, functions, parameters, and of further inputs named by `more`."""
         count, end = len(self.variables), len(self.inputs)
 
@@ -206,7 +206,7 @@ class Problem:
         rows = range(len(self.start))
         return self.compiled(self.system.jacobian, _SLOPES, j="".join(elements("j", len(rows), str(i)) for i in rows))
 
-    def compiled(self, program: Program, template: str, **texts: object) -> ModuleType:
+    def compiled(self, program: StraightLine, template: str, **texts: object) -> ModuleType:
         """Return straight-line code of the system and a template that calls it, as `straight_line.generated` does."""
         return generated(program, template, len(self.start), len(self.system.parameters), **texts)
 

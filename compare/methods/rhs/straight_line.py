@@ -49,7 +49,7 @@ class CodeLine:
 
 
 @dataclass(frozen=True)
-class Program:
+class StraightLine:
     """Straight-line code: inputs, operations in order, and the names or literals that are its results."""
 
     inputs: tuple[str, ...]
@@ -68,7 +68,7 @@ class Program:
         return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
 
 
-def generated(program: Program, template: str, variables: int, parameters: int, **texts: object) -> ModuleType:
+def generated(program: StraightLine, template: str, variables: int, parameters: int, **texts: object) -> ModuleType:
     """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
 
     Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of these

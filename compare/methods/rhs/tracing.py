@@ -33,7 +33,7 @@ from fractions import Fraction
 from operator import add, mul, neg, sub, truediv
 from typing import Any
 
-from .straight_line import FUNCTIONS, CodeLine, Program
+from .straight_line import FUNCTIONS, CodeLine, StraightLine
 
 
 class TracingError(TypeError):
@@ -167,7 +167,7 @@ class Tape:
     def _positive(self, a: Any) -> Any:
         return self._negated.get(a.name) if isinstance(a, TracedNumber) else None
 
-    def program(self, inputs: Sequence[str], outputs: Sequence[Any]) -> Program:
+    def program(self, inputs: Sequence[str], outputs: Sequence[Any]) -> StraightLine:
         """Return the operations that the outputs need, renumbered."""
         results = [self.operand(value) for value in outputs]
         needed, lines_needed = set(results), []
@@ -182,7 +182,7 @@ class Tape:
             return tuple(short.get(name, name) for name in names)
 
         lines = tuple(CodeLine(short[line.name], line.operation, renamed(line.operands)) for line in lines_needed)
-        return Program(tuple(inputs), lines, renamed(results))
+        return StraightLine(tuple(inputs), lines, renamed(results))
 
 
 def _is(value: Any, number: int) -> bool:
@@ -202,7 +202,7 @@ class RecordingFunctions:
         return lambda *values: self._tape.record(name, *values)
 
 
-def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str]) -> Program:
+def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str]) -> StraightLine:
     """Trace a generic function.
 
     Args:
@@ -219,7 +219,7 @@ def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str])
     return tape.program(inputs, list(outputs))
 
 
-def differentiated(program: Program, variables: Sequence[str]) -> Program:
+def differentiated(program: StraightLine, variables: Sequence[str]) -> StraightLine:
     """Return the program of the Jacobian: ∂ output / ∂ variable, row by row, shape (outputs, variables) flattened."""
     tape = Tape()
     functions = RecordingFunctions(tape)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement, section
+from ..checks import Approximate, Check, Identity, PrintedNumber, Statement, Tested, section
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate
 from ..points import Point, points
@@ -86,9 +86,9 @@ def _sense(p: Point) -> Any:
     return x * vy - y * vx
 
 
-def _clockwise() -> Finding:
+def _clockwise() -> Tested:
     p = points()[0]
-    return Finding(_sense(p) < 0, f"x vy - y vx = {shown(_sense(p))} in the turning axes, north")
+    return Tested(_sense(p) < 0, f"x vy - y vx = {shown(_sense(p))} in the turning axes, north")
 
 
 def _ellipse(p: Point, t: Any) -> Vector:

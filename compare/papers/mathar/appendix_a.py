@@ -9,13 +9,13 @@ import numpy as np
 
 from reference import load_scene
 
-from ...methods import rk4, rkng56, rkng67
-from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
-from ..checks import Check, Finding, PrintedNumber, Statement, section
+from ...methods import rk4
+from ...methods.rkng import RKNG56, RKNG67
+from ...methods.tableau import NystromTableau, Tableau, TableauError
+from ..checks import Check, PrintedNumber, Statement, Tested, section
 from ..digits import MP, mpf, pi, shown
-from ..foucpend.output import Transits
-from ..points import paris
-from ..runs import path_in, transits
+from ..foucpend import Transits
+from ..points import paris, path_in, transits
 from .paris import swings_surplus
 
 WGS84_INVERSE_FLATTENING = "298.257223563"  # NIMA TR8350.2, table 3.1: defining parameter
@@ -28,9 +28,9 @@ def _polar_radius() -> Any:
     return paris().radius * (1 - paris().flattening)
 
 
-def _prolate() -> Finding:
+def _prolate() -> Tested:
     gap = _polar_radius() - paris().radius
-    return Finding(gap > 0, f"polar radius - equatorial radius = {shown(gap)} m")
+    return Tested(gap > 0, f"polar radius - equatorial radius = {shown(gap)} m")
 
 
 def order_of(tableau: Tableau | NystromTableau) -> int:
@@ -53,30 +53,30 @@ def _order(tableau: NystromTableau, printed: str) -> dict[str, Any]:
     return {"value": lambda: MP.mpf(order_of(tableau)), "remark": remark}
 
 
-def _step_control() -> Finding:
+def _step_control() -> Tested:
     """Look for a second formula of order 3 in the stages of the classical scheme, whose error it would estimate."""
     table = [[mpf(part) for part in row] for row in rk4.TABLEAU.a]
     nodes = [sum(row, MP.zero) for row in table]
     inner = [sum((part * node for part, node in zip(row, nodes, strict=False)), MP.zero) for row in table]
     conditions = MP.matrix([[MP.one] * len(nodes), nodes, [node**2 for node in nodes], inner])
     size = MP.det(conditions)
-    return Finding(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
+    return Tested(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
 
 
-def _by_parabola() -> Finding:
+def _by_parabola() -> Tested:
     times = np.arange(1001) / 100
     xdot = path_in(load_scene("paris"), times)[:, 3]
     xdot[0] = 0.0  # released at rest, exactly
     zero, true = Transits().of(times, xdot)[0], float(transits("t")[0])
     # of sin(wt) a parabola through three points h apart misses the zero by at most h³ w² max|s(s² - 1)|/6
     bound = 0.065 * 0.01**3 * 9.80665 / 67
-    return Finding(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
+    return Tested(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
 
 
-def _two_transits() -> Finding:
+def _two_transits() -> Tested:
     count, surplus = len(transits("t")), swings_surplus()
     share = mpf(surplus) / count
-    return Finding(
+    return Tested(
         share < mpf("1e-3"),
         f"{count} transits in {count - surplus} half swings of a day",
         f"{surplus} too many, {shown(share, 3)} (relative)" if surplus else "",
@@ -110,10 +110,10 @@ def checks() -> list[Check]:
                     f"(R changes by {shown(_effect_of_the_digit(), 2)} m)"),
             PrintedNumber("a_radius", ", -r", "6.378137 × 10⁶ m", "6.378137e6", lambda: mpf(WGS84_RADIUS)),
             PrintedNumber("a_stages_4", ", -R", "-R 4: 4 stages", "4", lambda: MP.mpf(len(rk4.TABLEAU.a))),
-            PrintedNumber("a_stages_5", ", -R", "-R 5: 8 stages", "8", lambda: MP.mpf(len(rkng56.TABLEAU.c))),
-            PrintedNumber("a_order_5", ", -R", "-R 5: order 6", "6", **_order(rkng56.TABLEAU, "6")),
-            PrintedNumber("a_stages_6", ", -R", "-R 6: 10 stages", "10", lambda: MP.mpf(len(rkng67.TABLEAU.c))),
-            PrintedNumber("a_order_6", ", -R", "-R 6: order 7", "7", **_order(rkng67.TABLEAU, "7")),
+            PrintedNumber("a_stages_5", ", -R", "-R 5: 8 stages", "8", lambda: MP.mpf(len(RKNG56.c))),
+            PrintedNumber("a_order_5", ", -R", "-R 5: order 6", "6", **_order(RKNG56, "6")),
+            PrintedNumber("a_stages_6", ", -R", "-R 6: 10 stages", "10", lambda: MP.mpf(len(RKNG67.c))),
+            PrintedNumber("a_order_6", ", -R", "-R 6: order 7", "7", **_order(RKNG67, "7")),
             Statement("a_parabola", ", output", "transits by quadratic interpolation of three points",
                 _by_parabola, by_run=True, remark="first transit of Paris at the paper's step of 0.01 s"),
             Statement("a_two", ", output", "two transits occur per period", _two_transits),

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import Check, Finding, Identity, Statement, section
+from ..checks import Check, Identity, Statement, Tested, section
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import (
     angle_state,
@@ -20,8 +20,7 @@ from ..first_principles import (
     plane_state,
     square_speed,
 )
-from ..points import Point, points
-from ..runs import paris_passage
+from ..points import Point, paris_passage, points
 from .kinematics import alpha_0, alpha_1, alpha_2
 
 
@@ -95,7 +94,7 @@ def _plane_alpha(power: int) -> Any:
     return lambda p: in_rate(lambda rate: square_speed(p, by_plane, *plane_state(p)[:2], rate), power)
 
 
-def _energy_in_the_inertial_frame_changes() -> Finding:
+def _energy_in_the_inertial_frame_changes() -> Tested:
     p = points()[0]
     (place, speed, _), second = plane_state(p), horizontal_acceleration(p)
 
@@ -104,14 +103,14 @@ def _energy_in_the_inertial_frame_changes() -> Finding:
         return square_speed(p, by_plane, q, speed + s * second) / 2 + p.gravity * by_plane(p, *q)[2]
 
     change = derivative(energy)
-    return Finding(abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion")
+    return Tested(abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion")
 
 
-def _no_time_in_the_lagrangian() -> Finding:
+def _no_time_in_the_lagrangian() -> Tested:
     p = points()[0]
     q, v, _ = angle_state(p)
     early, late = (lagrangian(p, by_angles, q, v, t=t) for t in (MP.zero, p.t))
-    return Finding(vanishes(early - late), f"L(t = 0) - L(t) = {shown(early - late)}")
+    return Tested(vanishes(early - late), f"L(t = 0) - L(t) = {shown(early - late)}")
 
 
 def _spherical(p: Point) -> Vector:
@@ -125,11 +124,11 @@ def _angle_equation(i: int) -> Any:
     return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2
 
 
-def _azimuth_is_fast() -> Finding:
+def _azimuth_is_fast() -> Tested:
     """Compare λ' at the passage next to the vertical with the angular frequency of the swing."""
     near, miss = paris_passage()
     fast, slow = float((np.hypot(near[:, 3], near[:, 4]) / miss).max()), np.sqrt(9.80665 / 67)
-    return Finding(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
+    return Tested(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
 
 
 def _shared(p: Point) -> Any:
@@ -206,10 +205,10 @@ def _swapped(p: Point) -> Point:
     return p.but(x=p.y, y=p.x, vx=p.vy, vy=p.vx)
 
 
-def _east_unbiased() -> Finding:
+def _east_unbiased() -> Tested:
     p = points()[0].but(rate=MP.zero)
     gap = solved(p)[0] - solved(_swapped(p))[1]
-    return Finding(vanishes(gap), f"x'' - (y'' with x and y exchanged) at Ω = 0: {shown(gap)}")
+    return Tested(vanishes(gap), f"x'' - (y'' with x and y exchanged) at Ω = 0: {shown(gap)}")
 
 
 def checks() -> list[Check]:

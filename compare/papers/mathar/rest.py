@@ -1,4 +1,4 @@
-"""Mathar, section V: the rest position of the bob (44)-(47), and the triangle of forces (48)-(50)."""
+"""Mathar, sections V and VI: the rest position (44)-(50), and the terms dropped on the way to (51)-(52)."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from ...approximations.rest_angle import line_of_46, series, triangle
-from ..checks import Approximate, Check, Finding, Identity, Statement, section
+from ...approximations.frequency import line_of_46, series, triangle
+from ...approximations.mathar import derivatives, truncated
+from ..checks import Approximate, Check, Identity, PrintedNumber, Statement, Tested, section
 from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
-from ..first_principles import horizontal_acceleration, rest
+from ..first_principles import coupled_at, horizontal_acceleration, in_rate, linearised, rest, uniform_acceleration
 from ..points import Point, paris, points
-from .lagrangian import beta_x, beta_y
+from .lagrangian import beta_x, beta_y, solved
 
 SERIES = (
     (2, "²", "/ 2g"),
@@ -36,7 +37,7 @@ def _hanging(p: Point) -> Point:
     return _at_rest(p, x=x, y=y)
 
 
-def _degree_of_45() -> Finding:
+def _degree_of_45() -> Tested:
     p = points()[0]
     s, c, share = sin(p.phi), cos(p.phi), p.rate**2 / p.gravity
 
@@ -49,7 +50,7 @@ def _degree_of_45() -> Finding:
         return sum((-1) ** k * MP.binomial(order, k) * cleared(MP.mpf(k)) for k in range(order + 1))
 
     holds = abs(difference(5)) < ZERO_BELOW < abs(difference(4))
-    return Finding(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
+    return Tested(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
 
 
 def _first_line_of_46(p: Point, sign: int) -> Any:
@@ -76,27 +77,27 @@ def steepest() -> tuple[Any, Any]:
     return best, degrees(angle(best))
 
 
-def _below_a_tenth() -> Finding:
+def _below_a_tenth() -> Tested:
     latitude, angle = steepest()
-    return Finding(angle < MP.mpf("0.1"), f"largest {shown(angle)}° at latitude {shown(latitude, 8)}°")
+    return Tested(angle < MP.mpf("0.1"), f"largest {shown(angle)}° at latitude {shown(latitude, 8)}°")
 
 
-def _one_curve() -> Finding:
+def _one_curve() -> Tested:
     latitudes = [MP.mpf(10 * k) for k in range(1, 9)]
     angles = [[degrees(paris().but(length=MP.mpf(m), latitude=d).case.rest_angle) for m in (1, 100)] for d in latitudes]
     gap = max(abs(a - b) for a, b in angles)
-    return Finding(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
+    return Tested(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
 
 
-def _south_in_the_north() -> Finding:
+def _south_in_the_north() -> Tested:
     y_at_rest = [rest(paris().but(latitude=MP.mpf(d)))[1] for d in (-60, -20, 20, 60)]
     holds = all((y < 0) == (d > 0) for y, d in zip(y_at_rest, (-60, -20, 20, 60), strict=True))
-    return Finding(holds, f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m")
+    return Tested(holds, f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m")
 
 
-def _on_the_meridian() -> Finding:
+def _on_the_meridian() -> Tested:
     p = _hanging(paris())
-    return Finding(vanishes(horizontal_acceleration(p)), f"x = {shown(p.x)}, y = {shown(p.y)} m")
+    return Tested(vanishes(horizontal_acceleration(p)), f"x = {shown(p.x)}, y = {shown(p.y)} m")
 
 
 def _forty_four(p: Point) -> Any:
@@ -143,7 +144,7 @@ def _vector_sum(p: Point) -> Vector:
     return vector(0, -out * sin(p.phi), out * cos(p.phi) - p.gravity)
 
 
-def checks() -> list[Check]:
+def _section_v() -> list[Check]:
     """Return the rows, in the order of print."""
     return section("mathar_", "Mathar V",
         Statement("44_x", ", before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
@@ -188,3 +189,107 @@ def checks() -> list[Check]:
         Approximate("50_one", ", after (50)", "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
             lambda s: (_one_term(_slower(s)), sin(triangle(_slower(s).case))), 2, "RΩ²", "rad"),
     )  # fmt: skip
+
+
+def _swinging(s: Any, rate: Any = MP.zero) -> Point:
+    """Return Paris half way through its swing, amplitude and speed s times its own, by default without rotation."""
+    base = paris()
+    x, y = MP.mpf("0.21") * s, MP.mpf("0.28") * s
+    w = sqrt(base.gravity / base.length)
+    return base.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=rate)
+
+
+def without(item: int) -> Callable[[Point], Vector]:
+    """Return a function that gives x'', y'' by (43) without the terms that an item leaves out."""
+    items = frozenset({item})
+
+    def accelerations(p: Point) -> Vector:
+        (x, y, _), (vx, vy, _) = p.case.n, p.case.v
+        return p.length * vector(*derivatives((x, y, vx, vy), truncated(p.k, items), MP, items)[2:])
+
+    return accelerations
+
+
+def _depth_is_length(p: Point) -> Vector:
+    """Return x'', y'' of item 5, in the term with g: z replaced by l."""
+    return -p.gravity / p.length * p.position[:2]
+
+
+def _dropped(item: int) -> Callable[[Any], tuple[Vector, Vector]]:
+    """Return print and truth at an amplitude s times that of Paris, without rotation."""
+    return lambda s: (without(item)(_swinging(s)), solved(_swinging(s)))
+
+
+def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
+    p = _swinging(MP.one, paris().rate * s)
+    return without(1)(p), solved(p)
+
+
+def _printed_gravity(s: Any) -> tuple[Any, Any]:
+    p = paris().faster(s)
+    return p.gravity - p.case.outward * cos(p.phi), p.case.apparent_gravity
+
+
+def _no_centrifugal_force(s: Any) -> tuple[Any, Any]:
+    p = paris().faster(s)
+    return p.gravity, p.case.pull_at_rest
+
+
+def _cosine(s: Any) -> tuple[Vector, Vector]:
+    """Return print and truth of the Coriolis part alone, which is linear in Ω."""
+    p = _swinging(s)
+
+    def linear(function: Callable[[Point], Vector], i: int) -> Any:
+        return in_rate(lambda rate: function(p.but(rate=rate))[i], 1)
+
+    printed, true = (tuple(linear(function, i) for i in (0, 1)) for function in (without(4), solved))
+    return printed, true
+
+
+def _whole(s: Any) -> tuple[Vector, Vector]:
+    p = _swinging(s, paris().rate)
+    return coupled_at(p), uniform_acceleration(p)
+
+
+def _pulled(p: Point) -> Vector:
+    """Return x'', y'' from which item 5 starts: the diagonal of (43), with g alone."""
+    return -p.gravity * abs(p.z) / p.length**2 * p.position[:2]
+
+
+def _section_vi() -> list[Check]:
+    """Return the rows, in the order of print."""
+    share = paris().case.outward / paris().gravity
+    place = "s × the amplitude of Paris, half way through a swing"
+    return section("mathar_", "Mathar VI",
+        PrintedNumber("vi_1_size", "item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
+        Approximate("vi_1", "item 1", "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
+            _no_centrifugal_force, 1, "Ω²", "m/s²",
+            remark=f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(share, 3)} of g, not Ω²"),
+        Approximate("vi_1_order", "item 1", "β_x2 = β_y2 = 0",
+            _sizes_at_rate, 2, "Ω", "m/s²", remark="accelerations half way through a swing; bit 2 of the program's -a"),
+        Approximate("vi_1_variant", "item 1, variant", "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
+            _printed_gravity, 2, "RΩ²", "m/s²"),
+        Approximate("vi_2", "item 2", "-yx in (43) set to zero",
+            _dropped(2), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
+        Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
+            _dropped(3), 2, "amplitude", remark=place),
+        Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
+            _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
+        Approximate("vi_5", "item 5", "z replaced by l",
+            lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))), 2, "amplitude", remark=place),
+        Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
+            lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
+            lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
+            lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy /
+                p.length), remark="truth: reference.model.force without centrifugal force, linear"),
+        Identity("52", "(52)", "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
+            lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
+            lambda p: linearised(p)[1] / p.length, remark="the text at hand has every hat and dot of this line"),
+        Approximate("51_52", "(51), (52)", "an approximation of (43)",
+            _whole, 1, "amplitude", remark=f"against gravity alone, all of items 2-5; {place}"),
+    )  # fmt: skip
+
+
+def checks() -> list[Check]:
+    """Return the rows, in the order of print."""
+    return [*_section_v(), *_section_vi()]

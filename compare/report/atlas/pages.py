@@ -14,10 +14,10 @@ from typing import Any
 from reference.scenes.fields import LEVELS
 from reference.scenes.shipped import data_root, in_checkout
 
-from ..charts.drawing import check_matplotlib
-from ..charts.motion_pictures import motion_svgs, thumbnail
+from ..drawing import check_matplotlib
 from ..folder import PAGE, check_folder, write_files
 from ..motion import Motion
+from ..motion_pictures import motion_svgs, thumbnail
 from ..page import Html, page, paragraph, section, text
 from . import parts
 from .entry import Entry, entries

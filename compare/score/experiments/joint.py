@@ -20,7 +20,7 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ..explanation.causes import FITTED, Cause, causes_of
-from ..explanation.explain import Problem
+from ..explanation.explain import KnownScene
 from ..explanation.families import Fit, fits_of
 from ..explanation.findings import Explanation
 from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
@@ -53,7 +53,7 @@ class Trial:
         setting: its {setting} over that of the first run.
     """
 
-    problem: Problem
+    problem: KnownScene
     case: Case
     setting: float = 1.0
 

@@ -12,7 +12,7 @@ from reference import FoucaultError, Scene
 
 from ...candidates.candidate import Candidate, Deviation
 from ...candidates.external import SETTING
-from ..explanation.explain import RENAMED, Problem
+from ..explanation.explain import RENAMED, KnownScene
 from ..explanation.findings import UNCORRECTED, Explanation
 from ..explanation.fitted import readers_of
 from ..explanation.gate import loose
@@ -40,7 +40,7 @@ class Laboratory:
             told: of its one file.
             run: runs it for an experiment in a scene; raises a FoucaultError.
         """
-        self._problem, self._allowed_m, self._told, self._run = Problem.of(scene), allowed_m, told, run
+        self._problem, self._allowed_m, self._told, self._run = KnownScene.of(scene), allowed_m, told, run
         self._rename = any(convention.id in RENAMED for convention in told.conventions)  # axes as they were read
         self._reach = 0.0
         self._findings: list[Finding] = []
@@ -110,7 +110,8 @@ class Laboratory:
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""
-        problem, changes = Problem.of(experiment.changed(self._problem.scene)), experiment.values(self._problem.scene)
+        scene = self._problem.scene
+        problem, changes = KnownScene.of(experiment.changed(scene)), experiment.values(scene)
         if experiment.finer > 1:
             changes[SETTING] = f"1/{experiment.finer} of the first"
         made, conclusion = None, "its file is read in another way than the first; nothing follows from it"
@@ -129,7 +130,7 @@ class Laboratory:
         self._findings.append(Finding(experiment.id, experiment.title, changes, error_m, said))
         return error_m is not None
 
-    def _trial(self, problem: Problem, candidate: Candidate, setting: float) -> Trial:
+    def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
         """Return a trial of x and y; what may be left of them is as large a part of the swing as of the first."""
         rows = problem.rows(candidate.t, candidate.columns, self._rename)
         rows = replace(rows, positions=np.ascontiguousarray(rows.plane), cord=None)

@@ -50,7 +50,7 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
 
 
 @dataclass(frozen=True)
-class Problem:
+class KnownScene:
     """A scene as the explanation of a file wants it.
 
     Attributes:
@@ -66,7 +66,7 @@ class Problem:
     right: Program
 
     @classmethod
-    def of(cls, scene: Scene) -> Problem:
+    def of(cls, scene: Scene) -> KnownScene:
         """Return the problem of a scene."""
         model = Variants()
         start = model.states(scene.exact, np.zeros(1))[0]
@@ -93,14 +93,14 @@ class Problem:
 
 
 def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
-    problem = Problem.of(scene)
+    problem = KnownScene.of(scene)
     rows = problem.rows(times, columns)
-    best = explanation_of_case(problem.case(rows, allowed_m), scene)
+    best = first_good_explanation(problem.case(rows, allowed_m), scene)
     others = list(other_ways(rows, problem.start)) if best.corrected_m > allowed_m else []
     if any(convention.id in RENAMED for convention in rows.conventions):
         others.append(problem.rows(times, columns, rename=False))  # the release may be at fault, and not the names
     for other in others:
-        told = explanation_of_case(problem.case(other, allowed_m), scene)
+        told = first_good_explanation(problem.case(other, allowed_m), scene)
         if told.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in told.causes):
             best, rows = min((best, rows), (told, other), key=lambda pair: pair[0].score)
     unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
@@ -116,7 +116,7 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     return best
 
 
-def explanation_of_case(case: Case, scene: Scene) -> Explanation:
+def first_good_explanation(case: Case, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
         return _plain(case)

@@ -10,8 +10,8 @@ import numpy as np
 from ...numbers.columns import STATE
 from ...numbers.precision import double_below
 from ...numbers.table import Table
+from ..files import Files
 from ..function import FunctionRecord
-from ..golden import Files
 from ..manifest import FUNCTION, differences
 
 INSIDE = 2  # random times in each piece that are compared with the motion; and both of its ends

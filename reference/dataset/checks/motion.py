@@ -23,11 +23,11 @@ from ...model.start import Start
 from ...numbers.columns import GRID, SECTION, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
-from ..golden import Files
+from ..files import Files
 from ..manifest import MANIFEST, Kind, Manifest
 from ..sheets import Sheet
 from . import function
-from .tables import largest_jerk
+from .scene_check import largest_jerk
 
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 PATIENCE = 4  # times that, for all attempts together, where the first does not decide

@@ -18,7 +18,7 @@ from ...model.force import acceleration, energy, invariant
 from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
 from ...numbers.table import FixedPoint, Integers, integers
-from ..golden import Files
+from ..files import Files
 from ..manifest import Kind
 from ..record import INVARIANT_BITS
 from ..sheets import Sheet
@@ -33,24 +33,19 @@ Quantity = Callable[[list[Any], Constants], Any]
 
 def problems(files: Files) -> Iterator[str]:
     """Yield every row that breaks a law which holds at each moment."""
-    grid = _moments(files, "grid")
-    yield from grid.off_the_sphere()
-    yield from grid.not_along_the_sphere()
-    constant = files.scene.exact.drag == 0
-    if constant:
-        yield from grid.with_another_invariant(grid.first())
+    tables = [grid := _moments(files, "grid")]
     if "sections.csv" in files.tables and files.tables["sections.csv"].rows:
-        passages = _moments(files, "sections")
-        yield from passages.off_the_sphere()
-        yield from passages.not_along_the_sphere()
-        if constant:
-            yield from passages.with_another_invariant(grid.first())
+        tables.append(_moments(files, "sections"))
     if files.manifest.counts.transits:
-        transits = _moments(files, "transits")
-        yield from transits.off_the_sphere()
-        if constant:
-            yield from transits.with_another_invariant(grid.first())
-        yield from transits.with_another_acceleration()
+        tables.append(_moments(files, "transits"))
+    for moments in tables:
+        yield from moments.off_the_sphere()
+        if moments.transits is None:
+            yield from moments.not_along_the_sphere()
+        if files.scene.exact.drag == 0:
+            yield from moments.with_another_invariant(grid.first())
+        if moments.transits is not None:
+            yield from moments.with_another_acceleration()
 
 
 def _moments(files: Files, kind: Kind) -> _Moments:

@@ -17,10 +17,10 @@ from ..row_zeros import (
     HEIGHT,
     MODEL,
     TRANSIT,
-    Motion,
-    Release,
+    RowMotion,
+    RowRelease,
+    RowZeros,
     Samples,
-    Zeros,
     describe_highest_points,
     describe_transits,
 )
@@ -47,7 +47,7 @@ class Integrator:
         rate = {TRANSIT: v[0], HEIGHT: v[2]}
         if form:
             numbers = [hy.par[len(names) + i] for i in range(len(XDOT))]
-            rate[TRANSIT] = Motion(n, v, v).form(numbers)[0]
+            rate[TRANSIT] = RowMotion(n, v, v).form(numbers)[0]
         events = [hy.nt_event(rate[kind], _recorder(noted)) for kind, noted in self._events.items()]
         keep_on_disk(DOUBLE)
         self._ta: Any = hy.taylor_adaptive(
@@ -64,7 +64,7 @@ class Integrator:
         numbers = (*([*k.turn[1:], k.pull[2], k.drag][: self._parameters]), *form)
         self._ta.pars[:] = numbers[: len(self._ta.pars)]
 
-    def to_end(self, release: Release, most: int) -> tuple[Any, int, bool]:
+    def to_end(self, release: RowRelease, most: int) -> tuple[Any, int, bool]:
         """Return the state at the end, the steps taken, and whether the end was not reached.
 
         A zero at the release may hide the next one from heyoka, if both are in one step: the first one is short.
@@ -76,9 +76,9 @@ class Integrator:
         state = self._ta.state.copy()
         return state, int(steps) + short, outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all()
 
-    def zeros(self, kind: int) -> Zeros:
+    def zeros(self, kind: int) -> RowZeros:
         """Return the zeros of a kind that were passed, in order."""
-        return Zeros.of(self._events.get(kind, []))
+        return RowZeros.of(self._events.get(kind, []))
 
     def at(self, times: Array) -> Any:
         """Return the states at increasing times, shape (variables, times)."""
@@ -138,7 +138,7 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
             n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
             k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
             state = [*n, *np.cross(n, V)]
-            release = Release.of(rows, axes, row, Motion.of(state, k), forms[row])
+            release = RowRelease.of(rows, axes, row, RowMotion.of(state, k), forms[row])
             transits = _solve(outcomes, row, release, k, state, wanted, tolerance)
             listed.append((row, transits.times, transits.directions))
         _turn_back(outcomes, rows, axes)
@@ -146,8 +146,8 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
 
 
 def _solve(
-    outcomes: Outcomes, row: int, release: Release, k: Constants, state: Any, wanted: Wanted, tolerance: float
-) -> Zeros:
+    outcomes: Outcomes, row: int, release: RowRelease, k: Constants, state: Any, wanted: Wanted, tolerance: float
+) -> RowZeros:
     """Solve a row, its state at the end left in these axes and over l; return its transits."""
     sought, kind, form = _sought(wanted), (bool(k.drag), tolerance), release.forms[TRANSIT]
     with _lent(sought, wanted.form, *kind) as first:
@@ -157,8 +157,8 @@ def _solve(
         transits, heights = (release.after(first.zeros(zero), zero) for zero in (TRANSIT, HEIGHT))
     if stopped:
         outcomes.fate[row] = STOPPED
-        return Zeros.of([])
-    end = Motion.of(last, k)
+        return RowZeros.of([])
+    end = RowMotion.of(last, k)
     outcomes.state[row], outcomes.steps[row] = [*end.n, *end.v], steps
     if sought:
         swung = SAMPLES_PER_SWING * release.end * release.rate / (2 * np.pi)
@@ -175,14 +175,14 @@ def _solve(
 
 
 def _seen(
-    samples: Array, transits: Zeros, heights: Zeros, k: Constants, state: Any, form: Any, kind: tuple[bool, float]
-) -> tuple[Samples, Motion, Motion]:
+    samples: Array, transits: RowZeros, heights: RowZeros, k: Constants, state: Any, form: Any, kind: tuple[bool, float]
+) -> tuple[Samples, RowMotion, RowMotion]:
     """Return the motion at samples, at transits and at zeros of the height's rate, by one more run."""
     times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
     at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
     with _lent((), False, *kind) as second:
         second.begin(k, state, form)
-        motion = Motion.of(second.at(times), k)
+        motion = RowMotion.of(second.at(times), k)
     return Samples(samples, motion[at_samples]), motion[at_transits], motion[at_heights]
 
 

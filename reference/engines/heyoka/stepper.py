@@ -62,10 +62,9 @@ class Stepper:
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
         system = System.build(formulation, self.model.k)
-        compiled = dict(self.numbers.keywords)
+        keywords = dict(self.numbers.keywords)
         if span is not None and float(span) * start.rate < SHORT_RUN:
-            compiled["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
-        keywords = dict(compiled)
+            keywords["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
         if events:
             zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 

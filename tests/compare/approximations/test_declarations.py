@@ -15,7 +15,7 @@ from compare.approximations import (
     motions,
     quantities,
 )
-from compare.papers.foucpend.output import ITEMS
+from compare.papers.foucpend import ITEMS
 from reference import InputError, IntegrationError, UnreachableError, load_scene
 
 PARIS = load_scene("paris")

@@ -15,7 +15,7 @@ from compare import assert_agrees
 from compare.testing import SceneCase
 from reference import InputError, load_scene, trajectory
 
-SCHEMA = json.loads(files("compare.report.suite").joinpath("score.schema.json").read_text("utf-8"))
+SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
 SCENE = (
     'id = "{name}"\ninputs = "binary64"\n[pendulum]\nlength = "2"\n[release]\nx = "0.1"\ny = "0.2"\n'
     '[run]\nt_end = "20"\ngrid_step = "5"\ndigits = 22\n'

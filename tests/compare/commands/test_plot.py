@@ -8,8 +8,8 @@ import pytest
 import reference
 from compare.candidates.candidate import candidate_of
 from compare.observed.swing_plane import Gauge
-from compare.report.charts.motion_pictures import length_unit, time_unit
 from compare.report.motion import Motion
+from compare.report.motion_pictures import length_unit, time_unit
 
 pytest.importorskip("matplotlib")
 

@@ -10,15 +10,15 @@ import pytest
 
 import reference
 from compare import assert_agrees, study
-from compare.methods import METHODS, available, capture
-from compare.methods.capture import captured
+from compare.methods import METHODS, available, library
+from compare.methods.library import captured
 from compare.methods.rhs.problem import Problem
 from reference.scenes.fields import LEVELS
 
 
 @pytest.fixture
 def own_process(monkeypatch):
-    monkeypatch.setattr(capture, "own_process", True)
+    monkeypatch.setattr(library, "own_process", True)
 
 
 def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch):

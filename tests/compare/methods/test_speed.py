@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from compare.methods import METHODS, Problem, available, rk4
+from compare.methods.fixed_step import runge_kutta, traced_step
 from compare.methods.rhs.straight_line import compiled
-from compare.methods.runge_kutta.fixed_step import runge_kutta, traced_step
 from reference import load_scene
 
 pytestmark = pytest.mark.skipif(available(METHODS["rk4"]) is not None, reason="numba is not installed")

@@ -18,8 +18,7 @@ from compare.papers.mathar.paris import (
     swings_surplus,
     transit_frequency,
 )
-from compare.papers.points import paris
-from compare.papers.runs import transits
+from compare.papers.points import paris, transits
 
 PAGE = " ".join((ROOT / "docs/physics.md").read_text(encoding="utf-8").split())
 P = paris()

@@ -11,14 +11,13 @@ import pytest
 
 from compare.methods import METHODS
 from compare.methods.method import Family
-from compare.report import approximations
-from compare.report.charts import study_charts
-from compare.report.charts.drawing import COLOURS, Line, legend, line_style, name_ends, power_of_ten, sheet
-from compare.report.charts.motion_pictures import motion_svgs
-from compare.report.charts.stability_charts import error_growth, heat_map
-from compare.report.charts.study_charts import CPU, ERROR, FAMILY_COLOURS, family_of, ladders
+from compare.report import approximations, study_charts
+from compare.report.drawing import COLOURS, Line, legend, line_style, name_ends, power_of_ten, sheet
 from compare.report.motion import Motion
+from compare.report.motion_pictures import motion_svgs
 from compare.report.pareto import cost_of, curves
+from compare.report.stability_charts import error_growth, heat_map
+from compare.report.study_charts import CPU, ERROR, FAMILY_COLOURS, family_of, ladders
 from compare.studies.approximation_errors import TimeRow, error_table
 from compare.studies.approximation_limits import SweepRow
 from compare.studies.long_runs import LongRun

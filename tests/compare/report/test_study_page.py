@@ -243,7 +243,7 @@ def test_a_table_says_the_same_as_html_as_text_and_as_csv():
 
 
 def test_neither_the_report_nor_its_parts_load_matplotlib():
-    modules = "compare.report.study_page, compare.report.page, compare.report.charts"
+    modules = "compare.report.study_page, compare.report.page, compare.report.study_charts"
     code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert process.stdout.strip() == "False"

@@ -12,7 +12,7 @@ from small_scenes import make_scene
 from compare.candidates.candidate import COLUMNS, Candidate, candidate_of
 from compare.score.errors import drifts, swing_rate, trajectory_errors
 from reference import load, load_scene, trajectory
-from reference.dataset.dense import dense
+from reference.dataset.golden import dense
 from reference.numbers.precision import LONG_DOUBLE
 
 TIMES = np.linspace(0.0, 3600.0, 721)

@@ -21,13 +21,13 @@ from places import MISTAKEN_C, ROOT
 
 from compare.candidates.external import placeholders
 from compare.candidates.layout import Naming
-from compare.commands.experimenting import Program
+from compare.commands.experimenting import Runnable
 from compare.commands.judging import Judging
 from compare.score.experiments.findings import MOST_RUNS
 from compare.score.verdict import Score
 from reference import load_scene
 
-SCHEMA = json.loads(files("compare.report.suite").joinpath("score.schema.json").read_text("utf-8"))
+SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
 FEW = (1, 6, 17, 33)  # of the programs: in Python, C, JavaScript and C, one of them with {setting}
 SEEDS = (101, 102, 103)
 RTOL = 1e-6  # {setting} of programs that take a tolerance
@@ -55,7 +55,7 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def scored(made: Ambiguous, experiments: bool) -> Score:
-    program = Program(made.scene, made.command, RTOL if "rtol" in made.command else None, 300.0)
+    program = Runnable(made.scene, made.command, RTOL if "rtol" in made.command else None, 300.0)
     outcome = Judging(Naming(), OPTIONS).program(program, "it", None, 0, experiments)
     assert outcome.score is not None, outcome.error
     return outcome.score
@@ -196,6 +196,6 @@ def test_a_program_that_agrees_is_not_run_again(foucault: Any, mistaken: Path) -
 
 def test_the_usual_step_divides_the_grid() -> None:
     scene = load_scene("paris")
-    step = Program(scene, "./p {setting}", None, 1.0).step
+    step = Runnable(scene, "./p {setting}", None, 1.0).step
     many = float(scene.exact.grid_step) / step
     assert many == pytest.approx(round(many), rel=1e-12) and 16.4 / step > 199

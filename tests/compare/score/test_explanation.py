@@ -25,7 +25,7 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
-from compare.score.explanation.explain import Problem, explain
+from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.families import fits_of
 from compare.score.explanation.findings import Explanation
 from compare.score.explanation.fitted import readers_of
@@ -320,7 +320,7 @@ def test_an_integrator_drifts_in_phase_and_amplitude_and_in_nothing_else(
     gravity: str, changes: dict[str, float], drifting: bool
 ) -> None:
     fields = [f"site.gravity={gravity}", "release.x=0.3", "release.y=0.4", "inputs=binary64"]
-    problem, times = Problem.of(load_scene("paris", fields)), np.linspace(0.0, 300.0, 240)
+    problem, times = KnownScene.of(load_scene("paris", fields)), np.linspace(0.0, 300.0, 240)
     right = problem.right
     scaled = {name: value * right.g / 9.80665 if name == "g" else value for name, value in changes.items()}
     rows = Rows(times, np.zeros((240, 2)), 0.0)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compare.score.explanation.explain import Problem, explain
+from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.findings import Explanation
 from compare.score.explanation.unexplained import Rows, largest
 from compare.score.judge import judge
@@ -176,7 +176,7 @@ def test_nine_of_ten_true_causes_are_named_and_none_is_wrong(
 def test_a_cause_that_is_not_told_has_a_motion_that_others_have_as_well(
     name: str, changes: dict[str, Any], one: dict[str, Any], other: dict[str, Any]
 ) -> None:
-    problem = Problem.of(load_scene("paris", [*SETTINGS[name], "inputs=binary64"]))
+    problem = KnownScene.of(load_scene("paris", [*SETTINGS[name], "inputs=binary64"]))
     times = np.loadtxt(FOLDER / f"{name}.csv", delimiter=",", skiprows=1)[:, 0]
     case = problem.case(Rows(times, np.zeros((len(times), 2)), 0.0), 0.0)
     program = problem.right.changed(**changes)

@@ -8,7 +8,7 @@ import pytest
 from compare.methods import Method, Outcome, Problem, Work
 from compare.methods.method import outcome
 from compare.studies.measure import Bench
-from compare.studies.method_errors import GridTruth
+from compare.studies.row import GridTruth
 from compare.truth import golden_of
 from reference import load_scene
 

@@ -8,7 +8,7 @@ import json
 import pytest
 from places import ROOT
 
-from compare.report.charts.stability_charts import LETTERS
+from compare.report.stability_charts import LETTERS
 from compare.studies.row import FAILURES, Row, failure
 from reference import InputError, IntegrationError, UnreachableError
 from reference.status import Status

@@ -19,8 +19,7 @@ from compare.report.pareto import front
 from compare.report.study_tables import transit_error
 from compare.studies import users_program
 from compare.studies.measure import Bench
-from compare.studies.method_errors import GridTruth
-from compare.studies.row import Row
+from compare.studies.row import GridTruth, Row
 from compare.studies.study import plan, study
 from compare.studies.study_plan import bits_of, precision_items, precision_scene
 from compare.truth import golden_of

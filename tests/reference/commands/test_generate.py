@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from foucault import commands
-from reference.dataset.shipping import is_done, jobs
+from reference.commands.generate_all import is_done, jobs
 from reference.scenes.shipped import data_root, index, scene_ids, seals
 
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
@@ -20,8 +20,8 @@ FEW = ["conical", "pantheon", "paris"]
 
 
 def ship_few(monkeypatch):
-    monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: FEW)
-    monkeypatch.setattr("reference.dataset.shipping.seals", dict)
+    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW)
+    monkeypatch.setattr("reference.commands.generate_all.seals", dict)
 
 
 @pytest.fixture
@@ -85,7 +85,7 @@ def test_it_goes_on_with_what_is_missing_or_damaged(foucault, made, tmp_path, mo
     assert sorted(path.name for path in out.iterdir()) == FEW
     assert (out / "conical" / "manifest.json").stat().st_mtime_ns == kept.st_mtime_ns
     # other inputs are another dataset
-    monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: FEW[2:])
+    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW[2:])
     status, text, _ = foucault("generate", "--all", "--t-end", "120", *SHORT[2:], "--out", out)
     assert (status, "1 made" in text) == (0, True)
 
@@ -93,7 +93,7 @@ def test_it_goes_on_with_what_is_missing_or_damaged(foucault, made, tmp_path, mo
 @pytest.mark.usefixtures("few")
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes")
 def test_a_scene_that_fails_costs_only_itself(foucault, tmp_path, monkeypatch):
-    monkeypatch.setattr("reference.dataset.shipping.made", failing_datasets.made)
+    monkeypatch.setattr("reference.commands.generate_all.made", failing_datasets.made)
     words = ("generate", "--all", *SHORT, "--workers", 1, "--out", tmp_path / "all", "--json")
     status, out, err = foucault(*words)
     assert status == 1
@@ -102,14 +102,14 @@ def test_a_scene_that_fails_costs_only_itself(foucault, tmp_path, monkeypatch):
     assert "2 of 3 datasets failed" in err
     assert [path.name for path in (tmp_path / "all").iterdir()] == ["paris"]
     # what is left is out of reach alone
-    monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: FEW[1:])
+    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW[1:])
     assert foucault(*words)[0] == 3
 
 
 @pytest.mark.usefixtures("few")
 def test_a_cluster_makes_the_same_bytes(foucault, tmp_path, monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: ["paris"])
+    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: ["paris"])
     status, _, err = foucault("generate", "--all", *SHORT, "--cluster", "local:1", "--out", tmp_path / "there")
     assert status == 0, err
     assert foucault("generate", "paris", *SHORT, "--out", tmp_path / "here")[0] == 0
@@ -122,7 +122,7 @@ def test_a_seal_of_a_dataset_that_ships_is_kept(foucault, tmp_path, monkeypatch)
     shutil.copy(data_root() / "flags.toml", data)
     (data / "golden").mkdir()
     monkeypatch.setattr("reference.scenes.shipped.data_root", lambda: data)
-    monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: FEW[1:])
+    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW[1:])
     foucault("generate", "--all", *SHORT, "--out", data / "golden", "--workers", 2)
     assert sorted(seals()) == FEW[1:]
     assert "2 were there" in foucault("generate", "--all", *SHORT, "--out", data / "golden")[1]

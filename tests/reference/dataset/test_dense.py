@@ -10,7 +10,7 @@ import pytest
 from small_scenes import make_scene
 
 from reference import InputError, load, solve
-from reference.dataset.dense import dense
+from reference.dataset.golden import dense
 from reference.dataset.write import write
 from reference.numbers.columns import STATE
 

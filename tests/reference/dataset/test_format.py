@@ -14,7 +14,7 @@ from compare.papers.checks import JudgedRow
 from compare.studies.row import Row
 from compare.studies.stability import Cell
 from reference import errors
-from reference.dataset import function, manifest, vectors
+from reference.dataset import function, manifest, render
 from reference.dataset.sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER
 from reference.scenes.fields import LEVELS
 from reference.scenes.shipped import DATA_VERSION
@@ -49,10 +49,10 @@ PARTS = {
     "cross_checks": own(manifest.CrossCheckRecord, manifest.RunRecord),
     "enclosure": own(manifest.EnclosureRecord),
     "files": own(manifest.FileRecord),
-    "vectors.json": own(vectors.Vectors),
-    "states": own(vectors.StateVector),
-    "transits": own(vectors.TransitVector),
-    "values": own(vectors.Value),
+    "vectors.json": own(render.Vectors),
+    "states": own(render.StateVector),
+    "transits": own(render.TransitVector),
+    "values": own(render.Value),
     "function.json": own(function.FunctionRecord),
     "grid.csv": list(GRID_HEADER),
     "transits.csv": list(TRANSITS_HEADER),
@@ -66,7 +66,7 @@ def test_a_table_of_the_page_names_what_the_code_writes_in_its_order(title):
 
 
 def test_every_part_of_the_two_documents_has_its_table():
-    parts = {one for module in (manifest, vectors, function) for one in vars(module).values() if isinstance(one, type)}
+    parts = {one for module in (manifest, render, function) for one in vars(module).values() if isinstance(one, type)}
     written = [one for one in parts if issubclass(one, manifest.Part) and one is not manifest.Part]
     described = [set(names) for names in PARTS.values()]
     extended = set(own(manifest.CrossCheckRecord))  # its table continues that of a run
@@ -86,8 +86,8 @@ def test_words_and_numbers_are_those_of_the_code():
     assert all(
         f"`{name}_hex`" in section("grid.binary64.csv and transits.binary64.csv") for name in NUMBERS["transits"]
     )
-    assert f"At most {vectors.MOST} states and {vectors.MOST} transits" in PAGE
-    assert all(f"`{flag}`" in section("vectors.json") for flag in vectors.NOTES)
+    assert f"At most {render.MOST} states and {render.MOST} transits" in PAGE
+    assert all(f"`{flag}`" in section("vectors.json") for flag in render.NOTES)
     for word in manifest.Manifest.model_fields["transits"].annotation.__args__:
         assert f"`{word}`" in section("manifest.json")
 
@@ -111,7 +111,7 @@ def test_promised_keys_of_studies_and_scores_are_there():
     assert promised("study") - study <= {one.name for one in fields(Row)}
     assert promised("stability") - {"rows"} <= {one.name for one in fields(Cell)}
     assert promised("paper") - {"rows"} <= {one.name for one in fields(JudgedRow)}
-    schema = json.loads((ROOT / "compare/report/suite/score.schema.json").read_text("utf-8"))
+    schema = json.loads((ROOT / "compare/report/score.schema.json").read_text("utf-8"))
     assert promised("score") <= set(schema["$defs"]["score"]["required"])
 
 

@@ -10,7 +10,7 @@ import pytest
 from forgery import forge
 
 from reference.dataset import verify
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.errors import InputError
 
 

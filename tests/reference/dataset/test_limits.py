@@ -15,13 +15,12 @@ from pydantic import TypeAdapter, ValidationError
 from small_scenes import make_scene
 
 import reference
-from reference.dataset.checks.manifest_check import _bounds, _sections
-from reference.dataset.checks.tables import _order, _signs_on_grid
-from reference.dataset.golden import read_files
+from reference.dataset.checks.scene_check import _bounds, _order, _sections, _signs_on_grid
+from reference.dataset.files import read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, Count, Decimals, Manifest, Name, Text, differences
 from reference.dataset.place import MAX_ID, dataset_id
+from reference.dataset.render import _closest_pair
 from reference.dataset.sheets import Sheet
-from reference.dataset.vectors import _closest_pair
 from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
 from reference.errors import DatasetError

@@ -13,7 +13,7 @@ import pytest
 from forgery import forge, moved
 
 import reference
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.verify import recompute, verify
 from reference.dataset.write import write
 

@@ -15,10 +15,10 @@ from same_bytes import confirmed, made_again, shipped, swept
 from sampled import one_in
 
 import reference
+from reference.commands.generate_all import jobs
 from reference.dataset.place import default_folder
-from reference.dataset.record import Making, command
+from reference.dataset.record import Making, command, making_of
 from reference.dataset.render import render
-from reference.dataset.shipping import jobs, making_of, solved
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
 from reference.numbers.precision import LONG_DOUBLE
@@ -62,7 +62,7 @@ def jitter(monkeypatch, share: int) -> list[str]:
         return replace(found, grid=moved(found.grid, prec), transits=moved(found.transits, prec), steps=found.steps + 1)
 
     monkeypatch.setattr(Heyoka, "run", run)
-    monkeypatch.setattr("reference.engines.background.usable_cores", lambda: 1)  # nothing escapes to a child
+    monkeypatch.setattr("reference.engines.registry.usable_cores", lambda: 1)  # nothing escapes to a child
     return types
 
 
@@ -142,7 +142,7 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
         assert "--engine" in err and "numba" in err and "--engine heyoka" in err
     scene = load_scene("conical")
     with pytest.raises(InputError, match="numba"):
-        solved(scene, making_of(scene, "conical", tmp_path))
+        reference.solve(scene, **making_of(scene, "conical", tmp_path).asked_of(scene))
     assert not list(tmp_path.iterdir())
 
 

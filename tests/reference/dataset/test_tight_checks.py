@@ -14,8 +14,8 @@ import pytest
 from small_scenes import make_scene
 
 import reference
-from reference.dataset.checks import motion, physics, tables
-from reference.dataset.golden import read_files
+from reference.dataset.checks import motion, physics, scene_check
+from reference.dataset.files import read_files
 from reference.dataset.sheets import NUMBERS, Sheet, binary64_sheet
 from reference.engines.registry import engines
 from reference.model.constants import constants
@@ -66,7 +66,7 @@ def said(files, word):
 
 def of_bounds(files, *words):
     """Whether a sentence about the bounds on times holds all these words."""
-    sentences = tables._bound_column(files, files.tables["transits.csv"])
+    sentences = scene_check._bound_column(files, files.tables["transits.csv"])
     return any(all(word in sentence for word in words) for sentence in sentences)
 
 
@@ -153,7 +153,7 @@ def test_the_bound_of_a_time_may_be_anything_where_xddot_is_so_small_that_the_ze
     """ax² against twice the bound on xdot times the jerk."""
     (ax,), _ = state(files, "transits", ROW, ("ax",))
     jerk = part * ax**2 / (2 * Fraction(files.manifest.bounds.grid["vx"]))
-    monkeypatch.setattr(tables, "largest_jerk", lambda _: jerk)
+    monkeypatch.setattr(scene_check, "largest_jerk", lambda _: jerk)
     wide = with_change(files, "transits", "bound", Fraction(10))
     assert of_bounds(wide, "transit 4: bound", "leave open") is not grazes
 
@@ -199,7 +199,7 @@ def test_the_jerk_is_bounded_by_the_rates_of_the_largest_speed_of_the_swing_of_r
         release={"x": "1.2", "y": "0", "vx": "0", "vy": "3"},
     )
     v, w = math.sqrt(1.5**2 + 2 * (0.4 / 2 * 5 / 2 + 1e-6)), 0.012
-    found = tables.largest_jerk(replace(files, scene=scene))
+    found = scene_check.largest_jerk(replace(files, scene=scene))
     assert float(found) == pytest.approx(8 * 2 * (5 / 2 + v**2 + w**2) * (v + w), rel=1e-12)
 
 
@@ -209,7 +209,7 @@ def test_no_rate_of_xddot_exceeds_its_bound(files, name):
     k = Start.of(golden.scene.exact, 53).k.converted(float)
     n, v = (tuple(golden.grid[name] / k.length for name in names) for names in (POSITION, VELOCITY))
     jerks = np.abs(np.diff(acceleration(n, v, k)[0] * k.length)) / np.diff(golden.t)
-    assert jerks.max() <= float(tables.largest_jerk(replace(files, scene=golden.scene)))
+    assert jerks.max() <= float(scene_check.largest_jerk(replace(files, scene=golden.scene)))
 
 
 @pytest.mark.parametrize(
@@ -222,7 +222,7 @@ def test_a_column_has_its_digits_if_its_largest_number_is_more_than_eight_bounds
         digits=5, decimals={"grid": dict.fromkeys(GRID, decimals)}, bound=lambda *_: Fraction(bound)
     )
     grid = Sheet(GRID, [("0.5",) * 6, ("-1.0",) * 6, ("0.9",) * 6], {})
-    said = list(tables._digits(SimpleNamespace(manifest=manifest, tables={"grid.csv": grid})))
+    said = list(scene_check._digits(SimpleNamespace(manifest=manifest, tables={"grid.csv": grid})))
     assert len(said) == 6 * found
 
 
@@ -249,10 +249,10 @@ def test_the_motion_has_its_transits_sought_unless_the_scene_asks_for_none(files
 def test_transits_that_are_none_are_not_looked_at(files):
     counts = files.manifest.counts.model_copy(update={"transits": 0})
     none = files.manifest.model_copy(update={"counts": counts})
-    for check, column in ((physics, "z"), (tables, "bound")):
+    for check, column in ((physics.problems, "z"), (scene_check.table_problems, "bound")):
         broken = with_change(files, "transits", column, Fraction(1))
         for changed, seen in ((broken, True), (replace(broken, manifest=none), False)):
-            found = [problem for problem in check.problems(changed) if "binary64" not in problem]
+            found = [problem for problem in check(changed) if "binary64" not in problem]
             assert any("transits" in problem for problem in found) is seen, (check, found)
 
 
@@ -441,4 +441,4 @@ def test_a_double_is_that_of_a_number_within_the_bound_of_its_column_or_of_its_o
         manifest = SimpleNamespace(bound=lambda *_: Fraction(column))
         both = {"": plain, ".binary64": binary64_sheet(plain, {other: [number] for other, number in doubles.items()})}
         files = SimpleNamespace(manifest=manifest, tables={f"{kind}{word}.csv": sheet for word, sheet in both.items()})
-        assert len(list(tables._doubles(files, kind))) == found, double
+        assert len(list(scene_check._doubles(files, kind))) == found, double

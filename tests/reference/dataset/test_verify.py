@@ -15,7 +15,7 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.checks import motion
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.sheets import GRID_HEADER
 from reference.dataset.verify import problems_of, recompute, verify

@@ -19,14 +19,15 @@ import schemas
 from small_scenes import make_scene
 
 import reference
-from reference.dataset import place, vectors
+from reference.dataset import place
 from reference.dataset import write as writer
+from reference.dataset.files import read_files
 from reference.dataset.function import FunctionRecord
-from reference.dataset.golden import load, read_files
+from reference.dataset.golden import load
 from reference.dataset.manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL
 from reference.dataset.place import dataset_id, default_folder, golden_folder
 from reference.dataset.record import Making, command
-from reference.dataset.render import render
+from reference.dataset.render import MOST, render
 from reference.dataset.sheets import Sheet, nearest_doubles, scene_inputs
 from reference.dataset.verify import problems_of
 from reference.dataset.write import check_target, write
@@ -129,9 +130,9 @@ def test_vectors_are_a_few_states_and_transits_with_bounds_taken_from_the_tables
     scene = reference.load_scene("paris", ["run.t_end=900", "run.grid_step=10", "run.digits=15"])
     dataset = write(reference.solve(scene), tmp_path / "vectors")
     found, tables = json.loads((dataset / "vectors.json").read_text()), read_files(dataset).tables
-    assert len(found["states"]) == vectors.MOST == 16
+    assert len(found["states"]) == MOST == 16
     few = len(found["transits"])  # the closest pair may be among those that are evenly spread
-    assert vectors.MOST - 2 <= few <= vectors.MOST
+    assert MOST - 2 <= few <= MOST
     assert found["states"][0]["flags"] == ["release"] and found["states"][-1]["flags"] == ["end"]
     last = len(tables["transits.csv"].rows)
     assert [t["k"] for t in found["transits"] if "end" in t["flags"]] == [found["transits"][-1]["k"]] == [last]

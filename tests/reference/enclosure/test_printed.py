@@ -164,7 +164,7 @@ def test_a_proof_ships_only_when_it_was_audited(solution, tmp_path, monkeypatch)
     audited = replace(solution, proof=replace(solution.proof, audited=True))
     reference.write(audited, tmp_path / "paris")
     from reference.dataset import verify
-    from reference.dataset.golden import read_files
+    from reference.dataset.files import read_files
 
     assert verify.problems_of(tmp_path / "paris") == []
     monkeypatch.setattr(verify, "golden_root", lambda: tmp_path)

@@ -11,7 +11,7 @@ from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Wanted
 from reference.engines.heyoka import loop
 from reference.engines.heyoka.batch import BATCH
 from reference.engines.octet.batch import BATCH as OCTET
-from reference.engines.row_zeros import HEIGHT, TRANSIT, Zeros
+from reference.engines.row_zeros import HEIGHT, TRANSIT, RowZeros
 
 SITE = {
     "pendulum": {"length": "1"},
@@ -29,7 +29,7 @@ def losing(monkeypatch, kind, lost):
         found = FOUND(self, sought)
         if sought != kind or not len(found.times):
             return found
-        return Zeros(*(np.delete(part, lost(found)) for part in (found.times, found.directions)))
+        return RowZeros(*(np.delete(part, lost(found)) for part in (found.times, found.directions)))
 
     monkeypatch.setattr(loop.Integrator, "zeros", zeros)
 

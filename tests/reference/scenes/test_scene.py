@@ -15,12 +15,12 @@ from hypothesis import strategies as st
 from schemas import path_of, schema_of
 from small_scenes import make_scene
 
+from reference.commands.show import scene_file
 from reference.commands.terminal import replacements
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs
 from reference.scenes.scene import as_scene, is_scene_id, load_scene, parse_scene
 from reference.scenes.shipped import scene_ids
-from reference.scenes.template import template
 
 
 def test_a_decimal_is_the_decimal_and_not_the_double_next_to_it(paris):
@@ -240,7 +240,7 @@ def test_a_file_without_an_id_is_named_after_itself(tmp_path, name, own):
 def test_a_scene_as_a_template_is_the_same_scene_and_follows_the_schema(tmp_path, name):
     scene = load_scene(name)
     path = tmp_path / f"{name}.toml"
-    path.write_text(template(scene), encoding="utf-8")
+    path.write_text(scene_file(scene), encoding="utf-8")
     assert load_scene(path) == scene
     jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), schema_of("scene.json"))
 
@@ -290,7 +290,7 @@ def test_widths_of_inputs_have_their_names_in_quotes_or_not_and_their_sign_or_no
     scene = load_scene(path, ["site.latitude=50"])
     assert scene.uncertain == widths and not load_scene("paris").uncertain
     assert parse_scene(scene.model_dump(exclude_none=True)) == scene
-    path.write_text(template(scene), encoding="utf-8")
+    path.write_text(scene_file(scene), encoding="utf-8")
     assert load_scene(path) == scene
     jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), schema_of("scene.json"))
     path.write_text('[release]\nx = "1"\ny = "0"\n[uncertain]\n"pendulum.length" = "0"\n')

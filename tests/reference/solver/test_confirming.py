@@ -11,14 +11,14 @@ import pytest
 from forgery import forge
 
 import reference
-from reference.dataset.golden import read_files
+from reference.dataset.files import read_files
 from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
-from reference.engines import background
-from reference.engines.background import Background, send_run
+from reference.engines import registry
+from reference.engines.registry import Background, send_run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.scenes.fields import CONFIRMATIONS
-from reference.solver import enclosed, reach
+from reference.solver import enclosed, pilot
 
 SHORT = {"t_end": "60", "digits": 18, "level": "enclosed"}
 PARIS = reference.load_scene("paris")
@@ -101,7 +101,7 @@ def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
 
 
 def test_a_confirmation_out_of_reach_is_refused_before_the_proof(monkeypatch):
-    monkeypatch.setattr(reach, "MAX_PREC", 64)
+    monkeypatch.setattr(pilot, "MAX_PREC", 70)  # the pilot has 69
     monkeypatch.setattr("reference.solver.enclosed.proved", None)
     for word in ("whole", "sampled"):
         with pytest.raises(UnreachableError, match="--confirm none"):
@@ -148,7 +148,7 @@ def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeyp
         return solution
 
     monkeypatch.setattr(enclosed, "proved", noted)
-    monkeypatch.setattr(background, "usable_cores", lambda: 2)
+    monkeypatch.setattr(registry, "usable_cores", lambda: 2)
     monkeypatch.setattr("reference.solver.enclosed.WORTH_A_PROCESS", 0.0)
     end = 9000.0
     reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm="whole", report=seen.append)

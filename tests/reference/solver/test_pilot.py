@@ -20,9 +20,7 @@ from reference.numbers.table import bits_in
 from reference.scenes.fields import LEVELS
 from reference.scenes.scene import load_scene
 from reference.solver import pilot as pilot_runs
-from reference.solver import reach
-from reference.solver.pilot import Pilot, run_pilot
-from reference.solver.reach import Pace, effort
+from reference.solver.pilot import Pace, Pilot, effort, run_pilot
 from reference.solver.sensitivity import digits_lost
 
 METRE = {"length": "1"}
@@ -136,8 +134,8 @@ def test_without_any_force_drag_ends_all_motion_and_the_reason_says_so():
 
 
 def test_a_long_run_is_refused_for_its_length_and_the_advice_is_good(monkeypatch, paris):
-    monkeypatch.setattr(reach, "MAX_STEPS", 20000)
-    monkeypatch.setattr(reach, "PACE_STEPS", 1000)
+    monkeypatch.setattr(pilot_runs, "MAX_STEPS", 20000)
+    monkeypatch.setattr(pilot_runs, "PACE_STEPS", 1000)
     with pytest.raises(UnreachableError, match="steps per simulated second") as caught:
         pace_of(paris)
     assert "Stiff" not in caught.value.reason
@@ -147,8 +145,8 @@ def test_a_long_run_is_refused_for_its_length_and_the_advice_is_good(monkeypatch
 
 
 def test_a_fast_start_that_drag_brings_to_rest_is_waited_for(monkeypatch):
-    monkeypatch.setattr(reach, "MAX_STEPS", 8000)
-    monkeypatch.setattr(reach, "PACE_STEPS", 64)
+    monkeypatch.setattr(pilot_runs, "MAX_STEPS", 8000)
+    monkeypatch.setattr(pilot_runs, "PACE_STEPS", 64)
     fast = make_scene(
         pendulum={"length": "1", "drag": "1"},
         release={"x": "0.1", "y": "0", "vx": "100", "vy": "1"},
@@ -179,7 +177,7 @@ def test_effort_counts_steps_at_160_bits_and_grows_with_the_cube():
 
 def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatch, paris):
     def longer(*words, **options):
-        return replace(run_pilot(*words, **options), steps=reach.MAX_STEPS // 10)
+        return replace(run_pilot(*words, **options), steps=pilot_runs.MAX_STEPS // 10)
 
     monkeypatch.setattr("reference.solver.choice.run_pilot", longer)
     for level in ("computed", "confirmed"):

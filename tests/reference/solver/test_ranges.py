@@ -12,7 +12,7 @@ from boxes import azimuths, drawn, truth
 import reference
 from reference.enclosure.shapes import Box
 from reference.solver import swing
-from reference.solver.widths import UNCERTAIN
+from reference.solver.uncertain import UNCERTAIN
 
 MEASURED = {"pendulum.length": "±0.001", "site.gravity": "+-1e-5", "latitude": "+/-0.001"}
 

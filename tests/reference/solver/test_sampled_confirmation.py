@@ -15,7 +15,7 @@ from reference.numbers.columns import GRID
 from reference.solver import enclosed
 from reference.solver.choice import drawn_intervals
 from reference.solver.pilot import run_pilot
-from reference.solver.proving import Problem
+from reference.solver.proving import ProofTask
 from reference.solver.sensitivity import digits_lost
 from reference.solver.solution import grid_decimals
 
@@ -31,7 +31,7 @@ def proved():
 
 @pytest.fixture(scope="module")
 def problem(proved):
-    return Problem(SCENE, proved.times, "auto", run_pilot(SCENE.exact, proved.times))
+    return ProofTask(SCENE, proved.times, "auto", run_pilot(SCENE.exact, proved.times))
 
 
 def confirms(problem, solution):

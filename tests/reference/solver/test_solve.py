@@ -16,16 +16,14 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.sheets import grid_sheet, transits_sheet
-from reference.engines import background, registry
-from reference.engines.background import run_both
+from reference.engines import registry
 from reference.engines.plan import Plan
-from reference.engines.registry import run
+from reference.engines.registry import run, run_both
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.columns import GRID
 from reference.numbers.precision import DOUBLE, real
 from reference.scenes.shipped import data_root
-from reference.solver import pilot as pilot_runs
-from reference.solver import reach
+from reference.solver import pilot
 from reference.solver import solve as solver
 
 
@@ -188,7 +186,7 @@ def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
 
 def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris):
     def optimistic(*words):
-        measured = pilot_runs.run_pilot(*words)
+        measured = pilot.run_pilot(*words)
         return replace(measured, errors={name: error / 2**60 for name, error in measured.errors.items()})
 
     monkeypatch.setattr("reference.solver.choice.run_pilot", optimistic)
@@ -231,7 +229,7 @@ def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(pari
 
 def test_what_a_proof_and_ranges_are_asked_for_is_handed_on_and_else_refused(monkeypatch, paris):
     monkeypatch.setattr("reference.solver.enclosed.solve_enclosed", lambda *words: words)
-    monkeypatch.setattr("reference.solver.ranges.solve_ranges", lambda *words, **named: (*words, named))
+    monkeypatch.setattr("reference.solver.uncertain.solve_ranges", lambda *words, **named: (*words, named))
     wishes, wide = {"audit": True, "confirm": "sampled", "function": True}, {"length": "±0.001"}
     scene, times, *others = reference.solve(paris, level="enclosed", engine="limbs", **wishes)
     assert (scene.run.level, times, others) == (
@@ -329,18 +327,18 @@ def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypa
         release={"angle": "179.999999999999", "azimuth": "30"},
         run={"t_end": "60", "digits": 20},
     )
-    assert pilot_runs.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
+    assert pilot.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
     solution = reference.solve(scene)
     truth = by_higher_precision(scene, 400)
     assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
 
 
 def test_growth_beyond_every_precision_is_refused(monkeypatch, paris):
-    monkeypatch.setattr(pilot_runs, "MAX_PREC", 60)
+    monkeypatch.setattr(pilot, "MAX_PREC", 60)
     with pytest.raises(UnreachableError, match="keep no digit"):
-        pilot_runs.run_pilot(paris.exact, (Fraction(0), Fraction(60)))
+        pilot.run_pilot(paris.exact, (Fraction(0), Fraction(60)))
     monkeypatch.undo()
-    monkeypatch.setattr(reach, "MAX_PREC", 100)
+    monkeypatch.setattr(pilot, "MAX_PREC", 100)
     with pytest.raises(UnreachableError, match=r"60 digits take \d+ bits"):
         reference.solve(paris, t_end="60", digits=60)
 
@@ -354,9 +352,9 @@ def test_two_processes_give_what_one_gives(monkeypatch, paris):
     fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), transits=True)
     coarse = replace(fine, formulation="space", number=real(100))
     seen: list[float] = []
-    monkeypatch.setattr(background, "usable_cores", lambda: 1)
+    monkeypatch.setattr(registry, "usable_cores", lambda: 1)
     alone = run_both(fine, coarse, 10**9, seen.append)
-    monkeypatch.setattr(background, "usable_cores", lambda: 2)
+    monkeypatch.setattr(registry, "usable_cores", lambda: 2)
     together = run_both(fine, coarse, 10**9, seen.append)
     for one, other in zip(alone, together, strict=True):
         assert one.grid == other.grid
@@ -382,8 +380,8 @@ def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
 
 
 SCRIPT = """
-import reference, reference.engines.background
-reference.engines.background.WORTH_A_PROCESS = 0.0
+import reference, reference.engines.registry
+reference.engines.registry.WORTH_A_PROCESS = 0.0
 for level in ("confirmed", "enclosed"):
     solution = reference.solve(reference.load_scene("paris"), t_end="120", digits=20, level=level)
     print(level, len(solution.directions))

@@ -16,7 +16,7 @@ from reference.system import imports
 from reference.system.imports import Registry
 
 INTERFACES = {
-    "compare.methods": ("METHODS", {"capture", "external", "library", "method", "rhs", "runge_kutta"}),
+    "compare.methods": ("METHODS", {"fixed_step", "library", "method", "rhs", "tableau"}),
     "compare.approximations": ("APPROXIMATIONS", {"approximation", "case"}),
 }
 FILE = """

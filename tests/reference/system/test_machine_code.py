@@ -32,7 +32,7 @@ sys.path.insert(0, {str(ROOT)!r})
 from pathlib import Path
 from numba import config
 from callee import slow
-from reference.system.first_use import announced_to
+from reference.system.machine_code import announced_to
 from reference.system.machine_code import kept, prepare
 
 @kept(*Path(__file__).parent.glob("*.py"), error_model="numpy")

@@ -193,7 +193,7 @@ def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, ca
 
 
 FIRST_USE = """
-from reference.system.first_use import announced_to
+from reference.system.machine_code import announced_to
 with announced_to(lambda line: print("announced")):
     exec(SHORT)
 """

@@ -12,8 +12,8 @@ import numpy as np
 from reference.errors import shortened
 from reference.numbers.precision import Array
 
-from ..motion import POINTS, Motion
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
+from .motion import POINTS, Motion
 
 DOTS = 360  # of one kind in a panel at most
 LINE = 1200  # points of a path at most

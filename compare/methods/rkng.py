@@ -1,14 +1,43 @@
-"""Fehlberg's RKN-G 6(7), order 6, explicit Runge-Kutta-Nyström for y'' = f(y, y'), fixed step: foucPend's -R 6."""
+"""Fehlberg's RKN-G 5(6) and 6(7), explicit Runge-Kutta-Nyström of fixed step: options -R 5 and -R 6 of foucPend."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 
+from .fixed_step import explicit, fixed_step, nystrom
 from .method import TWO_HUNDRED_STEPS, Family
-from .runge_kutta.fixed_step import explicit, fixed_step, nystrom
-from .runge_kutta.tableau import NystromTableau, fractions, triangle
+from .tableau import NystromTableau, fractions, triangle
 
-TABLEAU = NystromTableau(
+RKNG56 = NystromTableau(
+    name="RKN-G-5(6)-8",
+    order=5,
+    c=fractions("0 4/15 2/5 3/5 9/10 3/4 2/7 1"),
+    velocity=triangle(
+        "",
+        "4/15",
+        "1/10 3/10",
+        "3/20 0 9/20",
+        "9/40 0 0 27/40",
+        "11/48 0 0 5/8 -5/48",
+        "27112/194481 0 0 56450/64827 80000/194481 -24544/21609",
+        "-26033/41796 0 0 -236575/38313 -14500/10449 275936/45279 228095/73788",
+    ),
+    position=triangle(
+        "",
+        "8/225",
+        "1/25 1/25",
+        "9/160 81/800 9/400",
+        "81/640 0 729/3200 81/1600",
+        "11283/88064 0 3159/88064 7275/44032 -33/688",
+        "6250/194481 0 0 0 -3400/194481 1696/64827",
+        "-6706/45279 0 0 0 1047925/1946997 -147544/196209 1615873/1874886",
+    ),
+    velocity_weights=fractions("7/81 0 0 0 -250/3483 160/351 2401/5590 1/10"),
+    position_weights=fractions("31/360 0 0 0 0 64/585 2401/7800 -1/300"),
+)
+
+RKNG67 = NystromTableau(
     name="RKN-G-6(7)-10",
     order=6,
     c=fractions("0 11/108 11/72 11/48 5/8 3/8 2/3 1/6 5175/5333 1"),
@@ -54,26 +83,25 @@ TABLEAU = NystromTableau(
     tolerance=Fraction("1e-30"),
 )
 
-# Misprints of public copies: (table, row, column, as printed), counted from 0. Only the tests use them: each must make
-# the order conditions fail. The first is the entry of column 2 printed in column 1, which leaves 0 in its own. The
-# second violates Σ position_ij c_j^q = c_i^(q+2) / ((q+1) (q+2)) by 4.877e-24 times c_7^q, for q = 0 to 3; the factor
-# c_7^q identifies the column, where the 24th to the 27th digit are wrong.
-MISPRINTS = (
-    ("position", 8, 1, "-0.6816741819616552879282309588555"),
-    ("position", 9, 7, "1.6612294394931082916619461943874"),
-)
+_SOURCE = "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R "
+_method = partial(fixed_step, formulations=("plane", "space"), family=Family.PAPER, stability=TWO_HUNDRED_STEPS)
 
 METHODS = (
-    fixed_step(
+    _method(
+        id="rkng56",
+        title="Runge-Kutta-Nyström-Fehlberg RKN-G 5(6), order 5",
+        ladder=(1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
+        source=f"{_SOURCE}5",
+        prepare=explicit(nystrom(RKNG56), RKNG56.stages),
+        order=RKNG56.order,
+    ),
+    _method(
         id="rkng67",
         title="Runge-Kutta-Nyström-Fehlberg RKN-G 6(7), order 6",
         ladder=(2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
-        source="E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 6",
-        prepare=explicit(nystrom(TABLEAU), TABLEAU.stages),
-        formulations=("plane", "space"),
-        order=TABLEAU.order,
-        family=Family.PAPER,
-        stability=TWO_HUNDRED_STEPS,
+        source=f"{_SOURCE}6",
+        prepare=explicit(nystrom(RKNG67), RKNG67.stages),
+        order=RKNG67.order,
         long_runs=(("plane", 0.25),),
     ),
 )

@@ -19,10 +19,9 @@ from xml.etree import ElementTree
 from reference.errors import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
-from ...score.outcome import REFUSED, Outcome
-from ...score.verdict import percent
-from ..folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
-from ..page import Html, Table, findings, page, paragraph, section, text
+from ..score.verdict import REFUSED, Outcome, percent
+from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
+from .page import Html, Table, findings, page, paragraph, section, text
 
 JSON, BADGE = "suite.json", "badge.svg"
 KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")  # of rows.csv

@@ -1,21 +1,27 @@
-"""Which inputs are uncertain, and by how much: widths such as ±0.001, read from words and checked."""
+"""Solve a scene with uncertain inputs by a proof: their widths, such as ±0.001, read from words and checked."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from math import ceil
 from typing import Any
 
+from ..engines import AUTO
+from ..engines.plan import Report
 from ..errors import InputError, unknown
+from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal
-from ..scenes.inputs import Inputs
+from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import Scene, checked_value, full_name
+from ..system.imports import needed
+from .pilot import check_reach
+from .proof_steps import COEFFICIENT_BITS, Feed
+from .ranges import Intervals, Ranges, ZeroRanges
 from .solution import exact_decimals
 
-RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
-SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
-PLAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in SITE)]
-UNCERTAIN = [*PLAIN, "site.inverse_flattening", *(f"release.{name}" for names in RELEASES.values() for name in names)]
+UNCERTAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in (*SITE, "inverse_flattening"))]
+UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
 SIGNS = ("±", "+-", "+/-")
 EXAMPLE = "a width with its sign, in SI units or degrees, such as ±0.001 or +-0.001"
 MOST_DECIMALS = 20  # of an end of an interval
@@ -31,7 +37,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
     if not isinstance(uncertain, Mapping):
         raise InputError("uncertain", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
     found: dict[str, Fraction] = {}
-    have = _numbers(scene.exact)
+    have = scene.exact.by_name
     for word, text in uncertain.items():
         name, width = full_name(word), str(text).strip()
         field_name = f"{'uncertain.' if scene.uncertain.get(word) == text else '--uncertain '}{word}"
@@ -82,17 +88,65 @@ def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
     return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
 
 
-def _numbers(inputs: Inputs) -> dict[str, Fraction]:
-    """Return the inputs that may be uncertain, by their full names."""
-    plain = {name: getattr(inputs, name.partition(".")[2]) for name in UNCERTAIN[: len(PLAIN)]}
-    if inputs.flattening:  # not a sphere
-        plain["site.inverse_flattening"] = 1 / inputs.flattening
-    kind = "position" if inputs.position else "angles"
-    release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
-    return plain | {f"release.{name}": value for name, value in release}
-
-
 def _ends(scene: Scene, widths: Mapping[str, Fraction]) -> list[dict[str, Fraction]]:
     """Return the lower and the upper ends of all inputs."""
-    have = _numbers(scene.exact)
+    have = scene.exact.by_name
     return [{name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)]
+
+
+def solve_ranges(
+    scene: Scene,
+    uncertain: Mapping[str, Any],
+    engine: str = AUTO,
+    report: Report | None = None,
+    times: Sequence[Fraction] | None = None,
+    derivatives: bool = False,
+) -> Ranges:
+    """Prove what holds for a scene with uncertain inputs, at its grid times, with the transits if it asks for them.
+
+    Other `times` take the place of the grid's, from 0 on, increasing. With `derivatives` it proves these too.
+
+    Raises:
+        InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
+        UnreachableError: the box is too wide, and it tells up to which time it holds.
+    """
+    needed("flint", "enclose", "--uncertain", "nothing", "which the proof needs")
+    from ..enclosure.printed_box import end_of
+    from ..enclosure.prove_box import enclose_box
+    from ..enclosure.shapes import Box
+
+    widths = widths_of(scene, uncertain)
+    inputs, times = scene.exact, times or scene.exact.grid
+    end = times[-1]
+    texts = exact_texts(widths)
+    box = Box(inputs, *(end_of(inputs, texts, side) for side in (-1, 1)))
+    swing = abs(float(inputs.gravity / inputs.length)) ** 0.5
+    steps = ceil(float(end) * max(swing, abs(float(inputs.rotation_rate)), 1 / float(end)))
+    feeds: list[Feed] = []
+
+    def approximant(bits: int, latest: Fraction) -> Any:
+        check_reach(steps, bits, scene.run.digits)
+        feeds.append(Feed(inputs, (latest,), engine, steps))
+        return feeds[-1](bits - COEFFICIENT_BITS)
+
+    try:
+        tell = report and (lambda part: report(part * float(end)))
+        proof = enclose_box(
+            box, list(times), approximant, scene.run.transits, tell, widths, derivatives, scene.run.sections or ()
+        )
+    finally:
+        for feed in feeds:
+            feed.stop()
+    transits = ZeroRanges.of(proof.proved.transits or (), TRANSITS, end)
+    return Ranges(
+        scene,
+        texts,
+        tuple(times),
+        Intervals(GRID, proof.proved.states),
+        transits.table,
+        transits.directions,
+        transits.possible,
+        feeds[-1].begun,
+        {word: ZeroRanges.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
+        proof,
+    )

@@ -11,10 +11,10 @@ import numpy as np
 from reference.errors import shortened
 from reference.status import Status
 
-from ...observed.position_error import largest_so_far
-from ...studies.long_runs import LongRun
-from ...studies.stability import Cell
-from ...studies.users_program import NUMBER
+from ..observed.position_error import largest_so_far
+from ..studies.long_runs import LongRun
+from ..studies.stability import Cell
+from ..studies.users_program import NUMBER
 from .drawing import (
     BAND,
     COLOURS,

@@ -16,10 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from ...methods import METHODS
-from ...methods.method import Family
-from ...studies.row import Row
-from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of, front
+from ..methods import METHODS
+from ..methods.method import Family
+from ..studies.row import Row
 from .drawing import (
     BAND,
     COLOURS,
@@ -36,6 +35,7 @@ from .drawing import (
     sheet,
     svg_text,
 )
+from .pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of, front
 
 Coordinate = Callable[[Row], float | None]
 

@@ -15,9 +15,9 @@ import numpy as np
 from reference.model.algebra import plus, product
 from reference.numbers.precision import Array
 
-from ..method import Method, Outcome, Work, outcome
-from ..rhs.problem import Problem
-from ..rhs.straight_line import Program, elements
+from .method import Method, Outcome, Work, outcome
+from .rhs.problem import Problem
+from .rhs.straight_line import StraightLine, elements
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
@@ -93,7 +93,7 @@ def moved(state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Seq
     return [plus(x, product(h, part)) for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)]
 
 
-def traced_step(problem: Problem, step: Step) -> Program:
+def traced_step(problem: Problem, step: Step) -> StraightLine:
     """Trace a step to straight-line code: its inputs are state, parameters and h, its outputs the new state."""
     rates = problem.system.rates
     return problem.system.traced(lambda state, functions, k, h: step(state, h, lambda at: rates(at, functions, k)), "h")

@@ -17,7 +17,7 @@ from compare.commands.judging import suite_files
 from reference import load, load_scene, trajectory
 from reference.scenes.shipped import DATA_VERSION
 
-SCHEMA = json.loads(files("compare.report.suite").joinpath("score.schema.json").read_text("utf-8"))
+SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
 SHORT = (
     'id = "{name}"\n[pendulum]\nlength = "2"\n[release]\nx = "0.1"\ny = "0.2"\n'
     '[run]\nt_end = "20"\ngrid_step = "5"\ndigits = 22\n'

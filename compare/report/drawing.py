@@ -1,4 +1,8 @@
-"""The set-up that all pictures share: figures, colours, logarithmic axes, lines with their names, SVG for a page."""
+"""The set-up that all pictures share: figures, colours, logarithmic axes, lines with their names, SVG for a page.
+
+Every chart takes plain data and is an SVG element of a page. Text stays text, and the same data give the same bytes.
+Markers, dashes and labels repeat what the colours say, so nothing is lost in grey.
+"""
 
 from __future__ import annotations
 

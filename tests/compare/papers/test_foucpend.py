@@ -18,9 +18,8 @@ from compare.candidates.read import read_stream
 from compare.commands.papers import pend as command
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
-from compare.papers.foucpend import Options, lines
-from compare.papers.foucpend.options import DEFAULTS
-from compare.papers.foucpend.output import SiteFrame, Transits, parabola_zero
+from compare.papers.foucpend import Options, SiteFrame, Transits, lines, parabola_zero
+from compare.papers.foucpend_options import DEFAULTS
 from compare.papers.points import paris
 from reference import InputError, IntegrationError, load, load_scene
 from reference.engines.trajectory import trajectory
@@ -142,7 +141,7 @@ def test_a_transit_stands_between_the_snapshots_around_it_and_gives_n_over_two_t
 
 @pytest.mark.parametrize("block", [pytest.param(1, marks=pytest.mark.long), 7, 300, 599, 600])
 def test_the_length_of_a_block_changes_no_line(monkeypatch: pytest.MonkeyPatch, block: int) -> None:
-    from compare.papers.foucpend import output as module
+    from compare.papers import foucpend as module
 
     options = {**PARIS, "T": "60", "t": "0.1", "s": "7", "R": "4"}
     whole = output(**options)

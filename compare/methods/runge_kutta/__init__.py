@@ -1,1 +1,0 @@
-"""Explicit Runge-Kutta and Runge-Kutta-Nyström steps: tableaux that prove their order, traced and compiled."""

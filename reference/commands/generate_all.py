@@ -1,0 +1,173 @@
+"""`foucault generate --all`: the datasets that ship, which of them are missing or not sealed, made side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from contextlib import ExitStack, closing, suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from ..dataset.files import read_files
+from ..dataset.manifest import Content
+from ..dataset.place import dataset_id, default_folder, ships
+from ..dataset.record import making_of
+from ..dataset.render import check_proved, render
+from ..dataset.sheets import scene_inputs
+from ..dataset.write import check_target, summary, write_texts
+from ..errors import DatasetError, FoucaultError, IntegrationError, UnreachableError
+from ..scenes.scene import Scene, load_scene
+from ..scenes.shipped import scene_ids, seals
+from ..solver.solve import solve
+from ..status import Status
+from ..system.imports import needed
+from ..system.workers import Pool, WorkerDied, as_done, usable_cores
+from ..system.workspace import clear
+from .progress import progress
+from .terminal import check_workers, emit, stoppable
+
+Row = dict[str, Any]
+
+BINARY64 = ".binary64"
+
+
+@dataclass(frozen=True)
+class Job:
+    """A dataset to be made: its scene, its id and its folder."""
+
+    scene: Scene
+    name: str
+    folder: Path
+
+    def row(self, status: Status, reason: str | None = None) -> Row:
+        """Return what `generate --all --json` says of the dataset, but for what was measured."""
+        identity = {"dataset": self.name, "scene": self.scene.id, "out": str(self.folder)}
+        return {**identity, "status": status.value, "reason": reason}
+
+
+def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
+    """Return all datasets that ship, those of the longest spans first: of each scene, and of sealed other readings.
+
+    Args:
+        replaced: fields of every scene, each as section.key=value.
+        out: the folder of all; by default each has that which `generate` writes it to.
+
+    Raises:
+        InputError: a replaced field is wrong.
+    """
+    readings = [name.removesuffix(BINARY64) for name in seals() if name.endswith(BINARY64)]
+    scenes = [load_scene(name, replaced) for name in scene_ids()]
+    scenes += [load_scene(name, ["inputs=binary64", *replaced]) for name in readings]
+    every = []
+    for scene in scenes:
+        name = dataset_id(scene)
+        folder = out / name if out is not None else default_folder(scene, name)
+        every.append(Job(scene, name, folder))
+    return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
+
+
+def is_done(job: Job) -> bool:
+    """Return whether the dataset is there, sealed, of the same inputs; where it ships, under the seal in the index."""
+    try:
+        files = read_files(job.folder)
+    except FoucaultError:
+        return False
+    sealed = not ships(job.folder) or seals().get(job.name) == files.manifest.seal
+    same = scene_inputs(files.scene) == scene_inputs(job.scene) and files.scene.inputs == job.scene.inputs
+    return sealed and same and files.manifest.id == job.name
+
+
+def made(job: Job) -> tuple[Row, dict[str, Content]]:
+    """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
+    try:
+        making = making_of(job.scene, job.name, job.folder)
+        solution = solve(job.scene, **making.asked_of(job.scene))
+        texts = render(solution, job.name, tables=making.tables)
+        check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
+        return job.row(Status.OK) | summary(solution, job.folder), texts
+    except UnreachableError as error:
+        status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE
+        return job.row(status, str(error)), {}
+    except FoucaultError as error:
+        return job.row(Status.INVALID, str(error)), {}
+
+
+def isolated(job: Job) -> tuple[Row, dict[str, Content]]:
+    """Make a dataset in a process that is started for it: the solver is not made for several threads."""
+    with Pool(1) as pool:
+        result: tuple[Row, dict[str, Content]] = pool.submit(made, job).result()
+    return result
+
+
+def generate_all(
+    replaced: Sequence[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
+) -> None:
+    """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
+
+    Raises:
+        InputError: a wrong option, or a folder that cannot be written.
+        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
+    """
+    check_workers(workers, cluster)
+    every = jobs(replaced, out)
+    with stoppable("what is done stays, and the same command goes on"), progress() as show:
+        for job in every:
+            with suppress(OSError):  # no such folder yet
+                clear(job.folder.parent, job.folder.name)  # a dataset that is done is not written again
+        undone = [job for job in every if not is_done(job)]
+        for job in undone:
+            check_target(job.folder)
+        move, rows = show("datasets", len(undone), "datasets"), []
+        with closing(_made(undone, workers, cluster)) as outcomes:
+            for row in outcomes:
+                rows.append(row)
+                move(len(rows), item=row["scene"])
+                if not as_json:
+                    typer.echo(_line(row))
+    rows.sort(key=lambda row: str(row["dataset"]))
+    failed = [row for row in rows if row["status"] != Status.OK.value]
+    counts = {"datasets": len(every), "sealed_before": len(every) - len(undone), "failed": len(failed)}
+    if as_json:
+        emit({"rows": rows, **counts})
+    else:
+        made = len(undone) - len(failed)
+        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {made} made, {len(failed)} failed")
+    if failed:
+        typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
+        unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
+        raise typer.Exit(UnreachableError.exit_status if unreachable else 1)
+
+
+def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Generator[Row, None, None]:
+    """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
+    if not undone:
+        return
+    with ExitStack() as stack:
+        if cluster is not None:
+            needed("distributed", "cluster", "--cluster", cluster, "which sends the work to its workers")
+            from ..sweeps.cluster import scheduler_at
+
+            scheduler = stack.enter_context(scheduler_at(cluster))
+            begin, check = partial(scheduler.submit, isolated), scheduler.check
+        else:
+            pool = stack.enter_context(Pool(min(workers or usable_cores(), len(undone))))
+            begin, check = partial(pool.submit, made), None
+        for job, future in as_done(begin, undone, len(undone), check):
+            try:
+                row, texts = future.result()
+                if texts:
+                    write_texts(texts, job.folder)
+            except WorkerDied as death:
+                row = job.row(Status.CRASHED, str(death))
+            except DatasetError as error:
+                row = job.row(Status.DOUBTFUL, str(error))
+            yield row
+
+
+def _line(row: Row) -> str:
+    if row["status"] != Status.OK.value:
+        return f"{row['dataset']}: {Status(row['status']).words}: {row['reason']}"
+    return f"{row['out']}: {row['transits']} transits, {row['digits']} digits, {row['level']}, {row['cpu_s']:.1f} CPU s"
