@@ -200,7 +200,7 @@ class Batch(ABC):
         swing_s: CPU seconds of a default row over the period of a small swing.
         section_work: over that, what a section adds: a gate or a turn; highest or lowest points.
         load_s: CPU seconds of loading what is kept on disk.
-        compile_s: CPU seconds of compiling what rows need, and what their sections need beside it.
+        compile_s: CPU seconds of compiling what rows or sections need, and beside it what the others need.
         identity: what decides its digits beside the rows: orders, tolerance, versions of what it computes with.
     """
 

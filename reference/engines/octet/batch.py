@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from importlib.metadata import version
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -41,8 +41,8 @@ class OctetBatch(Batch):
 
         started = time.thread_time()
         arguments = _arguments(empty_march(), wanted, np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
-        what = "steps of eight rows at once" + " with sections" * wanted.form
-        prepare(march, what, round(self.compile_s[wanted.form]), *arguments)
+        what, kernel = "steps of eight rows at once" + " with sections" * wanted.form, cast("Any", march)
+        prepare(kernel, what, round(self.compile_s[bool(kernel.stats.cache_misses)]), *arguments)
         return time.thread_time() - started
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
@@ -64,7 +64,8 @@ class OctetBatch(Batch):
 
     def compiling_s(self, sections: bool) -> float:
         """Return what compiling takes here; the variant for sections is kept beside that of all rows."""
-        return sum(self.compile_s[kept_variants("march", folder_of(SOURCES)) : 1 + sections])
+        left = 1 + sections - kept_variants("march", folder_of(SOURCES))
+        return sum(self.compile_s[: max(left, 0)])
 
 
 def _arguments(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> tuple[Any, ...]:
