@@ -59,10 +59,11 @@ def test_what_is_wanted_does_not_change_what_comes_out():
 def test_arrays_that_lie_apart_in_memory_are_not_compiled_for_anew():
     rows = rows_of(list(random_kinds(5, 6, Fraction(20))))
     whole = BATCH.solve(rows, Wanted())
+    compiled = len(march.signatures)
     apart = Rows(*(np.asfortranarray(np.repeat(getattr(rows, f.name), 2, axis=0))[::2] for f in fields(Rows)))
     assert not apart.n.flags.c_contiguous
     assert np.array_equal(BATCH.solve(apart, Wanted()).state, whole.state)
-    assert len(march.signatures) == 1
+    assert len(march.signatures) == compiled
 
 
 def test_highest_points_are_counted_once(paris):
