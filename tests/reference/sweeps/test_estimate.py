@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from reference.engines.batch_interface import CLOSE_PAIR, PlumbAxes, Wanted
 from reference.engines.registry import batches
-from reference.engines.row_zeros import MODEL, Motion
+from reference.engines.row_zeros import MODEL, RowMotion
 from reference.model.constants import Constants
 from reference.scenes.scene import load_scene
 from reference.sweeps.estimate import bend_of_pairs, judged
@@ -87,7 +87,7 @@ def test_between_close_transits_xdot_bends_no_more_than_is_taken(paris, tally):
             lambda _, state, k=k: MODEL.derivatives(state, k, np), t[[0, -1]], [*n, *np.cross(n, V)], "DOP853", t,
             rtol=1e-11, atol=1e-14,
         ).y  # fmt: skip
-        motion = Motion.of(states, k)
+        motion = RowMotion.of(states, k)
         angle = np.arccos(-motion.n[2].max())
         taken = bend_of_pairs(rows, np.array([angle]))[0]
         bend = np.abs(np.gradient(motion.a[0], t)) * length
