@@ -40,13 +40,8 @@ ENGINES = (AUTO, *engine_names())
 
 
 SCENE = scene_argument(value="[SCENE]")
-OUT = option(
-    "--out",
-    "Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout); "
-    "with --all the folder of all.",
-    "DIR",
-)
-DIGITS = option("--digits", "Significant digits of the largest number in each column (default: the scene's).", "D")
+OUT = option("--out", "Write to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).", "DIR")
+DIGITS = option("--digits", "Digits of the largest number in a column (default: the scene's).", "D")
 LEVEL = option(
     "--level",
     f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
@@ -55,31 +50,26 @@ LEVEL = option(
 )
 ENGINE = option(
     "--engine",
-    f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed, "
-    "for a scene that ships the one that its dataset was made with.",
+    f"Integrate with {in_words(engine_names())}; auto: the fastest, or what made the dataset that ships.",
     "E",
     completion(lambda: ENGINES),
 )
 NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
-AUDIT = option(
-    "--audit/--no-audit",
-    "At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
-)
+AUDIT = option("--audit/--no-audit", "Prove it again by FLINT alone: the same digits (default: --audit).")
 CONFIRM = option(
     "--confirm",
-    f"At the level enclosed, what heyoka confirms in another formulation: {in_words(CONFIRMATIONS)}; "
-    "sampled is a tenth of the grid's intervals (default: sampled; of what ships, as it was made: the whole).",
+    f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
+    "(default: sampled; of what ships, the whole).",
     "C",
     completion(lambda: CONFIRMATIONS),
 )
 NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
 FUNCTION = option(
     "--function/--no-function",
-    "At the level enclosed, make the golden function, the motion at any time (default: it is made, "
-    "but for what ships without it).",
+    "Make the golden function, the motion at any time, of a proof (default: but for what ships without it).",
 )
-NO_TABLES = option("--no-tables", "Write the golden function and its manifest alone.")
-ALL = option("--all", "Make every dataset that ships and is missing or not sealed.")
+NO_TABLES = option("--no-tables", "Write the golden function alone.")
+ALL = option("--all", "Make all that ship and are missing or not sealed.")
 
 
 def command(
@@ -107,7 +97,7 @@ def command(
 
     Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
     for every value of these inputs.
-    foucault generate --all --workers 2 makes all that ship, each in a process of its own; what is there is left.
+    foucault generate --all --workers 2 makes all that ship, into --out.
     """
     options = {
         "--t-end": ("run.t_end", t_end),

@@ -25,6 +25,7 @@ from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene, parse_scene
+from ..system.imports import needed
 from .axes import TEXTS, Table, grid, listed
 from .parquet import (
     AMPLITUDE,
@@ -196,6 +197,8 @@ def request(
     """
     if level not in LEVELS:
         raise unknown("--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}.")
+    if level == "enclosed":
+        needed("flint", "enclose", "--level", level, "which the proof needs")
     if audit is not None and audit < 0:
         raise InputError("--audit", audit, "a number of rows from 0")
     words = list(over)

@@ -108,6 +108,7 @@ SWEEP = "sweep paris --over latitude=0,5 --t-end 60 --engine heyoka"
         ("show paris --equations", "flint", "enclose"),
         ("show paris --uncertain length=±0.001", "flint", "enclose"),
         ("generate paris --t-end 60 --out there", "flint", "enclose"),
+        (f"{SWEEP} --level enclosed", "flint", "enclose"),
         (f"{SWEEP} --cluster local:2", "distributed", "cluster"),
         ("generate --all --out there --cluster local:2", "distributed", "cluster"),
         (f"{SWEEP} --out there", "pyarrow", "sweep"),
