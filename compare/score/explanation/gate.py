@@ -72,7 +72,11 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
     ]
     unknown = max((cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0)
     steps = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
+    rough = max((cause.size_m for cause in causes if _is_step(cause) and cause.uncertainty is not None), default=0.0)
+    rough *= evidence.clean if evidence.clean > CLEAN else 0.0  # in a linear model a step is known exactly
     for cause, sure in zip(causes, typed, strict=True):
+        if cause.stage != "integrator" and cause.size_m < rough:
+            continue
         # what is not known may look like anything that is smaller, and what is not known of a step like a model
         like = max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
         if not agrees and cause.size_m < SHARE * like:
