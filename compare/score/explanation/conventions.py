@@ -154,15 +154,12 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     for one, (scale, text), (order, signs) in itertools.product((row, last), units, ways if rename else ways[:1]):
         if is_release(one[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
-    for scale, text in units[1:]:
-        if abs(scale - 1) < 3 * ROUGHLY:  # a cord of about a metre: the release alone may be off by as much
-            continue
-        near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
-        if near:  # another unit, and a release that is a little off
-            return _scaled_height(_in_metres(rows, scale, text), scale, length)
-    for order, signs in ways[1:] if rename else ():
-        if np.abs(row[[*order]] * np.array(signs) - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2])):
-            return _renamed(rows, order, signs)  # other axes, and a release that is a little off
+    # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
+    others = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
+    others += [(units[0], way) for way in ways[1:] if rename]
+    for (scale, text), (order, signs) in others:
+        if np.abs(row[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
+            return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
     polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt

@@ -75,11 +75,6 @@ class Steps(Pendulum):
     spacing: float = 0.0
     near: tuple[float, ...] = ()
 
-    @classmethod
-    def of(cls, pendulum: Pendulum, method: str, every: int, spacing: float) -> Steps:
-        """Return the steps that move a pendulum."""
-        return cls(**vars(pendulum), method=method, every=every, spacing=spacing)
-
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x and y in m, shape (times, 2)."""
         return self._at(times, theta[:, None])[:, :, 0]
@@ -155,7 +150,7 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
         if best is None or best.reader.right.kind != "sphere":
             return None
         pendulum, theta = case.pendulum_of(best.program)
-        steps = Steps.of(pendulum, steps.method, steps.every, steps.spacing)
+        steps = replace(steps, **vars(pendulum))
         moved = steps.rows(theta, rows.times, 2)
     effect = moved - pendulum.rows(theta, rows.times, 2)
     left = rms(rows.positions - moved)
@@ -196,7 +191,8 @@ def likely_steps(case: Case, near: Program | None) -> list[Steps]:
     plain = float(np.linalg.norm(swing.rows.positions - pendulum.rows(theta, swing.rows.times, 2)))
     likely: list[tuple[float, Steps]] = []
     for method in FINEST:
-        low, high, steps = 1, int(spacing * frequency / FINEST[method]), Steps.of(pendulum, method, 1, spacing)
+        steps = Steps(**vars(pendulum), method=method, spacing=spacing)
+        low, high = 1, int(spacing * frequency / FINEST[method])
         if near is not None and near.step and near.method is not None and near.method.id == method:
             roughly = round(spacing / near.step)
             likely.append((0.0, replace(steps, every=roughly, near=tuple(theta))))
