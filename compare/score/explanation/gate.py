@@ -60,7 +60,7 @@ def loose(size_m: float, stage: str = "integrator") -> Deviation:
 
 def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Deviation]:
     """Yield what may be told of causes that were read from the rows."""
-    if any(not is_likely(cause) for cause in causes):
+    if any(not is_likely(cause) or not math.isfinite(cause.size_m) for cause in causes):
         return
     allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
     causes = [_in_whole_steps(cause, evidence) for cause in _drift_as_step(causes, evidence)]
@@ -72,8 +72,9 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
     ]
     unknown = max((cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0)
     steps = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
-    rough = max((cause.size_m for cause in causes if _is_step(cause) and cause.uncertainty is not None), default=0.0)
-    rough *= evidence.clean if evidence.clean > CLEAN else 0.0  # in a linear model a step is known exactly
+    # what a step does is known exactly where it was taken, and in a linear model
+    exact = any(_is_step(cause) and cause.uncertainty is None for cause in causes)
+    rough = evidence.clean * steps if evidence.clean > CLEAN and not exact else 0.0
     for cause, sure in zip(causes, typed, strict=True):
         if cause.stage != "integrator" and cause.size_m < rough:
             continue
@@ -107,7 +108,7 @@ def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
     assert cause.value is not None
     many = round(evidence.spacing / cause.value)
     doubt, off = evidence.clean * many, abs(evidence.spacing / cause.value - many)
-    if not many or off > max(doubt, APART):
+    if not many or off > max(doubt, APART) or evidence.clean >= 1:
         return loose(cause.size_m)
     if doubt >= 1 / 2:
         return replace(cause, uncertainty=max(cause.uncertainty, evidence.clean * cause.value))

@@ -45,7 +45,7 @@ RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {  # place
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
 LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
-FEWEST = 30  # rows that tell a motion
+FEWEST = 30  # rows that tell a motion: to have as many, twice as many steps are run
 TRIED = 24  # numbers of steps that are run at a time
 SEARCHED = 8_000  # steps that are run at most where nothing tells how many there are
 SWING = 1.5  # periods at the beginning that tell the step
@@ -121,7 +121,7 @@ def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
     found = []
     for steps in likely_steps(flat, None if reading is None else reading.program):
-        within = rows.times <= steps.spacing / steps.every * LONGEST
+        within = rows.times <= steps.spacing / steps.every * max(LONGEST, min(FEWEST * steps.every, 2 * LONGEST))
         told = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
         if told is not None:
             found.append(told)
@@ -185,22 +185,24 @@ def likely_steps(case: Case, near: Program | None) -> list[Steps]:
     if not even or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
         return []
     swing = case.part(count + 1)
-    pendulum, theta = case.pendulum_of(case.right)
+    pendulum, right = case.pendulum_of(case.right)
+    theta = right
     for _ in range(NEWTON):
         theta, slopes = _nearer(swing, pendulum, theta)
+    thetas = np.column_stack([right, theta])
     plain = float(np.linalg.norm(swing.rows.positions - pendulum.rows(theta, swing.rows.times, 2)))
     likely: list[tuple[float, Steps]] = []
     for method in FINEST:
         steps = Steps(**vars(pendulum), method=method, spacing=spacing)
-        low, high = 1, int(spacing * frequency / FINEST[method])
-        if near is not None and near.step and near.method is not None and near.method.id == method:
-            roughly = round(spacing / near.step)
+        finest = int(spacing * frequency / FINEST[method])
+        low, high = 1, min(finest, SEARCHED // count)
+        known = near is not None and near.step and near.method is not None and near.method.id == method
+        roughly = round(spacing / near.step) if near is not None and known else 0
+        if 0 < roughly <= finest:
             likely.append((0.0, replace(steps, every=roughly, near=tuple(theta))))
-            if count * high > SEARCHED:
-                low, high = max(1, roughly - TRIED // 4), min(high, roughly + TRIED // 4)
-        elif count * high > SEARCHED:
-            high = SEARCHED // count
-        likely += _apart(swing, steps, theta, slopes, low, high)
+            if roughly > high:
+                low, high = roughly - TRIED // 4, min(finest, roughly + TRIED // 4)
+        likely += _apart(swing, steps, thetas, slopes, low, high)
     likely.sort(key=lambda pair: pair[0])
     least = next((size for size, _ in likely if size), 0.0)
     return [steps for size, steps in likely[:LIKELY] if size < min(PLAIN * plain, ALIKE * least)]
@@ -218,22 +220,27 @@ def _nearer(swing: Case, pendulum: Pendulum, theta: Array) -> tuple[Array, Array
     return nearer, slopes
 
 
-def _apart(swing: Case, steps: Steps, theta: Array, slopes: Array, low: int, high: int) -> list[tuple[float, Steps]]:
-    """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best."""
+def _apart(swing: Case, steps: Steps, thetas: Array, slopes: Array, low: int, high: int) -> list[tuple[float, Steps]]:
+    """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best.
+
+    The theta is the one of some that leaves least, moved nearer with every round.
+    """
     rows, settled = swing.rows, False
     while low <= high:
         shares = np.linalg.qr(slopes)[0]
         every = np.unique(np.geomspace(low, high, TRIED).round().astype(np.int64))
-        made = steps.all_rows(theta[:, None].repeat(len(every), axis=1), every, len(rows.times) - 1)
-        left = (rows.positions[:, :, None] - made).reshape(-1, len(every))
+        together = thetas.repeat(len(every), axis=1), np.tile(every, thetas.shape[1])
+        made = steps.all_rows(*together, len(rows.times) - 1)
+        left = (rows.positions[:, :, None] - made).reshape(-1, made.shape[2])
         sizes = np.linalg.norm(left - shares @ (shares.T @ left), axis=0)
-        best = int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf)))
+        which, best = divmod(int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf))), len(every))
+        theta, sizes = thetas[:, which], sizes.reshape(-1, len(every))[which]
         near = slice(max(best - 1, 0), best + 2)
         if settled or not np.isfinite(sizes[best]):
             found = zip(sizes[near].tolist(), every[near].tolist(), strict=True)
             return [(size, replace(steps, every=count, near=tuple(theta))) for size, count in found]
         theta, slopes = _nearer(swing, replace(steps, every=int(every[best])), theta)
-        settled = high - low < len(every)
+        thetas, settled = theta[:, None], high - low < len(every)
         low, high = (low, high) if settled else (int(every[near][0]), int(every[near][-1]))
     return []
 

@@ -200,6 +200,7 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (4711, 54, {"integrator_explicit_euler"}),
         (4711, 72, {"rows_reversed", "unit_of_length"}),
         (4711, 183, {"integrator_semi_implicit_euler"}),
+        (4713, 124, {"integrator_semi_implicit_euler_drift"}),  # on a swing of 69 degrees
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
     ],
 )
@@ -212,7 +213,7 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
     ("seed", "number"),
     [
         *((17, n) for n in (55, 94, 100, 118, 204, 224, 288)),
-        *((23, 70), (23, 102), (4711, 133), (4711, 138), (5001, 24)),
+        *((23, 70), (23, 102), (4711, 133), (4711, 138), (5001, 24), (4713, 207), (4713, 289)),
     ],
 )
 def test_what_was_once_named_and_was_not_there(mistaken: Path, seed: int, number: int) -> None:
