@@ -156,7 +156,8 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
             return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
     # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
     others = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
-    others += [(units[0], way) for way in ways[1:] if rename]
+    if np.abs(row[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
+        others += [(units[0], way) for way in ways[1:] if rename]
     for (scale, text), (order, signs) in others:
         if np.abs(row[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
             return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
