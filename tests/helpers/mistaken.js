@@ -35,8 +35,9 @@ const step = s => {
   const c = rates(moved(s, b, h / 2)), d = rates(moved(s, c, h))
   return s.map((value, i) => value + h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]))
 }
-const x = given("x0", 1), y = given("y0", 0), z = -Math.sqrt(l * l - x * x - y * y), stars = given("stars", 0)
-const vx = given("vx0", 0) + stars * cu * y, vy = given("vy0", 0) - stars * cu * x
+const x = given("x0", 1), y = given("y0", 0), z = -Math.sqrt(l * l - x * x - y * y)
+const stars = given("stars", 0) * omega * Math.sin(turned) // of the Earth, whatever factor the Coriolis force has
+const vx = given("vx0", 0) + stars * y, vy = given("vy0", 0) - stars * x
 const fast = "counts_ends" in word ? 1 + Number(word.counts_ends) * out / tEnd : given("fast", 1)
 let s = [x, y, z, vx, vy, -(x * vx + y * vy) / z]
 console.log("t,x,y")

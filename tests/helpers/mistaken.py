@@ -68,13 +68,14 @@ def step(s):
     return [x + h / 6 * (i + 2 * j + 2 * k + m) for x, i, j, k, m in zip(s, a, b, c, d, strict=True)]
 
 
-x, y, stars = given("x0", 1), given("y0", 0), given("stars", 0)
+x, y = given("x0", 1), given("y0", 0)
+stars = given("stars", 0) * turn * math.sin(coriolis)  # of the Earth, whatever factor the Coriolis force has
 s = [
     x,
     y,
     -math.sqrt(length * length - x * x - y * y),
-    given("vx0", 0) + stars * cu * y,
-    given("vy0", 0) - stars * cu * x,
+    given("vx0", 0) + stars * y,
+    given("vy0", 0) - stars * x,
     0,
 ]
 s[5] = -(s[0] * s[3] + s[1] * s[4]) / s[2]

@@ -214,7 +214,7 @@ class JointCase(Case):
             taken = replace(steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0)))
             case = run.case.part(int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum()))
             pendulum, theta = case.pendulum_of(one)
-            moved = Steps.of(pendulum, taken.method, taken.every, taken.spacing).rows(theta, case.rows.times, 2)
+            moved = replace(taken, **vars(pendulum)).rows(theta, case.rows.times, 2)
             effect = moved - pendulum.rows(theta, case.rows.times, 2)
             case = replace(case, rows=replace(case.rows, positions=case.rows.positions - effect))
             seen.append(replace(run, case=case))

@@ -22,6 +22,7 @@ from .findings import Experiment, Experiments, Finding
 from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
 
 WAYS = TYPED, FACTOR  # how a step follows {setting}
+ONE_THING = {"turn": "coriolis"}  # Ω upwards alone, and a plane turned by hand, may be one motion
 LEAST_RUNS = 2  # by which a cause is measured
 UNSOLVED = (FoucaultError, ArithmeticError, np.linalg.LinAlgError)  # no program solves such a scene, or fits its rows
 Run = Callable[[Experiment, Scene], Candidate]
@@ -145,7 +146,8 @@ def _told(case: JointCase, *step: Deviation) -> list[Explanation]:
     told: list[Explanation] = []
     things: list[set[str]] = []
     for reading in case.readings():
-        one, groups = case.told(reading, *step), {cause.group for cause in reading.causes}
+        one = case.told(reading, *step)
+        groups = {ONE_THING.get(cause.group, cause.group) for cause in reading.causes}
         ids = {cause.id for cause in one.causes}
         same = groups in things or any({cause.id for cause in other.causes} <= ids for other in told)
         if ids and not same and one.score <= (told or [one])[0].score + EQUAL:

@@ -62,7 +62,7 @@ def made_right(
     rows = heights(digits(Rows(times, positions, 0.0)), length)
     rows = axes(rows, release, length, rename)
     rows = clock(rows, release)
-    rows = unit_of_time(rows, frequency)
+    rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
     return rows if rows.starts else shifted(rows, release, frequency, length)
 
 
@@ -88,12 +88,7 @@ def digits(rows: Rows) -> Rows:
             return rows.changed(Deviation("decimals", text, noise), noise=noise)
     single = values.astype(np.float32).astype(float)
     if same(single) or same(np.array([float(f"{value:.8e}") for value in single])):
-        # times in single precision are off as well, by what the bob moves in the meantime
-        even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
-        late = float(np.abs(rows.times - even).max())
-        late = late if late < SINGLE * rows.times[-1] else 0.0  # else they are not evenly spaced
-        speed = float(np.abs(np.diff(rows.plane, axis=0) / np.diff(rows.times)[:, None]).max())
-        noise = size * float(np.finfo(np.float32).eps) + late * speed
+        noise = size * float(np.finfo(np.float32).eps)
         text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
         return rows.changed(Deviation("single_precision", text, noise), noise=noise)
     for count in range(3, 13):
@@ -146,8 +141,8 @@ def _flat(rows: Rows) -> Rows:
 
 def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
-    row = rows.positions[0]
-    released = any(is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
+    row, last = rows.positions[[0, -1]]
+    released = any(is_release(one, release, rows.noise) for one in (row, last))
     if released or not rows.starts or np.hypot(*row[:2]) == 0:
         return rows
     units = [
@@ -156,18 +151,16 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
         (1 / length, "is in cord lengths (x/l)"),
     ]
     ways = [*AXES_SAID]
-    for (scale, text), (order, signs) in itertools.product(units, ways if rename else ways[:1]):
-        if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
+    for one, (scale, text), (order, signs) in itertools.product((row, last), units, ways if rename else ways[:1]):
+        if is_release(one[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
-    for scale, text in units[1:]:
-        if abs(scale - 1) < 3 * ROUGHLY:  # a cord of about a metre: the release alone may be off by as much
-            continue
-        near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
-        if near:  # another unit, and a release that is a little off
-            return _scaled_height(_in_metres(rows, scale, text), scale, length)
-    for order, signs in ways[1:] if rename else ():
-        if np.abs(row[[*order]] * np.array(signs) - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2])):
-            return _renamed(rows, order, signs)  # other axes, and a release that is a little off
+    # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
+    others = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
+    if np.abs(row[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
+        others += [(units[0], way) for way in ways[1:] if rename]
+    for (scale, text), (order, signs) in others:
+        if np.abs(row[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
+            return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
     polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
@@ -242,11 +235,12 @@ def _reversed(rows: Rows) -> Rows:
     return rows.changed(convention, times=rows.times[-1] - rows.times[::-1], positions=positions)
 
 
-def unit_of_time(rows: Rows, frequency: float) -> Rows:
+def unit_of_time(rows: Rows, frequency: float, length: float) -> Rows:
     """Find the unit of time by the frequency of the swing."""
     if not frequency or len(rows.times) < 12:
         return rows
     plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
+    plane = as_angles(plane, length) if np.abs(plane).max() < length else plane
     some = slice(0, min(len(plane), 400))
     size = float(np.abs(plane).max())
 
@@ -269,6 +263,16 @@ def unit_of_time(rows: Rows, frequency: float) -> Rows:
         if scaled is not None and abs(scaled - 1) < 0.1:
             return rows.changed(Deviation("unit_of_time", text, size), times=rows.times * scale)
     return rows
+
+
+def rounded_clock(rows: Rows, frequency: float) -> Rows:
+    """Add to the noise of rows in single precision what the bob moves while its times are off by their rounding."""
+    even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
+    late = float(np.abs(rows.times - even).max())
+    single = any(convention.id == "single_precision" for convention in rows.conventions)
+    if not single or late > SINGLE * rows.times[-1]:  # else they are not evenly spaced
+        return rows
+    return replace(rows, noise=rows.noise + late * frequency * float(np.abs(rows.plane).max()))
 
 
 def shifted(rows: Rows, release: Array, frequency: float, length: float) -> Rows:

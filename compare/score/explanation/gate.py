@@ -60,7 +60,7 @@ def loose(size_m: float, stage: str = "integrator") -> Deviation:
 
 def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Deviation]:
     """Yield what may be told of causes that were read from the rows."""
-    if any(not is_likely(cause) for cause in causes):
+    if any(not is_likely(cause) or not math.isfinite(cause.size_m) for cause in causes):
         return
     allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
     causes = [_in_whole_steps(cause, evidence) for cause in _drift_as_step(causes, evidence)]
@@ -72,7 +72,12 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
     ]
     unknown = max((cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0)
     steps = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
+    # what a step does is known exactly where it was taken, and in a linear model
+    exact = any(_is_step(cause) and cause.uncertainty is None for cause in causes)
+    rough = evidence.clean * steps if evidence.clean > CLEAN and not exact else 0.0
     for cause, sure in zip(causes, typed, strict=True):
+        if cause.stage != "integrator" and cause.size_m < rough:
+            continue
         # what is not known may look like anything that is smaller, and what is not known of a step like a model
         like = max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
         if not agrees and cause.size_m < SHARE * like:
@@ -103,7 +108,7 @@ def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
     assert cause.value is not None
     many = round(evidence.spacing / cause.value)
     doubt, off = evidence.clean * many, abs(evidence.spacing / cause.value - many)
-    if not many or off > max(doubt, APART):
+    if not many or off > max(doubt, APART) or evidence.clean >= 1:
         return loose(cause.size_m)
     if doubt >= 1 / 2:
         return replace(cause, uncertainty=max(cause.uncertainty, evidence.clean * cause.value))

@@ -268,9 +268,12 @@ class Pendulum:
         )
 
     def start(self, theta: Array) -> Array:
-        """Return position and velocity of the release over the length, below the suspension and along the sphere."""
+        """Return position and velocity of the release over the length, below the suspension and along the sphere.
+
+        They are NaN where the cord does not reach it.
+        """
         x, y, vx, vy = theta[7:11]
-        z = -math.sqrt(theta[11] ** 2 - x * x - y * y)
+        z = -np.sqrt(theta[11] ** 2 - x * x - y * y)
         return np.asarray(np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / theta[11])
 
     def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:

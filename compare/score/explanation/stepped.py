@@ -22,6 +22,7 @@ from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
+from ...observed.least_squares import best_change
 from .causes import FITTED
 from .families import fit_pendulum
 from .findings import AS_IF, Explanation
@@ -44,7 +45,7 @@ RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {  # place
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
 LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
-FEWEST = 30  # rows that tell a motion
+FEWEST = 30  # rows that tell a motion: to have as many, twice as many steps are run
 TRIED = 24  # numbers of steps that are run at a time
 SEARCHED = 8_000  # steps that are run at most where nothing tells how many there are
 SWING = 1.5  # periods at the beginning that tell the step
@@ -53,6 +54,7 @@ PLAIN = 0.3  # of what no step at all leaves of the first swing
 READINGS = 2  # of that motion
 STEP_LEFT = 1e-3  # of what the steps do that may be left
 ALIKE = 10.0  # times what the likeliest leaves: others that are tried
+NEWTON = 2  # times that they are moved before any are taken
 UNSURE = (2, 3, 4, 5, 6, 7, 8)  # of theta, beside which a step is looked for: turn, pull, drag, place of the release
 State = list[Any]
 
@@ -65,16 +67,13 @@ class Steps(Pendulum):
         method: a word of `FINEST`.
         every: number of steps from row to row.
         spacing: of the rows in s.
+        near: the theta with which they make the first swing, or none.
     """
 
     method: str = ""
     every: int = 1
     spacing: float = 0.0
-
-    @classmethod
-    def of(cls, pendulum: Pendulum, method: str, every: int, spacing: float) -> Steps:
-        """Return the steps that move a pendulum."""
-        return cls(**vars(pendulum), method=method, every=every, spacing=spacing)
+    near: tuple[float, ...] = ()
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x and y in m, shape (times, 2)."""
@@ -122,7 +121,7 @@ def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
     found = []
     for steps in likely_steps(flat, None if reading is None else reading.program):
-        within = rows.times <= steps.spacing / steps.every * LONGEST
+        within = rows.times <= steps.spacing / steps.every * max(LONGEST, min(FEWEST * steps.every, 2 * LONGEST))
         told = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
         if told is not None:
             found.append(told)
@@ -135,7 +134,7 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
     """Return what is known of rows that some steps made; None if others did."""
     rows, (pendulum, theta) = case.rows, case.pendulum_of(case.right)
     noise = max(rows.noise, case.floor / 100)
-    fit = fit_pendulum(steps, rows.times, rows.positions, [theta], case.scales, noise)
+    fit = fit_pendulum(steps, rows.times, rows.positions, [np.array(steps.near)], case.scales, noise)
     if fit is None:
         return None
     theta, best = fit.theta, None
@@ -151,7 +150,7 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
         if best is None or best.reader.right.kind != "sphere":
             return None
         pendulum, theta = case.pendulum_of(best.program)
-        steps = Steps.of(pendulum, steps.method, steps.every, steps.spacing)
+        steps = replace(steps, **vars(pendulum))
         moved = steps.rows(theta, rows.times, 2)
     effect = moved - pendulum.rows(theta, rows.times, 2)
     left = rms(rows.positions - moved)
@@ -175,7 +174,7 @@ def likely_steps(case: Case, near: Program | None) -> list[Steps]:
     """Return methods and steps that the first swing looks like, the likeliest first; none for rows not evenly spaced.
 
     The rows have x and y alone, the first of them evenly spaced from the release on. Where they are so far apart that
-    it takes long to try all, a program's step has to be `near`.
+    it takes long to try all, the shortest steps are not tried, or those near a program's step alone.
     """
     rows, frequency = case.rows, case.frequency
     if len(rows.times) < 8 or rows.times[0] != 0 or not frequency:
@@ -186,45 +185,63 @@ def likely_steps(case: Case, near: Program | None) -> list[Steps]:
     if not even or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
         return []
     swing = case.part(count + 1)
-    pendulum, theta = case.pendulum_of(case.right)
-    slopes = pendulum.slopes(theta, swing.rows.times, 2, case.scales, np.full(len(theta), 1e-6))[:, UNSURE]
-    unsure = np.linalg.qr(slopes)[0] if np.isfinite(slopes).all() else np.zeros((len(slopes), 0))
-    plain = float(np.linalg.norm(_beside(swing.left(case.right).reshape(-1, 1), unsure)))
+    pendulum, right = case.pendulum_of(case.right)
+    theta = right
+    for _ in range(NEWTON):
+        theta, slopes = _nearer(swing, pendulum, theta)
+    thetas = np.column_stack([right, theta])
+    plain = float(np.linalg.norm(swing.rows.positions - pendulum.rows(theta, swing.rows.times, 2)))
     likely: list[tuple[float, Steps]] = []
-    roughly = round(spacing / near.step) if near is not None and near.method is not None and near.step else 0
     for method in FINEST:
-        low, high = 1, int(spacing * frequency / FINEST[method])
-        if count * high > SEARCHED:
-            low, high = max(1, roughly - TRIED // 4), min(high, roughly + TRIED // 4)
-        steps = Steps.of(pendulum, method, 1, spacing)
-        likely += [
-            (size, replace(steps, every=every)) for every, size in _apart(swing, steps, theta, unsure, low, high)
-        ]
-        if near is not None and near.method is not None and near.method.id == method:
-            likely.append((0.0, replace(steps, every=roughly)))
+        steps = Steps(**vars(pendulum), method=method, spacing=spacing)
+        finest = int(spacing * frequency / FINEST[method])
+        low, high = 1, min(finest, SEARCHED // count)
+        known = near is not None and near.step and near.method is not None and near.method.id == method
+        roughly = round(spacing / near.step) if near is not None and known else 0
+        if 0 < roughly <= finest:
+            likely.append((0.0, replace(steps, every=roughly, near=tuple(theta))))
+            if roughly > high:
+                low, high = roughly - TRIED // 4, min(finest, roughly + TRIED // 4)
+        likely += _apart(swing, steps, thetas, slopes, low, high)
     likely.sort(key=lambda pair: pair[0])
     least = next((size for size, _ in likely if size), 0.0)
     return [steps for size, steps in likely[:LIKELY] if size < min(PLAIN * plain, ALIKE * least)]
 
 
-def _beside(left: Array, shares: Array) -> Array:
-    """Return columns without their parts along some orthonormal ones."""
-    return np.asarray(left - shares @ (shares.T @ left))
+def _nearer(swing: Case, pendulum: Pendulum, theta: Array) -> tuple[Array, Array]:
+    """Return theta, its unsure numbers moved to where the pendulum leaves less, and the slopes by these in scales."""
+    rows, unsure = swing.rows, list(UNSURE)
+    slopes = pendulum.slopes(theta, rows.times, 2, swing.scales, np.full(len(theta), 1e-6))[:, unsure]
+    left = (rows.positions - pendulum.rows(theta, rows.times, 2)).ravel()
+    if not (np.isfinite(slopes).all() and np.isfinite(left).all()):
+        return theta, np.zeros((len(left), 0))
+    nearer = theta.copy()
+    nearer[unsure] += swing.scales[unsure] * best_change(slopes, left)
+    return nearer, slopes
 
 
-def _apart(swing: Case, steps: Steps, theta: Array, shares: Array, low: int, high: int) -> list[tuple[int, float]]:
-    """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best."""
-    rows = swing.rows
+def _apart(swing: Case, steps: Steps, thetas: Array, slopes: Array, low: int, high: int) -> list[tuple[float, Steps]]:
+    """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best.
+
+    The theta is the one of some that leaves least, moved nearer with every round.
+    """
+    rows, settled = swing.rows, False
     while low <= high:
+        shares = np.linalg.qr(slopes)[0]
         every = np.unique(np.geomspace(low, high, TRIED).round().astype(np.int64))
-        moved = steps.all_rows(theta[:, None].repeat(len(every), axis=1), every, len(rows.times) - 1)
-        left = (rows.positions[:, :, None] - moved).reshape(-1, len(every))
-        sizes = np.linalg.norm(_beside(left, shares), axis=0)
-        best = int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf)))
+        together = thetas.repeat(len(every), axis=1), np.tile(every, thetas.shape[1])
+        made = steps.all_rows(*together, len(rows.times) - 1)
+        left = (rows.positions[:, :, None] - made).reshape(-1, made.shape[2])
+        sizes = np.linalg.norm(left - shares @ (shares.T @ left), axis=0)
+        which, best = divmod(int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf))), len(every))
+        theta, sizes = thetas[:, which], sizes.reshape(-1, len(every))[which]
         near = slice(max(best - 1, 0), best + 2)
-        if high - low < len(every):
-            return list(zip(every[near].tolist(), sizes[near].tolist(), strict=True))
-        low, high = int(every[near][0]), int(every[near][-1])
+        if settled or not np.isfinite(sizes[best]):
+            found = zip(sizes[near].tolist(), every[near].tolist(), strict=True)
+            return [(size, replace(steps, every=count, near=tuple(theta))) for size, count in found]
+        theta, slopes = _nearer(swing, replace(steps, every=int(every[best])), theta)
+        thetas, settled = theta[:, None], high - low < len(every)
+        low, high = (low, high) if settled else (int(every[near][0]), int(every[near][-1]))
     return []
 
 

@@ -23,4 +23,4 @@ def test_no_wide_swing_counts_time_in_another_unit():
             half = modulus * cosine / delta  # sin(θ/2), greatest at t = 0
             x = 2 * length * half * np.sqrt(1 - half**2)
             rows = Rows(times, np.column_stack([x, 0 * x]), 1e-15)
-            assert unit_of_time(rows, rate).conventions == (), (degrees, step)
+            assert unit_of_time(rows, rate, length).conventions == (), (degrees, step)

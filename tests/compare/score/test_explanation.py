@@ -164,7 +164,7 @@ def told(made: Case, times: np.ndarray, columns: dict[str, np.ndarray]) -> Expla
 def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
     mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
-    count, right, whole, wrong = size(20, 300), 0, 0, {}
+    count, right, whole, agree, wrong = size(20, 300), 0, 0, 0, {}
     begun = time.process_time()
     for number in range(count):
         made = case(number)
@@ -174,11 +174,13 @@ def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
         elif one_word_for_one_motion(made.true) & one_word_for_one_motion(words_of(found)):
             right += 1
             whole += one_word_for_one_motion(made.true) <= one_word_for_one_motion(words_of(found))
+        elif not words_of(found):
+            agree += not made.matters(mistaken)  # within the tolerance, where nothing may be told
     spent = time.process_time() - begun
-    named = f"{whole} named whole, {right} in part, {len(wrong)} wrong"
+    named = f"{whole} named whole, {right} in part, {agree} that agree, {len(wrong)} wrong"
     tally(f"mistakes drawn at random: of {count} {named}, {spent:.0f} CPU s")
     assert not wrong
-    assert right >= SHARE * count
+    assert right >= SHARE * (count - agree)
 
 
 SHARE = 0.95
@@ -192,10 +194,33 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
 
 
 @pytest.mark.parametrize(
-    ("seed", "number"), [*((17, n) for n in (55, 94, 100, 118, 204, 224, 288)), (23, 70), (23, 102)]
+    ("seed", "number", "words"),
+    [
+        (4711, 9, {"integrator_semi_implicit_euler"}),  # 1.4 swings from row to row, and another g
+        (4711, 54, {"integrator_explicit_euler"}),
+        (4711, 72, {"rows_reversed", "unit_of_length"}),
+        (4711, 183, {"integrator_semi_implicit_euler"}),
+        (4713, 124, {"integrator_semi_implicit_euler_drift"}),  # on a swing of 69 degrees
+        (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
+    ],
+)
+def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: set[str]) -> None:
+    made = case(number, seed)
+    assert words_of(told(made, *made.rows(mistaken))) >= words
+
+
+@pytest.mark.parametrize(
+    ("seed", "number"),
+    [
+        *((17, n) for n in (55, 94, 100, 118, 204, 224, 288)),
+        *((23, 70), (23, 102), (4711, 133), (4711, 138), (5001, 24), (4713, 207), (4713, 289)),
+    ],
 )
 def test_what_was_once_named_and_was_not_there(mistaken: Path, seed: int, number: int) -> None:
-    """Mirrored releases, methods in single precision, other units of reversed rows, rates for a clock."""
+    """Mirrored releases, methods in single precision, other units of reversed rows, rates for a clock.
+
+    Times in single precision of sparse rows, a g for a leapfrog, a g for what is not known of a step.
+    """
     made = case(number, seed)
     assert not made.wrong(told(made, *made.rows(mistaken)))
 
