@@ -96,6 +96,11 @@ def one_word_for_one_motion(words: set[str]) -> set[str]:
     found = {"site.gravity" if word.startswith("gravity_") else SAME.get(word, word) for word in words}
     if found & {"linear_g", "linear_in_angle"} and "hemisphere" in found:
         found = found ^ {"hemisphere", "coriolis_sign"}
+    if {
+        "hemisphere",
+        "coriolis_sign",
+    } <= found:  # Ω's northward part turned round, as by half a turn about the vertical
+        found = found - {"hemisphere", "coriolis_sign"} | {"frame_x_west"}
     if {"no_centrifugal", "no_coriolis"} <= found:
         found = found - {"no_centrifugal", "no_coriolis"} | {"no_rotation"}
     return found

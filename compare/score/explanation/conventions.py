@@ -79,18 +79,20 @@ def digits(rows: Rows) -> Rows:
     def same(rounded: Array) -> bool:
         return bool((np.abs(rounded - values) <= 1e-15 * np.abs(values)).all())
 
+    single = values.astype(np.float32).astype(float)
+    in_single, single_noise = same(single), size * float(np.finfo(np.float32).eps)
+    # printed with nine digits, as C does; those of a large swing have as few decimals as a file in double
+    in_single = in_single or same(np.array([float(f"{value:.8e}") for value in single]))
     for decimals in range(13):
         if same(np.round(values, decimals)):
             noise = 0.5 * 10.0**-decimals
-            if noise < 1e-12 * size:
+            if noise < (single_noise if in_single else 1e-12 * size):
                 break
             text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
             return rows.changed(Deviation("decimals", text, noise), noise=noise)
-    single = values.astype(np.float32).astype(float)
-    if same(single) or same(np.array([float(f"{value:.8e}") for value in single])):
-        noise = size * float(np.finfo(np.float32).eps)
-        text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
-        return rows.changed(Deviation("single_precision", text, noise), noise=noise)
+    if in_single:
+        text = f"holds numbers in single precision, good to {single_noise:.1g} of its unit"
+        return rows.changed(Deviation("single_precision", text, single_noise), noise=single_noise)
     for count in range(3, 13):
         if same(np.array([float(f"{value:.{count - 1}e}") for value in values])):
             noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - count)

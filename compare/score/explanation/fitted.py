@@ -15,7 +15,7 @@ from ...observed.least_squares import by_differences, gauss_newton
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
 from .findings import AS_IF, HARMLESS, Explanation, Model
-from .gate import CLEAN, Evidence, loose, may_be_told
+from .gate import CLEAN, Evidence, loose, may_be_told, without_doubtful_steps
 from .programs import Program
 from .readings import Reader, Reading
 from .unexplained import Case, largest, rms
@@ -139,6 +139,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     if program != reading.program:  # what is not told is not put right
         left = case.left(program)
         corrected = largest(left)
+        causes = without_doubtful_steps(causes, corrected, enough)
     more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
     if more and reader.drifts(case, reading.program):
         causes.append(loose(corrected))

@@ -13,6 +13,7 @@ from .readings import SAME
 CHANCE = 0.02  # that a number which nobody typed has as few digits, within its uncertainty
 SCARCE = 0.2  # and where all the rest agrees: a doubt of a tenth of the last digit, either way
 TYPED, MOST_DIGITS = 7, 9  # digits that people type, and that anybody does
+FACTOR_DIGITS = 4  # and of a factor
 SHARE = 3.0  # times what is left, or what is not known: a cause that moves the bob by less is not told from it
 FAR = 1.5  # times the scene's g or length, or less by as much: what no program has that is merely off
 METHOD_SHARE = 0.1  # of what a method does that may be left, or it is not told from another
@@ -94,6 +95,14 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
             yield replace(cause, id=f"{AS_IF}.{cause.id}", stage=AS_IF, text=text)
 
 
+def without_doubtful_steps(causes: Sequence[Deviation], left_m: float, enough_m: float) -> list[Deviation]:
+    """Return causes of which those steps have no name any more that leave too much beside what they do."""
+    return [
+        loose(cause.size_m) if _is_step(cause) and left_m > max(enough_m, METHOD_SHARE * cause.size_m) else cause
+        for cause in causes
+    ]
+
+
 def _is_step(cause: Deviation) -> bool:
     return cause.stage == "integrator" and cause.value is not None
 
@@ -163,19 +172,20 @@ def is_typed(cause: Deviation, within: float = 0.0) -> bool:
         within: the tolerance over what is left, if nothing else is off: then numbers that serve as well count; else 0.
     """
     value, doubt = cause.value or 0.0, (cause.uncertainty or 0.0) * max(within, 1.0)
-    if has_few_digits(value, doubt, within > 0):
-        return True
     scene = value - (cause.shift or 0.0)
+    few = within > 0 and value * scene >= 0  # another size and another sign at once take better evidence
+    if has_few_digits(value, doubt, few):
+        return True
     factor = cause.id == "site.rotation_rate" and scene != 0
-    return factor and has_few_digits(value / scene, doubt / abs(scene), within > 0)
+    return factor and has_few_digits(value / scene, doubt / abs(scene), few, FACTOR_DIGITS)
 
 
-def has_few_digits(value: float, doubt: float, any_few: bool) -> bool:
+def has_few_digits(value: float, doubt: float, any_few: bool, most: int = MOST_DIGITS) -> bool:
     """Return whether the shortest decimal within a doubt has few digits; see `is_typed`."""
     doubt = max(doubt, 2.0**-50 * abs(value))
     if abs(value) <= doubt:
         return True
-    for digits in range(1, MOST_DIGITS + 1):
+    for digits in range(1, most + 1):
         unit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
         if abs(round(value / unit) * unit - value) <= doubt:
             return 2 * doubt < (SCARCE if any_few and digits <= TYPED else CHANCE) * unit
