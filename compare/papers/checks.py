@@ -229,7 +229,7 @@ class PrintedNumber(Check):
 
 
 @dataclass(frozen=True)
-class Tested:
+class Answer:
     """The result of a statement's computation: whether it holds, and the number that decides."""
 
     holds: bool
@@ -241,7 +241,7 @@ class Tested:
 class Statement(Check):
     """A sentence, and a computation that can refute it. `by_run`: it rests on a run and not on an identity."""
 
-    test: Callable[[], Tested]
+    test: Callable[[], Answer]
     correction: str = ""
     corrected: Callable[[], bool] | None = None
     by_run: bool = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .checks import Approximate, Check, Identity, Statement, Tested, section
+from .checks import Answer, Approximate, Check, Identity, Statement, section
 from .digits import (
     MP,
     Vector,
@@ -86,13 +86,13 @@ def measured_rate(p: Point) -> Any:
     return sqrt(-unprimed_equation(p.but(x=MP.one, y=MP.zero, vx=MP.zero, vy=MP.zero), axes_rate(p))[0])
 
 
-def _away_from_axis() -> Tested:
+def _away_from_axis() -> Answer:
     p = points()[0]
     axis, far = turning(p), vector(0, 0, p.radius)
     pushed = -cross(axis, cross(axis, far))
     across = far - dot(far, unit(axis)) * unit(axis)
     gap = norm(unit(pushed) - unit(across))
-    return Tested(vanishes(gap), f"-ω × (ω × r) points away from the axis to within {shown(gap)}")
+    return Answer(vanishes(gap), f"-ω × (ω × r) points away from the axis to within {shown(gap)}")
 
 
 def _rising(s: Any) -> Point:
@@ -158,10 +158,10 @@ def _two_ways(p: Point) -> Vector:
     return vector(first, sqrt(pull + 2 * rate / sin(p.phi) * rate * sin(p.phi) - rate**2))
 
 
-def _far_below_gravity() -> Tested:
+def _far_below_gravity() -> Answer:
     p = paris()
     ratio = p.rate * norm((p.x, p.y)) * sqrt(p.gravity / p.length) / p.gravity
-    return Tested(ratio < mpf("1e-4"), f"ω xdot / g = {shown(ratio)} in Paris")
+    return Answer(ratio < mpf("1e-4"), f"ω xdot / g = {shown(ratio)} in Paris")
 
 
 def _spinning(s: Any) -> Point:
@@ -186,14 +186,14 @@ def _moved_acceleration(p: Point) -> Vector:
     return derivative(primed(lambda t: motion(p, start, t)[:2], -rate), 0, 2)
 
 
-def _simple_in_frame() -> Tested:
+def _simple_in_frame() -> Answer:
     def excess(p: Point) -> Any:
         bent = 2 * axes_rate(p) * vector(p.vy, -p.vx)  # as seen from the turning axes
         pushed = (axes_rate(p) ** 2 + swing_rate(p) ** 2) * p.position[:2]
         return norm(_turned_drive(p) + bent + pushed)
 
     gap = max(map(excess, points()))
-    return Tested(vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
+    return Answer(vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
 
 
 def _equation(p: Point) -> Any:

@@ -9,7 +9,7 @@ from reference import load_scene
 from reference.model.constants import axis_distance
 
 from ...approximations.case import Case
-from ..checks import Approximate, Check, Identity, PrintedNumber, Statement, Tested, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
 from ..digits import (
     MP,
     Vector,
@@ -119,20 +119,20 @@ def _bending(p: Point) -> Any:
     return (p.vy * ax - p.vx * ay) / (p.vx**2 + p.vy**2)
 
 
-def _shorter_than_the_arc() -> Tested:
+def _shorter_than_the_arc() -> Answer:
     p = points()[0].but(azimuth_rate=MP.zero)
     velocity = moving_velocity(p)
     share = norm(velocity[:2]) / norm(velocity)
-    return Tested(share < 1, f"dx / (v dt) = {shown(share)} at θ = {shown(p.cord, 6)}")
+    return Answer(share < 1, f"dx / (v dt) = {shown(share)} at θ = {shown(p.cord, 6)}")
 
 
-def _slower_when_wide() -> Tested:
+def _slower_when_wide() -> Answer:
     """Run the reference at the pole with the Pantheon's amplitude: its transits are its points of rest."""
     run = solved(("site.latitude=90", "site.gravity=9.8", "release.x=6.5", "release.y=0"), "20", 30)
     t, x, y = (mpf(run.transits.exact(name)[1]) for name in ("t", "x", "y"))
     ratio = -2 * pi * t / atan2(y, x) / (SIDEREAL_DAY * 3600)
     closed = wide_swing(MP.one)[1]
-    return Tested(
+    return Answer(
         bool(ratio > 1 and abs(ratio - closed) < mpf("1e-20")), f"T_f/T_p = {shown(ratio)} at r0 = 6.5 m, pole"
     )
 
@@ -141,19 +141,19 @@ def _turn(latitude: str) -> float:
     return rotation(load_scene("paris", [f"site.latitude={latitude}"]), 7200.0)
 
 
-def _pole() -> Tested:
+def _pole() -> Answer:
     turn = _turn("90")
-    return Tested(abs(turn / -15.04106864 - 1) < 1e-4, f"{turn:.15f}° an hour, the Earth -15.041068640° in the sky")
+    return Answer(abs(turn / -15.04106864 - 1) < 1e-4, f"{turn:.15f}° an hour, the Earth -15.041068640° in the sky")
 
 
-def _equator() -> Tested:
+def _equator() -> Answer:
     turn = _turn("0")
-    return Tested(abs(turn) < 1e-3, f"{turn:.15f}° an hour")
+    return Answer(abs(turn) < 1e-3, f"{turn:.15f}° an hour")
 
 
-def _south() -> Tested:
+def _south() -> Answer:
     turn = _turn("-48.846111")
-    return Tested(turn > 0, f"{turn:+.15f}° an hour, east to north (anticlockwise from above)")
+    return Answer(turn > 0, f"{turn:+.15f}° an hour, east to north (anticlockwise from above)")
 
 
 def _on_sphere(p: Point) -> Case:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations.gastebois import constants_of
-from ..checks import Approximate, Check, Identity, Statement, Tested, component, section
+from ..checks import Answer, Approximate, Check, Identity, Statement, component, section
 from ..digits import MP, Vector, cos, dot, j, mpf, shown, sin, vector
 from ..first_principles import (
     acceleration_of,
@@ -94,10 +94,10 @@ def _moved(p: Point) -> Vector:
     return motion(p, (p.x, p.y, p.vx, p.vy), p.t)
 
 
-def _whole_part() -> Tested:
+def _whole_part() -> Answer:
     p = points()[0]
     x, whole = _moved(p)[0], MP.floor(_complex(p).real)
-    return Tested(abs(whole - x) < mpf("1e-40"), f"x = {shown(x)}, whole part of Z {shown(whole)}")
+    return Answer(abs(whole - x) < mpf("1e-40"), f"x = {shown(x)}, whole part of Z {shown(whole)}")
 
 
 def _real_part() -> bool:

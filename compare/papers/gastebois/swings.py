@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Approximate, Check, Identity, PrintedNumber, Statement, Tested, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate
 from ..points import Point, points
@@ -86,9 +86,9 @@ def _sense(p: Point) -> Any:
     return x * vy - y * vx
 
 
-def _clockwise() -> Tested:
+def _clockwise() -> Answer:
     p = points()[0]
-    return Tested(_sense(p) < 0, f"x vy - y vx = {shown(_sense(p))} in the turning axes, north")
+    return Answer(_sense(p) < 0, f"x vy - y vx = {shown(_sense(p))} in the turning axes, north")
 
 
 def _ellipse(p: Point, t: Any) -> Vector:

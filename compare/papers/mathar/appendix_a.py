@@ -12,7 +12,7 @@ from reference import load_scene
 from ...methods import rk4
 from ...methods.rkng import RKNG56, RKNG67
 from ...methods.tableau import NystromTableau, Tableau, TableauError
-from ..checks import Check, PrintedNumber, Statement, Tested, section
+from ..checks import Answer, Check, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
 from ..foucpend import Transits
 from ..points import paris, path_in, transits
@@ -28,9 +28,9 @@ def _polar_radius() -> Any:
     return paris().radius * (1 - paris().flattening)
 
 
-def _prolate() -> Tested:
+def _prolate() -> Answer:
     gap = _polar_radius() - paris().radius
-    return Tested(gap > 0, f"polar radius - equatorial radius = {shown(gap)} m")
+    return Answer(gap > 0, f"polar radius - equatorial radius = {shown(gap)} m")
 
 
 def order_of(tableau: Tableau | NystromTableau) -> int:
@@ -53,30 +53,30 @@ def _order(tableau: NystromTableau, printed: str) -> dict[str, Any]:
     return {"value": lambda: MP.mpf(order_of(tableau)), "remark": remark}
 
 
-def _step_control() -> Tested:
+def _step_control() -> Answer:
     """Look for a second formula of order 3 in the stages of the classical scheme, whose error it would estimate."""
     table = [[mpf(part) for part in row] for row in rk4.TABLEAU.a]
     nodes = [sum(row, MP.zero) for row in table]
     inner = [sum((part * node for part, node in zip(row, nodes, strict=False)), MP.zero) for row in table]
     conditions = MP.matrix([[MP.one] * len(nodes), nodes, [node**2 for node in nodes], inner])
     size = MP.det(conditions)
-    return Tested(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
+    return Answer(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
 
 
-def _by_parabola() -> Tested:
+def _by_parabola() -> Answer:
     times = np.arange(1001) / 100
     xdot = path_in(load_scene("paris"), times)[:, 3]
     xdot[0] = 0.0  # released at rest, exactly
     zero, true = Transits().of(times, xdot)[0], float(transits("t")[0])
     # of sin(wt) a parabola through three points h apart misses the zero by at most h³ w² max|s(s² - 1)|/6
     bound = 0.065 * 0.01**3 * 9.80665 / 67
-    return Tested(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
+    return Answer(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
 
 
-def _two_transits() -> Tested:
+def _two_transits() -> Answer:
     count, surplus = len(transits("t")), swings_surplus()
     share = mpf(surplus) / count
-    return Tested(
+    return Answer(
         share < mpf("1e-3"),
         f"{count} transits in {count - surplus} half swings of a day",
         f"{surplus} too many, {shown(share, 3)} (relative)" if surplus else "",

@@ -9,7 +9,7 @@ import numpy as np
 
 from reference.model.constants import axis_distance
 
-from ..checks import Check, Identity, Statement, Tested, section
+from ..checks import Answer, Check, Identity, Statement, section
 from ..digits import MP, Vector, cos, cross, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
 from ..first_principles import (
     angle_state,
@@ -58,10 +58,10 @@ def _meridian_radius(p: Point) -> Any:
     return p.radius * (1 - p.e2) / (1 - p.e2 * sin(p.phi) ** 2) ** MP.mpf("1.5")
 
 
-def _not_the_north_direction() -> Tested:
+def _not_the_north_direction() -> Answer:
     p = points()[0]
     between = cross(unit(_along_meridian(p)), north(p, p.t))
-    return Tested(not vanishes(between), f"sine of the angle between them: {shown(norm(between))}")
+    return Answer(not vanishes(between), f"sine of the angle between them: {shown(norm(between))}")
 
 
 def _is_the_north_direction() -> bool:
@@ -72,11 +72,11 @@ def _distance_of_suspension(p: Point) -> Any:
     return norm(suspension(p, MP.one)[:2])
 
 
-def _east_from_latitude() -> Tested:
+def _east_from_latitude() -> Answer:
     p = points()[0]
     along, e_east = unit(_along_meridian(p)), east(p, p.t)
     cosine = shown(dot(along, e_east))
-    return Tested(vanishes(cross(along, e_east)), f"cosine of the angle between dX_s/dϕ and e_E: {cosine}")
+    return Answer(vanishes(cross(along, e_east)), f"cosine of the angle between dX_s/dϕ and e_E: {cosine}")
 
 
 def _east_from_longitude() -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import Check, Identity, Statement, Tested, section
+from ..checks import Answer, Check, Identity, Statement, section
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import (
     angle_state,
@@ -94,7 +94,7 @@ def _plane_alpha(power: int) -> Any:
     return lambda p: in_rate(lambda rate: square_speed(p, by_plane, *plane_state(p)[:2], rate), power)
 
 
-def _energy_in_the_inertial_frame_changes() -> Tested:
+def _energy_in_the_inertial_frame_changes() -> Answer:
     p = points()[0]
     (place, speed, _), second = plane_state(p), horizontal_acceleration(p)
 
@@ -103,14 +103,14 @@ def _energy_in_the_inertial_frame_changes() -> Tested:
         return square_speed(p, by_plane, q, speed + s * second) / 2 + p.gravity * by_plane(p, *q)[2]
 
     change = derivative(energy)
-    return Tested(abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion")
+    return Answer(abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion")
 
 
-def _no_time_in_the_lagrangian() -> Tested:
+def _no_time_in_the_lagrangian() -> Answer:
     p = points()[0]
     q, v, _ = angle_state(p)
     early, late = (lagrangian(p, by_angles, q, v, t=t) for t in (MP.zero, p.t))
-    return Tested(vanishes(early - late), f"L(t = 0) - L(t) = {shown(early - late)}")
+    return Answer(vanishes(early - late), f"L(t = 0) - L(t) = {shown(early - late)}")
 
 
 def _spherical(p: Point) -> Vector:
@@ -124,11 +124,11 @@ def _angle_equation(i: int) -> Any:
     return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2
 
 
-def _azimuth_is_fast() -> Tested:
+def _azimuth_is_fast() -> Answer:
     """Compare λ' at the passage next to the vertical with the angular frequency of the swing."""
     near, miss = paris_passage()
     fast, slow = float((np.hypot(near[:, 3], near[:, 4]) / miss).max()), np.sqrt(9.80665 / 67)
-    return Tested(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
+    return Answer(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
 
 
 def _shared(p: Point) -> Any:
@@ -205,10 +205,10 @@ def _swapped(p: Point) -> Point:
     return p.but(x=p.y, y=p.x, vx=p.vy, vy=p.vx)
 
 
-def _east_unbiased() -> Tested:
+def _east_unbiased() -> Answer:
     p = points()[0].but(rate=MP.zero)
     gap = solved(p)[0] - solved(_swapped(p))[1]
-    return Tested(vanishes(gap), f"x'' - (y'' with x and y exchanged) at Ω = 0: {shown(gap)}")
+    return Answer(vanishes(gap), f"x'' - (y'' with x and y exchanged) at Ω = 0: {shown(gap)}")
 
 
 def checks() -> list[Check]:

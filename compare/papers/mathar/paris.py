@@ -11,7 +11,7 @@ from reference import load_scene
 from ...approximations import motions
 from ...approximations.frequency import anharmonic, harmonic, planar, turntable
 from ...approximations.mathar import slow_down
-from ..checks import Check, PrintedNumber, Statement, Tested, section
+from ..checks import Answer, Check, PrintedNumber, Statement, section
 from ..digits import MP, Vector, acos, asin, cos, degrees, dot, mpf, norm, pi, shown, sin, sqrt, vector
 from ..first_principles import rest
 from ..points import (
@@ -36,12 +36,12 @@ def _frame_5() -> Any:
     return mpf(float(z.max() - z.min()))
 
 
-def _higher_after_half_a_swing() -> Tested:
+def _higher_after_half_a_swing() -> Answer:
     rise = transits("z")[0] - paris().z
-    return Tested(bool(MP.mpf("1e-3") < rise < MP.mpf("1e-2")), f"{shown(1000 * rise)} mm higher")
+    return Answer(bool(MP.mpf("1e-3") < rise < MP.mpf("1e-2")), f"{shown(1000 * rise)} mm higher")
 
 
-def _work_of_the_centrifugal_force() -> Tested:
+def _work_of_the_centrifugal_force() -> Answer:
     """Compare g Δz + Δv²/2 with Ω² Δ(x² + q²)/2 over the first half swing."""
     p = paris()
     x, y, z, vy = (transits(name)[0] for name in ("x", "y", "z", "vy"))
@@ -52,38 +52,38 @@ def _work_of_the_centrifugal_force() -> Tested:
 
     gained = p.gravity * (z - p.z) + (vy**2 + vz**2) / 2
     work = p.rate**2 * (square((x, y, z)) - square(paris().position)) / 2
-    return Tested(abs(gained - work) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg")
+    return Answer(abs(gained - work) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg")
 
 
-def _middle_of_the_first_swing() -> Tested:
+def _middle_of_the_first_swing() -> Answer:
     middle = (vector(*(transits(name)[0] for name in "xy")) + paris().position[:2]) / 2
     x, y, _ = rest(paris())
     gap = norm(middle - vector(x, y))
-    return Tested(gap < MP.mpf("1e-3"), f"middle {shown(middle)} m, rest position y = {shown(y)} m")
+    return Answer(gap < MP.mpf("1e-3"), f"middle {shown(middle)} m, rest position y = {shown(y)} m")
 
 
-def _never_vertical() -> Tested:
+def _never_vertical() -> Answer:
     """Find how near the path, straight between samples 0.25 s apart, comes to the vertical below the pivot."""
     miss = paris_passage()[1].min()
-    return Tested(bool(miss > 1e-6), f"nearest approach in 24 h {miss:.15e} m")
+    return Answer(bool(miss > 1e-6), f"nearest approach in 24 h {miss:.15e} m")
 
 
-def _about_the_rest_position() -> Tested:
+def _about_the_rest_position() -> Answer:
     """Compare the mean place over a swing, early and late, with the rest position."""
     period, x_y = float(1 / day_frequency()), np.array([float(part) for part in rest(paris())[:2]])
     gaps = []
     for begin in (0.0, 7000.0, 12000.0):
         middle = window(begin, 63 / 64 * period, step=period / 64)[1][:, :2].mean(axis=0)
         gaps.append(np.hypot(*(middle - x_y)))
-    return Tested(max(gaps) < 1e-3, f"the mean of a swing is {max(gaps):.4e} m from the rest position, or less")
+    return Answer(max(gaps) < 1e-3, f"the mean of a swing is {max(gaps):.4e} m from the rest position, or less")
 
 
-def _clouds_move() -> Tested:
+def _clouds_move() -> Answer:
     z = [float(value) for value in transits("z")]
     at_release, opposite = z[1:2000:2], z[0:2000:2]
     rising = at_release[-1] > at_release[0] and opposite[-1] < opposite[0]
     change = f"near the release {z[1]:.15f} to {z[1999]:.15f} m, opposite {z[0]:.15f} to {z[1998]:.15f} m in 4.6 h"
-    return Tested(rising, change)
+    return Answer(rising, change)
 
 
 def mean_rotation() -> tuple[float, float]:
@@ -93,23 +93,23 @@ def mean_rotation() -> tuple[float, float]:
     return float(slope), float(np.abs(turned - slope * hours - start).max())
 
 
-def _linear() -> Tested:
+def _linear() -> Answer:
     slope, off = mean_rotation()
-    return Tested(off < 0.01, f"{slope:.15f}° an hour, within {off:.2e}° of a straight line for 24 h")
+    return Answer(off < 0.01, f"{slope:.15f}° an hour, within {off:.2e}° of a straight line for 24 h")
 
 
-def _north_east_to_east() -> Tested:
+def _north_east_to_east() -> Answer:
     _, y, _ = rest(paris())
     start = degrees(MP.atan2(mpf("0.4") - y, mpf("0.3")))
     slope, _ = mean_rotation()
     hours = -start / slope
-    return Tested(bool(0 < start < 90 and slope < 0), f"from {shown(start)}° to 0° (east-west) in {shown(hours, 6)} h")
+    return Answer(bool(0 < start < 90 and slope < 0), f"from {shown(start)}° to 0° (east-west) in {shown(hours, 6)} h")
 
 
-def _coupling_is_ahead() -> Tested:
+def _coupling_is_ahead() -> Answer:
     scene, at = load_scene("paris"), np.array([0.0, 12000.0])
     ahead = lead(motions()["mathar_item_2"].trajectory(scene, at)[-1], path_in(scene, at)[-1])
-    return Tested(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
+    return Answer(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
 
 
 def planar_amplitude() -> Any:
@@ -150,17 +150,17 @@ def transit_frequency() -> Any:
     return len(times) / (2 * times[-1])
 
 
-def _planar_run() -> Tested:
+def _planar_run() -> Answer:
     run = solved(STILL, "20", 30)
     period = mpf(run.transits.exact("t")[1])
-    return Tested(abs(period - planar_period()) < MP.mpf("1e-27"), f"run without rotation: {shown(period, 25)} s")
+    return Answer(abs(period - planar_period()) < MP.mpf("1e-27"), f"run without rotation: {shown(period, 25)} s")
 
 
-def _slowed(by: Any) -> Tested:
+def _slowed(by: Any) -> Answer:
     """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
     hertz = anharmonic(paris().case) / by
     factor = by * slow_down(paris().case)
-    return Tested(
+    return Answer(
         abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
     )
 

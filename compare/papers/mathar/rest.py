@@ -8,7 +8,7 @@ from typing import Any
 
 from ...approximations.frequency import line_of_46, series, triangle
 from ...approximations.mathar import derivatives, truncated
-from ..checks import Approximate, Check, Identity, PrintedNumber, Statement, Tested, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
 from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import coupled_at, horizontal_acceleration, in_rate, linearised, rest, uniform_acceleration
 from ..points import Point, paris, points
@@ -37,7 +37,7 @@ def _hanging(p: Point) -> Point:
     return _at_rest(p, x=x, y=y)
 
 
-def _degree_of_45() -> Tested:
+def _degree_of_45() -> Answer:
     p = points()[0]
     s, c, share = sin(p.phi), cos(p.phi), p.rate**2 / p.gravity
 
@@ -50,7 +50,7 @@ def _degree_of_45() -> Tested:
         return sum((-1) ** k * MP.binomial(order, k) * cleared(MP.mpf(k)) for k in range(order + 1))
 
     holds = abs(difference(5)) < ZERO_BELOW < abs(difference(4))
-    return Tested(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
+    return Answer(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
 
 
 def _first_line_of_46(p: Point, sign: int) -> Any:
@@ -77,27 +77,27 @@ def steepest() -> tuple[Any, Any]:
     return best, degrees(angle(best))
 
 
-def _below_a_tenth() -> Tested:
+def _below_a_tenth() -> Answer:
     latitude, angle = steepest()
-    return Tested(angle < MP.mpf("0.1"), f"largest {shown(angle)}° at latitude {shown(latitude, 8)}°")
+    return Answer(angle < MP.mpf("0.1"), f"largest {shown(angle)}° at latitude {shown(latitude, 8)}°")
 
 
-def _one_curve() -> Tested:
+def _one_curve() -> Answer:
     latitudes = [MP.mpf(10 * k) for k in range(1, 9)]
     angles = [[degrees(paris().but(length=MP.mpf(m), latitude=d).case.rest_angle) for m in (1, 100)] for d in latitudes]
     gap = max(abs(a - b) for a, b in angles)
-    return Tested(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
+    return Answer(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
 
 
-def _south_in_the_north() -> Tested:
+def _south_in_the_north() -> Answer:
     y_at_rest = [rest(paris().but(latitude=MP.mpf(d)))[1] for d in (-60, -20, 20, 60)]
     holds = all((y < 0) == (d > 0) for y, d in zip(y_at_rest, (-60, -20, 20, 60), strict=True))
-    return Tested(holds, f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m")
+    return Answer(holds, f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m")
 
 
-def _on_the_meridian() -> Tested:
+def _on_the_meridian() -> Answer:
     p = _hanging(paris())
-    return Tested(vanishes(horizontal_acceleration(p)), f"x = {shown(p.x)}, y = {shown(p.y)} m")
+    return Answer(vanishes(horizontal_acceleration(p)), f"x = {shown(p.x)}, y = {shown(p.y)} m")
 
 
 def _forty_four(p: Point) -> Any:

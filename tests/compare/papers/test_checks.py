@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from compare.papers.checks import (
+    Answer,
     Approximate,
     Check,
     Identity,
     PrintedNumber,
     Statement,
-    Tested,
     UnexplainedError,
 )
 from compare.papers.digits import MP, mpf, sin
@@ -55,7 +55,7 @@ def test_what_is_right_cannot_be_declared_wrong() -> None:
     with pytest.raises(UnexplainedError, match="the print is right"):
         Identity("a", "here", "", double_angle, truth, "another", double_angle).row()
     with pytest.raises(UnexplainedError, match="the sentence holds"):
-        Statement("a", "here", "", lambda: Tested(True, "1"), "no", lambda: True).row()
+        Statement("a", "here", "", lambda: Answer(True, "1"), "no", lambda: True).row()
 
 
 def test_an_approximation_has_the_order_it_declares_or_none() -> None:
@@ -111,7 +111,7 @@ def test_a_numeral_may_follow_from_the_paper_s_own_rounded_inputs() -> None:
 
 
 def test_a_sentence_that_fails_needs_one_that_holds() -> None:
-    fails = Statement("a", "here", "", lambda: Tested(False, "0"), "the other", lambda: True)
+    fails = Statement("a", "here", "", lambda: Answer(False, "0"), "the other", lambda: True)
     assert (fails.row().verdict, fails.row().correction) == ("misprint", "the other")
     with pytest.raises(UnexplainedError):
         replace(fails, corrected=lambda: False).row()

@@ -20,7 +20,7 @@ OF_FUNCTIONS = "function"  # what a proof without a golden function does not imp
 OF_BOXES = ("box", "printed_box", "derivatives")  # what a proof of a point does not import
 OF_SECTIONS = "sections"  # what a proof of xdot = 0 alone does not import
 APART = (OF_FUNCTIONS, *OF_BOXES, OF_SECTIONS)
-BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET, SECTIONS_BUDGET = 480, 411, 80, 440, 97  # lines of code
+BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET, SECTIONS_BUDGET = 480, 411, 80, 451, 97  # lines of code
 
 
 def source(name):
@@ -54,7 +54,7 @@ def test_trusted_code_says_so_and_holds_no_floating_point(name):
 def test_trusted_code_imports_nothing_untrusted(name):
     declarations = {"shapes", "numbers.taylor_step", "scenes.inputs", "system.machine_code"}
     library = {"collections.abc", "fractions", "functools", "itertools", "json", "typing", "weakref", "flint"}
-    library |= {OF_FUNCTIONS: {"array"}}.get(name, {"copy", "dataclasses"} if name in OF_BOXES else set())
+    library |= {OF_FUNCTIONS: {"array"}}.get(name, {"bisect", "copy", "dataclasses"} if name in OF_BOXES else set())
     allowed = (
         library
         | declarations

@@ -229,8 +229,7 @@ def test_balls_that_cannot_be_had_end_with_the_widths_reached():
 
 
 def test_without_flint_the_level_says_what_to_install(monkeypatch):
-    monkeypatch.delattr(reference, "enclosure")
-    monkeypatch.setitem(sys.modules, "reference.enclosure", None)
+    monkeypatch.setattr("reference.system.imports.missing", list)  # none is installed
     with pytest.raises(InputError, match=r"foucault-reference\[enclose\]"):
         solve_enclosed(make_scene(run=SHORT), (Fraction(0),), "heyoka", None)
 
