@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from psutil import Process
 
 MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
+STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 SETTING = "{setting}"  # stands in a command for the step, tolerance or precision that is varied
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0

@@ -14,13 +14,12 @@ from reference.model.start import Start
 from reference.numbers.precision import DOUBLE
 
 from ..candidates.candidate import Candidate
-from ..candidates.external import SETTING, arguments, run_program
+from ..candidates.external import SETTING, STEPS, arguments, run_program
 from ..candidates.layout import Naming
 from ..candidates.read import read_stream
 from ..report.folder import json_text, write_file, writing
 from ..score.experiments.findings import MOST_RUNS, Experiment, possible
 from ..score.verdict import Score
-from ..studies.users_program import STEPS
 
 DOCUMENT, GIVEN = "experiments.json", "as_given"  # in the folder
 

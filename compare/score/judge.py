@@ -1,4 +1,4 @@
-"""Judge a candidate against the truth: `judge()` returns a `Score` with errors, verdict and explanation.
+"""Judge a candidate against the truth, to a tolerance: `judge()` returns a `Score` with errors and verdict.
 
 >>> from compare import judge
 >>> score = judge("mine.csv", "paris")                                # doctest: +SKIP

@@ -22,6 +22,7 @@ from reference.model.constants import constants_in_double
 from reference.numbers.columns import STATE
 from reference.status import Status
 
+from ..candidates.external import STEPS
 from ..methods import METHODS
 from ..truth import golden_of
 from . import users_program
@@ -116,7 +117,7 @@ def stability(
         InputError: an unknown scene or method, or one that declares no such runs.
     """
     commands = dict(programs or {})
-    runs = [*declared(methods, "stability"), *((name, None, 1 / users_program.STEPS) for name in commands)]
+    runs = [*declared(methods, "stability"), *((name, None, 1 / STEPS) for name in commands)]
     cuts = {name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)}
     problems: Problems = {}
     unsolved: dict[str, str] = {}

@@ -27,7 +27,6 @@ from ..truth import truth_at
 from .campaign import load_per_core
 from .row import Row
 
-STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 DIGITS = 6.0  # that a program is asked for: the millionth of the amplitude that `foucault score` allows
 PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
 NUMBER = "program"  # what stands for a program's number type

@@ -1,6 +1,6 @@
 """The run that a scene's digits come from: its engine and its form of the equations, at the bits that `pilot` tells.
 
-`solve` and `foucault show --equations` both ask here.
+`solve` and `foucault show --equations` both ask here, and so does a confirmation, for its sample of the grid.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The Taylor coefficients of a step, eight rows side by side, and the state at the step's end.
+"""The Taylor coefficients of a step, eight rows side by side, its length, and the state at its end.
 
 The formulation is `inertial`, V = n' + Ω × n, in the axes of the plumb line at the pivot: x east, p in the meridian,
 up along -c; n = (x, p, u - 1) and V = (w - Ω_p, v, s), so that a small swing is small in every number. With C = |c|,
