@@ -52,9 +52,9 @@ def checked(name: str | None) -> str:
     engine = engines()[name]
     variable = switched_off(engine.requires)
     if variable is not None:
-        raise InputError("--engine", name, f"{variable} unset", "Unset it, or take --engine heyoka.")
+        raise InputError("--engine", name, f"{variable} unset", "Unset it. The engine heyoka does without.")
     if not engine.installed:
-        advice = f"Install it with pip install 'foucault-reference[{engine.extra}]', or take --engine heyoka."
+        advice = f"Install it with pip install 'foucault-reference[{engine.extra}]'. The engine heyoka does without."
         raise InputError("--engine", name, f"the package {', '.join(engine.requires)}, which it needs", advice)
     return name
 

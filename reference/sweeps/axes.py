@@ -172,7 +172,7 @@ def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
         raise InputError("--over", word, f"KEY={FORMS}")
     key = full_name(key)
     _check_key("--over", key)
-    if ":" in typed and not typed.startswith("@"):
+    if (":" in typed or ".." in typed) and not typed.startswith("@"):
         texts = _range(key, typed)
         for text in (texts[0], texts[-1]):
             checked_value(key, text, reading)  # between these lie the others

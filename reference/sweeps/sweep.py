@@ -190,6 +190,8 @@ def sweep(
         InputError: a wrong axis, option or folder; before any work.
     """
     file, folder = (Path(path) if path is not None else None for path in (rows, out))
+    if workers is not None and workers < 1:
+        raise InputError("workers", workers, "a whole number from 1, or None for one a core")
     wanted = tuple(want.split(",")) if isinstance(want, str) else want
     options = {"want": wanted, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
     given = {"run.t_end": t_end, "run.sections": sections}
