@@ -191,8 +191,16 @@ def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:
         for s in spread(piece, begin, end):
             x = [near(f, s) / piece.unit for f in (*piece.p, *piece.v)]
             r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
-            parts.append([*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)])
+            parts.append(on_the_sphere(*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)))
     return parts
+
+
+def on_the_sphere(x: arb, y: arb, z: arb, vx: arb, vy: arb, vz: arb) -> Vector:
+    """Return balls of position and velocity over the length, z and vz by |r| = 1 and r·v = 0 if that is narrower."""
+    if z < 0 and (below := 1 - x * x - y * y) > 0:
+        z = z.intersection(-below.sqrt())
+        vz = vz.intersection(-(x * vx + y * vy) / z)
+    return [x, y, z, vx, vy, vz]
 
 
 def spread(piece: Piece, begin: Fraction, end: Fraction) -> list[arb]:
