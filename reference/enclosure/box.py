@@ -85,7 +85,7 @@ def plumb(wide: dict[str, Any]) -> tuple[Any, Any]:
     push *= 0 if wide["gravity_is"] == "effective" else 1
     aside, down = push * sin / 2, gravity - push * (1 + cos) / 2
     lean: Any = aside / down
-    angle = arb.atan2(*(x[0] if isinstance(x, arb_series) else x for x in (aside, down)))  # its derivative: of atan
+    angle = arb.atan2(*map(value, (aside, down)))  # its derivative: of atan
     full = arb_series([angle, lean.atan()[1]], 2) if isinstance(lean, arb_series) else angle
     return full, (aside * aside + down * down).sqrt()
 
@@ -195,12 +195,24 @@ def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:
     return parts
 
 
-def on_the_sphere(x: arb, y: arb, z: arb, vx: arb, vy: arb, vz: arb) -> Vector:
-    """Return balls of position and velocity over the length, z and vz by |r| = 1 and r·v = 0 if that is narrower."""
-    if z < 0 and (below := 1 - x * x - y * y) > 0:
-        z = z.intersection(-below.sqrt())
-        vz = vz.intersection(-(x * vx + y * vy) / z)
+def on_the_sphere(x: Any, y: Any, z: Any, vx: Any, vy: Any, vz: Any) -> list[Any]:
+    """Return balls, or series of balls, of position and velocity over the length: z, vz also by |r| = 1, r·v = 0."""
+    below = 1 - x * x - y * y
+    if value(z) < 0 < value(below):
+        z = met(z, -below.sqrt())
+        vz = met(vz, -(x * vx + y * vy) / z)
     return [x, y, z, vx, vy, vz]
+
+
+def value(x: Any) -> arb:
+    """Return a ball, or the one that a series begins with."""
+    return x[0] if isinstance(x, arb_series) else x
+
+
+def met(x: Any, y: Any) -> Any:
+    """Return what is in both of two balls, or of two series of two terms."""
+    both = isinstance(x, arb_series)
+    return arb_series([x[k].intersection(y[k]) for k in range(2)], 2) if both else x.intersection(y)
 
 
 def spread(piece: Piece, begin: Fraction, end: Fraction) -> list[arb]:

@@ -14,7 +14,7 @@ from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
 from .bound import Piece, Radius, output, tube
-from .box import BoxBalls, BoxRadius, Windows, near, spread
+from .box import BoxBalls, BoxRadius, Windows, near, on_the_sphere, spread
 from .course import FINISHED
 from .enclosed_transits import Scan
 from .printed_box import end_of
@@ -298,5 +298,6 @@ def values(covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: a
         later = first(twin.pace) * time
         R = [arb_series([y, z * later + u], 2) for y, z, u in zip(r, v, rho, strict=True)]
         V = [arb_series([y, z * later + u], 2) for y, z, u in zip(v, a, rate, strict=True)]
-        moving = [*times(twin.length, twin.turned(R, -1)), *times(twin.length * twin.pace, twin.turned(V, -1))]
+        moving = on_the_sphere(*twin.turned(R, -1), *twin.turned(V, -1))
+        moving = [*times(twin.length, moving[:3]), *times(twin.length * twin.pace, moving[3:])]
         return [first(q) / way.scale for q in moving]

@@ -11,6 +11,7 @@ from boxes import azimuths, drawn, truth
 
 import reference
 from reference.enclosure.shapes import Box
+from reference.engines.trajectory import Variants
 from reference.solver import swing
 from reference.solver.uncertain import UNCERTAIN
 
@@ -175,6 +176,36 @@ def test_a_wide_swing_is_followed_by_its_derivatives():
     width = (ranges.grid.high("x") - ranges.grid.low("x")).max()
     assert ranges.proof.derivatives is not None
     assert width < 1e-5
+
+
+def widths_over_hulls(end, derivatives, count):
+    """Return the largest width of a column over each swing, over that of drawn pendulums, shape (swings, 6)."""
+    scene = reference.load_scene("paris", ["run.grid_step=2", f"run.t_end={end}"])
+    ranges = reference.solve(scene, uncertain=MEASURED, derivatives=derivatives)
+    grid = ranges.grid
+    low, high = (np.column_stack([end(name) for name in grid.columns]) for end in (grid.low, grid.high))
+    model, rng, box = Variants(), Random(4711), Box(*ranges.proof.proved.box)
+    least, most = np.full_like(low, np.inf), np.full_like(low, -np.inf)
+    for k in range(count):
+        states = model.states(drawn(box, rng, corner=k % 2 == 0), np.array([float(t) for t in ranges.times]))
+        np.minimum(least, states, out=least)
+        np.maximum(most, states, out=most)
+    rounding = 1e-9 * (high - low).max(axis=0)  # of runs in double; the release is exact
+    assert (low - rounding <= least).all()
+    assert (most <= high + rounding).all()
+    by_swing = [x[: len(x) // 8 * 8].reshape(-1, 8, 6).max(axis=1) for x in (high - low, most - least)]
+    return (by_swing[0] / by_swing[1])[1:]
+
+
+@pytest.mark.parametrize(("derivatives", "most"), [(False, 4), (True, 1.5)])
+def test_intervals_are_hardly_wider_than_the_pendulums_are_apart(derivatives, most, size):
+    assert widths_over_hulls("1500", derivatives, size(50, 1000)).max() <= most
+
+
+@pytest.mark.long
+def test_a_day_of_paris_holds_every_pendulum(tally):
+    wider = widths_over_hulls("86400", True, 1000)
+    tally(f"a day of Paris, width over hull by swing: median {np.median(wider, axis=0)}, at the end {wider[-1]}")
 
 
 SWINGS = {  # scene, widths, whether the turn of the plane is decided
