@@ -77,6 +77,8 @@ class Case:
     def wrong(self, found: Explanation) -> set[str]:
         """Return the words that are said and are not true, programs with the same motion being one."""
         true = self.true | one_word_for_one_motion(self.true)
+        if {"vertical_only", "hemisphere"} <= true and self.arguments["reading"] == 2:  # Ω is vertical
+            true.add("coriolis_sign")
         said = one_word_for_one_motion(words_of(found)) - true - UNTOLD
         steps = {"integrator_loose"} if any(word.startswith("integrator") for word in self.true) else set()
         return said - steps

@@ -132,13 +132,20 @@ def heights(rows: Rows, length: float) -> Rows:
         if right is not rows:
             return replace(right, positions=np.column_stack([plane, column]))
         # a slight drift is no matter of its own, but no height to fit either
-        return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) else rows
+        return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or _is_relative(rows) else rows
     return _flat(rows)
+
+
+def _is_relative(rows: Rows) -> bool:
+    """Return whether smaller numbers are rounded by less."""
+    return any(convention.id in ("single_precision", "digits") for convention in rows.conventions)
 
 
 def _flat(rows: Rows) -> Rows:
     """Leave the heights out of the explanation."""
-    return replace(rows, positions=np.ascontiguousarray(rows.plane))
+    plane = np.ascontiguousarray(rows.plane)
+    finer = float(np.abs(plane).max() / np.abs(rows.positions).max()) if _is_relative(rows) else 1.0
+    return replace(rows, positions=plane, noise=rows.noise * finer)
 
 
 def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
@@ -268,12 +275,15 @@ def unit_of_time(rows: Rows, frequency: float, length: float) -> Rows:
 
 
 def rounded_clock(rows: Rows, frequency: float) -> Rows:
-    """Add to the noise of rows in single precision what the bob moves while its times are off by their rounding."""
+    """Undo the rounding of times to single precision, or add to the noise how far the bob moves meanwhile."""
     even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
     late = float(np.abs(rows.times - even).max())
     single = any(convention.id == "single_precision" for convention in rows.conventions)
     if not single or late > SINGLE * rows.times[-1]:  # else they are not evenly spaced
         return rows
+    exact = float(f"{even[1] - even[0]:.6g}") * np.arange(len(even)) + even[0]
+    if (exact.astype(np.float32) == rows.times.astype(np.float32)).all():
+        return replace(rows, times=exact)
     return replace(rows, noise=rows.noise + late * frequency * float(np.abs(rows.plane).max()))
 
 

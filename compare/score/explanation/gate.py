@@ -22,6 +22,7 @@ UNSURE_SHARE = 0.03  # where several steps divide the spacing of the rows
 SLIGHT = 10.0  # times the tolerance: what a number that is nearly the scene's may move
 STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
 APART = 0.02  # of a step: how far a whole number of them may be from the spacing of the rows
+FINEST = 1e-5  # over the frequency: no program makes smaller steps
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 
@@ -76,23 +77,31 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
     # what a step does is known exactly where it was taken, and in a linear model
     exact = any(_is_step(cause) and cause.uncertainty is None for cause in causes)
     rough = evidence.clean * steps if evidence.clean > CLEAN and not exact else 0.0
+    causes = [_as_known(cause, evidence, unknown) for cause in causes]
+    nameless = max((cause.size_m for cause in causes if cause.id == "integrator_loose"), default=0.0)
     for cause, sure in zip(causes, typed, strict=True):
         if cause.stage != "integrator" and cause.size_m < rough:
             continue
         # what is not known may look like anything that is smaller, and what is not known of a step like a model
-        like = max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
-        if not agrees and cause.size_m < SHARE * like:
+        like = 0.0 if agrees else max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
+        if cause.size_m < SHARE * max(like, nameless if cause.stage in ("gravity", "model") else 0.0):
             continue
-        if _is_step(cause):
-            run = agrees and (cause.uncertainty is None or (not cause.uncertainty and left < EXACTLY * allowed))
-            share = min(evidence.clean, UNSURE_SHARE if cause.uncertainty else METHOD_SHARE)
-            clear = agrees or left < share * cause.size_m
-            yield cause if run or (clear and not unknown) else loose(cause.size_m)
-        elif sure:
+        if sure:
             yield cause
         elif agrees or cause.size_m > steps:  # else it is part of the step's error
             text = f"moves like one that {cause.text}; a clock, a step or another term may do the same"
             yield replace(cause, id=f"{AS_IF}.{cause.id}", stage=AS_IF, text=text)
+
+
+def _as_known(cause: Deviation, evidence: Evidence, unknown: float) -> Deviation:
+    """Return a cause; of a step that leaves too much, or beside a number of unknown origin in m, only that it errs."""
+    if not _is_step(cause):
+        return cause
+    left, agrees = evidence.left_m, evidence.agrees
+    run = agrees and (cause.uncertainty is None or (not cause.uncertainty and left < EXACTLY * evidence.allowed_m))
+    share = min(evidence.clean, UNSURE_SHARE if cause.uncertainty else METHOD_SHARE)
+    clear = agrees or left < share * cause.size_m
+    return cause if run or (clear and not unknown) else loose(cause.size_m)
 
 
 def without_doubtful_steps(causes: Sequence[Deviation], left_m: float, enough_m: float) -> list[Deviation]:
@@ -117,7 +126,8 @@ def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
     assert cause.value is not None
     many = round(evidence.spacing / cause.value)
     doubt, off = evidence.clean * many, abs(evidence.spacing / cause.value - many)
-    if not many or off > max(doubt, APART) or evidence.clean >= 1:
+    too_fine = cause.value * evidence.frequency < FINEST
+    if not many or off > max(doubt, APART) or evidence.clean >= 1 or too_fine:
         return loose(cause.size_m)
     if doubt >= 1 / 2:
         return replace(cause, uncertainty=max(cause.uncertainty, evidence.clean * cause.value))
