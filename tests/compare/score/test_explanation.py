@@ -202,11 +202,21 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (4711, 183, {"integrator_semi_implicit_euler"}),
         (4713, 124, {"integrator_semi_implicit_euler_drift"}),  # on a swing of 69 degrees
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
+        (17, 169, {"integrator_leapfrog"}),  # in single precision
+        (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
+        (61126, 153, {"pendulum.length", "solar_day"}),
     ],
 )
 def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: set[str]) -> None:
     made = case(number, seed)
     assert words_of(told(made, *made.rows(mistaken))) >= words
+
+
+def test_beside_a_step_error_without_a_name_no_model_is_told(mistaken: Path) -> None:
+    made = case(193, 61126)
+    found = told(made, *made.rows(mistaken))
+    assert "integrator_loose" in words_of(found)
+    assert not made.wrong(found)
 
 
 @pytest.mark.parametrize(
