@@ -92,8 +92,8 @@ def check_page(page: str, manifest: Any, grid: Any, transits: Any) -> None:
     numbers += ["{position_m} {velocity_m_s}".format(**bounds), *map(" ".join, bounds["grid"].items())]
     numbers += [f"0 t 0 {len(transits)}", *(f"t {row[1]} {row[2]} {row[-1]}" for row in transits[:1] + transits[-1:])]
     numbers += [bounds["transit_s"] or "", *("{from_s} {to_s}".format(**said) for said in manifest["possible"])]
-    for begin, end, expected in (("angles in degrees)", "Model", inputs), ("State at", "How to score", numbers)):
+    for begin, end, expected in (("degrees)\n  ", "\n\nModel", inputs), ("\n\nState", "\n\nHow", numbers)):
         words = page[page.index(begin) + len(begin) : page.index(end)].translate(APART).split()
         said = [word for word in words if expected is inputs or word in names or not DECIMAL.isdisjoint(word[-1])]
-        demand(said == " ".join(expected).split(), f"misprint: certified.txt, before {end}")
+        demand(said == " ".join(expected).split(), f"misprint: certified.txt, before {end.strip()}")
     demand(f"as: {manifest['inputs']}\n" in page and f"({manifest['transits']})\n" in page, "misprint: certified.txt")

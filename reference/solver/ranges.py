@@ -139,8 +139,9 @@ class Ranges:
 
     @property
     def period(self) -> tuple[Fraction, Fraction] | None:
-        """Mean time in s between transits in the same direction, up to the first that is undecided; None if open.
+        """Mean time in s between transits in the same direction, up to the first that is undecided.
 
+        None if open, and if one may be above the horizontal, where a swing has more than two.
         With derivatives it is what both tell: the transits' intervals, and how far inputs move the scene's own period.
         """
         swings, found = self._swings, getattr(self.proof, "derivatives", None)
@@ -195,7 +196,9 @@ class Ranges:
 
     @property
     def _swings(self) -> int:
-        """The number of whole swings before the first undecided transit."""
+        """The number of whole swings before the first undecided transit; 0 if the bob comes above the horizontal."""
+        if any(high >= 0 for _, high in self.transits.exact("z")):
+            return 0
         return (len(_decided([*zip(self.transits.exact("t"))], self.possible)) - 1) // 2
 
     def derivative(self, name: str) -> Derivative:

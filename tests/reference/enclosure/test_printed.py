@@ -126,6 +126,13 @@ def test_every_number_of_the_page_that_is_changed_is_found(solution, texts):
     refuse(solution, texts, page=page.replace("  x  ", "  y  "))
 
 
+@pytest.mark.parametrize("title", ["A Model pendulum (angles in degrees)", "State at rest", "How to score"])
+def test_a_title_with_a_word_of_the_page_is_no_misprint(title, tmp_path):
+    scene = reference.load_scene("paris", [f"title={title}", "run.t_end=60", "run.digits=20"])
+    reference.write(reference.solve(scene), tmp_path / "titled")  # which reads the page back
+    assert title in (tmp_path / "titled" / "certified.txt").read_text(encoding="utf-8")
+
+
 def test_what_is_not_the_very_result_of_a_proof_is_not_written(solution, texts, tmp_path):
     """F5 of the audit: transits shifted between the proof and the tables were written."""
     proved, by = solution.proof.proved, Fraction(1, 10**18)

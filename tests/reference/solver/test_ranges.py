@@ -159,6 +159,16 @@ def test_derivatives_are_those_of_the_period_of_small_swings_and_of_neighbours()
     assert len(ranges.derivative("release.x").transits) == len(ranges.transits)
 
 
+def test_above_the_horizontal_transits_tell_no_period():
+    """A cord that passes the horizontal has xdot = 0 there too."""
+    wide = ["site.rotation_rate=0", "release.azimuth=0", "release.angle=117", "run.t_end=6"]
+    scene = reference.load_scene("above_horizontal", wide)
+    ranges = reference.solve(scene, uncertain={"release.angle": "±1e-6"}, derivatives=True)
+    assert len(ranges.transits) > 4
+    assert ranges.period is ranges.derivative("angle").period is None
+    assert ranges.shares() == {}
+
+
 def test_derivatives_that_are_not_there_are_told(paris):
     with pytest.raises(reference.InputError, match="derivatives=True"):
         paris.derivative("length")
