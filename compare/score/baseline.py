@@ -16,7 +16,7 @@ import numpy as np
 from reference import InputError
 from reference.system.documents import json_document
 
-from .explanation.findings import AS_IF
+from .explanation.case import AS_IF
 from .scored import WHOLE, Since
 from .verdict import REFUSED, Score, document, explained
 

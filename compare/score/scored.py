@@ -20,7 +20,7 @@ from ..observed.swing_plane import SwingErrors
 from ..truth import floor_of_what_ships
 from .errors import TrajectoryErrors
 from .experiments.findings import Experiments
-from .explanation.findings import Explanation
+from .explanation.case import Explanation
 from .transit_matching import TransitErrors
 
 TIMES = 577  # in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings

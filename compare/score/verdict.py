@@ -12,7 +12,7 @@ from reference import FoucaultError, Solution
 from reference.status import Status
 
 from ..candidates.candidate import Deviation
-from .explanation.findings import Explanation
+from .explanation.case import Explanation
 from .scored import Scored, Since
 from .transit_matching import entry
 

@@ -25,11 +25,10 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
+from compare.score.explanation.case import Explanation, Rows
 from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.families import fits_of
-from compare.score.explanation.findings import Explanation
 from compare.score.explanation.fitted import readers_of
-from compare.score.explanation.unexplained import Rows
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from foucault import commands

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.read import read
-from compare.score.explanation.findings import Explanation, Model
+from compare.score.explanation.case import Explanation, Model
 from compare.score.judge import (
     _amplitude,
     _beyond_the_cord,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.candidate import Deviation
-from compare.score.explanation.findings import Explanation, Model
+from compare.score.explanation.case import Explanation, Model
 from compare.score.scored import Since, Worst
 from compare.score.transit_matching import TransitErrors
 from compare.score.verdict import document, lines, percent
