@@ -22,9 +22,10 @@ from reference.solver.uncertain import exact_texts, widths_of
 
 from .. import judge
 from ..approximations import APPROXIMATIONS, Motion
-from ..candidates.candidate import COLUMNS, Candidate, candidate_of
+from ..candidates.arrays import candidate_of
+from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing, timed
-from ..candidates.layout import Naming
+from ..candidates.names import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report import suite
 from ..score.baseline import document_of, rows_of

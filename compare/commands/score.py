@@ -147,7 +147,7 @@ def command(
     --run fills in {x0}, {latitude}, {t_end} … of the scene: see docs/commands.md, also on --approximation, --name,
     --repeats and ranges. Exit status 0: agrees (with --baseline: no worse), 1: disagrees, 2: cannot be judged.
     """
-    from ..candidates.layout import Naming
+    from ..candidates.names import Naming
     from .judging import hold, hold_passages, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))

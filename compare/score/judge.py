@@ -23,7 +23,8 @@ from reference.model.start import Start
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
-from ..candidates.candidate import Candidate, Deviation, candidate_from
+from ..candidates.arrays import candidate_from
+from ..candidates.candidate import Candidate, Deviation
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read

@@ -20,7 +20,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
 
-from ...candidates import candidate, layout, names, spelling
+from ...candidates import candidate, names, read
 from ...candidates import text as text_reader
 from ...observed.position_error import distance
 from ...score import judge
@@ -188,7 +188,7 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
 
 def _vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
-    reading = names, layout, spelling, text_reader, candidate
+    reading = names, text_reader, read, candidate
     found = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
     said = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
     limits = {

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from small_scenes import make_scene
 
-from compare.candidates.candidate import COLUMNS, Candidate, candidate_of
+from compare.candidates.arrays import candidate_of
+from compare.candidates.candidate import COLUMNS, Candidate
 from compare.score.errors import drifts, swing_rate, trajectory_errors
 from reference import load, load_scene, trajectory
 from reference.dataset.golden import dense
