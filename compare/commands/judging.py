@@ -29,6 +29,7 @@ from ..candidates.names import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report import suite
 from ..score.baseline import document_of, rows_of
+from ..score.document import of_outcome
 from ..score.measured import APART, measured
 from ..score.passages import score_passages
 from ..score.verdict import Outcome, Score
@@ -202,7 +203,7 @@ class Judging:
         if path.suffix == DOCUMENT:
             return {str(row["scene"]): {"rows": [row]} for row in rows_of(document_of(path))}
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
-        return {outcome.scene: outcome.score or outcome.document() for outcome in outcomes}
+        return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
     def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> ToJudge:
         scene, times = load_scene(files.scene), self.times(files.transits)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,10 +20,20 @@ from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
-from ..observed.position_error import difference, distance, power_of_time
+from ..observed.position_error import power_of_time
 from ..observed.swing_plane import SwingErrors, swing_errors
 
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
+
+
+class Worst(NamedTuple):
+    """One number of a candidate: its time in s and column, the truth, what it says, and their difference."""
+
+    t: float
+    component: str
+    expected: float
+    got: float
+    difference: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -150,12 +161,14 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
         if name in candidate.columns:
             low = candidate.low.get(name, 0.0) - truth.low[:, i]
             low = low if later is None else low - later[:, i]
-            components[name] = difference(candidate.columns[name], truth.states[:, i], low)
+            # the difference of doubles that agree so far is exact
+            components[name] = candidate.columns[name] - truth.states[:, i] + low
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
     amplitude = max(float(part.max()) for part in amplitudes) or float(golden.scene.exact.length)
-    speed = max(float(distance(part).max()) for part in ((golden.vx, golden.vy, golden.vz), truth.states.T[3:]))
+    velocities = (golden.vx, golden.vy, golden.vz), truth.states.T[3:]
+    speed = max(float(np.linalg.norm(part, axis=0).max()) for part in velocities)
     if candidate.positions:
-        position = distance(components[name] for name in ("x", "y", "z") if name in components)
+        position = np.linalg.norm([components[name] for name in "xyz" if name in components], axis=0)
     else:
         position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed) or math.inf)
     return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m, amplitude, speed)
