@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..candidates.candidate import Deviation
-from .explanation.case import Explanation
+from .explanation.case import BEGIN, Explanation
 from .verdict import REFUSED, Outcome, Score
 
 
@@ -72,14 +72,33 @@ def document(score: Score) -> dict[str, Any]:
 
 def explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
-    diagnosis, corrected = explanation.diagnosis, explanation.corrected_m
+    corrected = explanation.corrected_m
     return {
         "conventions": [*readings, *(_said("your file", convention) for convention in explanation.conventions)],
         "model": None if explanation.model is None else vars(explanation.model),
         "causes": [_said("your program", cause) | _fitted(cause) for cause in explanation.causes],
         "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
         "slip": explanation.slip or None,
-        "diagnosis": None if diagnosis is None else vars(diagnosis),
+        "diagnosis": diagnosis(explanation),
+    }
+
+
+def diagnosis(explanation: Explanation) -> dict[str, Any] | None:
+    """Return the cause that matters most, a simpler model before all, and what all causes say; None if none is known.
+
+    Beside its id stand the share of the root mean square error that is gone with all causes, how far a fitted input is
+    off in its unit, and the ids of the other causes.
+    """
+    known = sorted(explanation.known, key=lambda cause: -cause.size_m)
+    if not known:
+        return None
+    first = next((cause for cause in known if cause.stage == "model"), known[0])
+    return {
+        "id": first.id,
+        "explained": explanation.explained,
+        "text": f"{BEGIN} {'; it '.join(cause.text for cause in known)}.",
+        "shift": first.shift,
+        "also": tuple(cause.id for cause in known if cause is not first),
     }
 
 

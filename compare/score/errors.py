@@ -17,7 +17,6 @@ from reference.dataset.golden import Dense
 from reference.model.constants import constants_in_double
 from reference.model.force import energy, rates
 from reference.numbers.precision import Array
-from reference.scenes.inputs import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.position_error import power_of_time
@@ -180,19 +179,21 @@ def swing_rate(scene: Scene, speed_m_s: float) -> float:
     return max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), speed_m_s / float(k.length))
 
 
-def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
+def drifts(candidate: Candidate, scene: Scene) -> dict[str, float]:
     """Return the largest |h - h(first row)| (m²/s²; needs velocities and no drag) and the largest ||r| - l| (m)."""
-    inputs = scene.exact if isinstance(scene, Scene) else scene
-    largest: dict[str, float] = {}
-    columns = candidate.columns
-    k = constants_in_double(inputs)
+    columns, k = candidate.columns, constants_in_double(scene.exact)
     if "z" not in columns:
-        return largest
+        return {}
     n = tuple(columns[name] / k.length for name in ("x", "y", "z"))
     square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
-    largest["length_m"] = float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())
-    if all(name in columns for name in ("vx", "vy", "vz")) and not inputs.drag:
+    largest = {"length_m": float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())}
+    if all(name in columns for name in ("vx", "vy", "vz")) and not scene.exact.drag:
         v = tuple(columns[name] / k.length for name in ("vx", "vy", "vz"))
         h = energy(n, v, k)
         largest["h_m2_s2"] = float(np.abs(h - h[0]).max())
     return largest
+
+
+def entry(name: str, value: str, remark: str = "") -> str:
+    """Return a line of a score: what it is, how much, and a remark."""
+    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"

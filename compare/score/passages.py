@@ -17,9 +17,9 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ..truth import DIGITS, Report, golden_of, truth_at
-from .errors import swing_rate
+from .errors import entry, swing_rate
 from .judge import TOLERANCE
-from .transit_matching import TransitErrors, entry, transit_errors
+from .transit_matching import TransitErrors, transit_errors
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,9 @@ class PassageScore:
         return self.tolerance_m + self.bound_m
 
     @property
-    def agrees(self) -> bool:
-        """True if no passage is missed, extra, or off by more than `allowed_m`."""
-        return self.errors.within(self.allowed_m)
-
-    @property
     def verdict(self) -> str:
-        """'agrees' or 'disagrees'."""
-        return "agrees" if self.agrees else "disagrees"
+        """'agrees' if no passage is missed, extra, or off by more than `allowed_m`; else 'disagrees'."""
+        return "agrees" if self.errors.within(self.allowed_m) else "disagrees"
 
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""

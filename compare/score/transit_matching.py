@@ -21,7 +21,7 @@ from reference.dataset.golden import Dense
 from reference.numbers.precision import Array
 
 from ..truth import by_function, roughly_solved, truth_at
-from .errors import TrajectoryErrors, swing_rate
+from .errors import TrajectoryErrors, entry, swing_rate
 
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 MOST_EXTRA = 1000  # extra transits at which the truth is evaluated; if there are more, none is excused
@@ -102,11 +102,6 @@ class TransitErrors:
             "extra_at": self.extra,
             "undecided_at": self.undecided,
         }
-
-
-def entry(name: str, value: str, remark: str = "") -> str:
-    """Return a line of a score: what it is, how much, and a remark."""
-    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
 
 
 def _listed(texts: Iterable[str]) -> str:

@@ -15,12 +15,12 @@ from reference.status import Status
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
 from ..observed.swing_plane import SwingErrors
-from .errors import TrajectoryErrors, Worst
+from .errors import TrajectoryErrors, Worst, entry
 from .experiments.findings import Experiments
 from .explanation.case import Explanation
 from .input_floor import input_floor
 from .since import Since
-from .transit_matching import TransitErrors, entry
+from .transit_matching import TransitErrors
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
 WHOLE = 1e-6  # a last row within this part of t_end counts as complete: a program that adds up its steps rounds

@@ -63,25 +63,6 @@ def rms(difference: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
-    """The cause that matters most.
-
-    Attributes:
-        id: its word.
-        explained: share of the root mean square error that is gone with all causes.
-        text: all causes in a sentence.
-        shift: for a fitted input, how far it is off, in its unit; else None.
-        also: ids of the other causes.
-    """
-
-    id: str
-    explained: float
-    text: str
-    shift: float | None = None
-    also: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
 class Model:
     """A named simplification that the file is exact within.
 
@@ -126,18 +107,6 @@ class Explanation:
     def known(self) -> list[Deviation]:
         """The causes but those that the motion is merely like."""
         return [cause for cause in self.causes if cause.stage != AS_IF]
-
-    @property
-    def diagnosis(self) -> Diagnosis | None:
-        """The cause that matters most, a simpler model before all; None if none is known."""
-        known = sorted(self.known, key=lambda cause: -cause.size_m)
-        if not known:
-            return None
-        models = [cause for cause in known if cause.stage == "model"]
-        first = (models or known)[0]
-        texts = "; it ".join(cause.text for cause in known)
-        others = tuple(cause.id for cause in known if cause is not first)
-        return Diagnosis(first.id, self.explained, f"{BEGIN} {texts}.", first.shift, others)
 
     def lines(self) -> Iterator[str]:
         """Yield what is known, line by line, for people."""
