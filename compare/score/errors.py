@@ -19,7 +19,7 @@ from reference.model.force import energy, rates
 from reference.numbers.precision import Array
 
 from ..candidates.candidate import COLUMNS, Candidate
-from ..observed.position_error import power_of_time
+from ..observed.least_squares import power_of_time
 from ..observed.swing_plane import SwingErrors, swing_errors
 
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
