@@ -14,8 +14,7 @@ from reference.status import Status
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
-from ..observed.swing_plane import SwingErrors
-from .errors import TrajectoryErrors, Worst, entry
+from .errors import SwingErrors, TrajectoryErrors, Worst, entry
 from .experiments.findings import Experiments
 from .explanation.case import Explanation
 from .input_floor import input_floor
