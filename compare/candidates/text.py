@@ -85,14 +85,12 @@ class Spelling:
         decimal_comma: whether numbers have a comma for a point.
         fortran: whether some exponent is written with a D.
         quoted: whether some number stands in quotes.
-        share: part of the fields of the row looked at that are numbers, from 0 to 1.
     """
 
     separator: str | None
     decimal_comma: bool = False
     fortran: bool = False
     quoted: bool = False
-    share: float = 0.0
 
     @property
     def is_plain(self) -> bool:
@@ -114,7 +112,7 @@ class Spelling:
 
 def spelling(line: str) -> Spelling | None:
     """Return how a line is written if it is a row, that is if most of its fields are numbers; else None."""
-    best = Spelling(None)
+    best, most = None, 0.5  # of the fields
     fortran, quoted = FORTRAN.search(line) is not None, '"' in line
     for comma in (False, True) if "," in line else (False,):
         for separator in (",", ";", "\t", None):
@@ -124,9 +122,9 @@ def spelling(line: str) -> Spelling | None:
             fields = [text.strip() for text in tried.fields(line)]
             numbers = sum(is_number(text) or HEXFLOAT.fullmatch(text) is not None for text in fields)
             share = numbers / max(1, len(fields) - (fields[-1:] == [""]))
-            if share > best.share:
-                best = Spelling(separator, comma, fortran, quoted, share)
-    return best if best.share > 0.5 else None
+            if share > most:
+                best, most = tried, share
+    return best
 
 
 def words(line: str) -> list[list[str]]:

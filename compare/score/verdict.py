@@ -140,10 +140,8 @@ class Score:
     @property
     def passes(self) -> bool:
         """True if it agrees, or agrees as a named model and `as_model` says that this is enough."""
-        if self.agrees:
-            return True
         modelled = self.explanation is not None and self.explanation.model is not None
-        return self.as_model and modelled and not self.falls_short and self.transits is None
+        return self.agrees or (self.as_model and modelled and not self.falls_short and self.transits is None)
 
     @property
     def accepted(self) -> bool:
