@@ -25,7 +25,8 @@ from reference import InputError, Scene
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
-from .candidates.candidate import COLUMNS, candidate_of, checked_transits, real_array
+from .candidates.arrays import candidate_of, real_array
+from .candidates.candidate import COLUMNS, checked_transits
 from .candidates.external import placeholders
 from .score.judge import judge
 from .score.verdict import Score, percent

@@ -28,7 +28,6 @@ DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs
 DENSE_FORMAT = (
     b"dense 6"  # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
 )
-STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
 _here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
@@ -59,12 +58,11 @@ def golden_of(
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
     """
-    for folder in shipped(scene):
-        golden = _loaded(folder)
-        fits = solves(golden, scene) and golden.manifest.digits >= digits and not golden.manifest.alone
-        fits = fits and {*(scene.run.sections or ())} <= golden.sections.keys()
-        if fits and not (grid and _grid_until(golden.scene, scene.exact.t_end) != scene.exact.grid):
-            return golden
+    ships = shipping(scene)
+    if ships is not None and ships.manifest.digits >= digits and not ships.manifest.alone:
+        fits = {*(scene.run.sections or ())} <= ships.sections.keys()
+        if fits and not (grid and [t for t in ships.scene.exact.grid if t <= scene.exact.t_end] != scene.exact.grid):
+            return ships
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     name = f"{scene.id}-{_hash_of_problem(problem)}"
     path = _here.get(name) or cache.entry("golden", name)
@@ -79,11 +77,8 @@ def golden_of(
 
 def with_function(scene: Scene) -> Golden | None:
     """Return the dataset that ships with the golden function of a scene, or None."""
-    for folder in shipped(scene):
-        golden = _loaded(folder)
-        if golden.function is not None and solves(golden, scene):
-            return golden
-    return None
+    golden = shipping(scene)
+    return None if golden is None or golden.function is None else golden
 
 
 def by_function(golden: Golden, times: Array) -> Dense | None:
@@ -127,7 +122,8 @@ def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | 
 
     None where two cheap runs contradict each other or fail, and where the scene's rows ship.
     """
-    if any(solves(golden, scene) and not golden.manifest.alone for golden in map(_loaded, shipped(scene))):
+    ships = shipping(scene)
+    if ships is not None and not ships.manifest.alone:
         return None
     from reference.solver.solve import roughly
 
@@ -140,29 +136,6 @@ def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | 
         return None
     row = {t: i for i, t in enumerate(solution.times)} if solution else {}
     return (solution, Dense.of(times, solution.grid, [row[t] for t in exact])) if solution else None
-
-
-def floor_of_what_ships(scene: Scene, until: float) -> float | None:
-    """Return how far, in m, rounding the inputs to binary64 moves the bob up to a row of the grid that is not before.
-
-    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the latter's x and
-    y; z follows from the sphere. None where they do not ship.
-    """
-    one, other = (scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64"))
-    golden = next((each for each in map(_loaded, shipped(one)) if solves(each, one)), None)
-    rounded = with_function(other)
-    if golden is None or rounded is None:
-        return None
-    rows = slice(0, int(np.searchsorted(golden.t, until)) + 1)
-    later = np.array([float(t - Fraction(float(t))) for t in golden.times[rows]])
-    truth = by_function(rounded, golden.t[rows])
-    assert truth is not None
-    x, y, z = truth.states.T[:3] + later * truth.states.T[3:]
-    dx, dy, length = golden.x[rows] - x, golden.y[rows] - y, float(one.exact.length)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        dz = (length * float(one.exact.length - other.exact.length) - x * dx - y * dy) / z
-    dz = np.where(np.abs(z) > STEEP * length, dz, golden.z[rows] - z)
-    return float(np.sqrt(dx**2 + dy**2 + dz**2).max())
 
 
 def _is_of(golden: Golden, problem: Scene) -> bool:
@@ -222,11 +195,12 @@ def _hash_of_problem(scene: Scene) -> str:
     return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 
 
-def shipped(scene: Scene) -> list[Path]:
-    """Return the folders of the datasets that ship with the project and may solve the scene."""
+def shipping(scene: Scene) -> Golden | None:
+    """Return the dataset that ships with the project and solves a scene, or None."""
     reading = "" if scene.inputs == "decimal" else ".binary64"
     folder = data_root() / "golden" / f"{scene.id}{reading}"
-    return [folder] if folder.is_dir() else []
+    golden = _loaded(folder) if folder.is_dir() else None
+    return golden if golden is not None and solves(golden, scene) else None
 
 
 def solves(golden: Golden, scene: Scene) -> bool:
@@ -239,10 +213,6 @@ def solves(golden: Golden, scene: Scene) -> bool:
 
 def _same_problem(one: Scene, other: Scene) -> bool:
     return all(getattr(one, part) == getattr(other, part) for part in ("pendulum", "site", "release"))
-
-
-def _grid_until(scene: Scene, t_end: Fraction) -> list[Fraction]:
-    return [t for t in scene.exact.grid if t <= t_end]
 
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -131,52 +130,6 @@ class Candidate:
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
 
 
-def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None = None) -> Candidate:
-    """Make a candidate of named arrays of real numbers, t among them; long doubles keep their digits in `low`.
-
-    Raises:
-        InputError: as in `Candidate.of`.
-    """
-    near = {key: np.asarray(array, dtype=np.float64) for key, array in arrays.items()}
-    low = {}
-    for key, array in arrays.items():
-        if array.dtype.itemsize > 8 and np.isfinite(near[key]).all():
-            remainder = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
-            if remainder.any():
-                low[key] = remainder
-    columns = {key: near[key] for key in COLUMNS if key in near}
-    return Candidate.of(name, near["t"], columns, low=low, transits=transits)
-
-
-def candidate_from(columns: Any) -> Candidate:
-    """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
-
-    Raises:
-        InputError: it has no names, or as in `Candidate.of`.
-    """
-    names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
-    if "t" not in names:
-        got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
-        raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
-    arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
-    return candidate_of("candidate", arrays)
-
-
-def real_array(values: Any, name: str) -> Array:
-    """Return values as an array of real numbers.
-
-    Raises:
-        InputError: they are rows of different lengths, or no real numbers.
-    """
-    try:
-        array = np.asarray(values)
-    except ValueError:
-        raise InputError(name, "rows of different lengths", "an array of real numbers") from None
-    if array.size and array.dtype.kind not in "fiu":
-        raise InputError(name, f"dtype {array.dtype}", "real numbers")
-    return array
-
-
 def checked_transits(times: Array, name: str) -> Array:
     """Check transit times and return them as doubles.
 
@@ -200,3 +153,13 @@ def checked_transits(times: Array, name: str) -> Array:
             "times in s that increase",
         )
     return np.asarray(times, dtype=np.float64)
+
+
+def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:
+    """Multiply doubles with low parts; what is not finite, and will be refused, stays as it is."""
+    scaled, rest = near.copy(), np.zeros_like(low)
+    for i in np.flatnonzero(np.isfinite(near)).tolist():
+        exact = (Fraction(float(near[i])) + Fraction(float(low[i]))) * factor
+        scaled[i] = float(exact)
+        rest[i] = float(exact - Fraction(float(scaled[i])))
+    return scaled, rest

@@ -1,6 +1,6 @@
 """Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall).
 
-The limit on its output is that on any candidate's text (`spelling.MAX_BYTES`). Its descendants normally stay in its
+The limit on its output is that on any candidate's text (`text.MAX_BYTES`). Its descendants normally stay in its
 process group. One that forks into a session of its own leaves the group, and its parent may have exited: it is
 recognised by a mark in the environment that it inherited.
 """
@@ -26,7 +26,7 @@ from reference.errors import did_you_mean
 from reference.model.start import Start
 from reference.system.interruption import terminable
 
-from .spelling import MAX_BYTES
+from .text import MAX_BYTES
 
 if TYPE_CHECKING:
     from psutil import Process

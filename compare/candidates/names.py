@@ -1,4 +1,4 @@
-"""The meaning of a word of a header: its column, unit and direction, in the words that programs use; units in SI.
+"""Which column stands where: the words of a header, or of `--columns`, as programs use them; units in SI.
 
 `pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t; `vx`, `xdot`, `dx/dt`
 and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other sign.
@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-
-import numpy as np
 
 from reference import InputError
 from reference.numbers.precision import Array
 from reference.system.documents import texts_of
+
+from .candidate import COLUMNS, Deviation, multiplied
 
 vocabulary = texts_of(__file__)
 DIRECTIONS: dict[str, tuple[str, int]] = {word: (axis, sign) for word, (axis, sign) in vocabulary["directions"].items()}
@@ -37,6 +38,10 @@ LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
 SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
+NEEDED = ("t", "x", "y")  # columns of a trajectory, of which those of z and of velocities may be missing
+SKIPPED = ("-", "_", "")  # words for a column that is not read
+# by their number; the paper's program foucPend prints ten: t x y z X Y Z φ λ speed
+UNNAMED = {3: ("t", "x", "y"), 4: ("t", "x", "y", "z"), 7: ("t", *COLUMNS), 10: ("t", "x", "y", "z")}
 
 
 @dataclass(frozen=True)
@@ -114,10 +119,8 @@ def _parts(text: str) -> list[tuple[str, str]]:
 
 def _column(name: str) -> tuple[str, int, int] | None:
     """Return the column, sign and rank of a name without a unit."""
-    if name in ("t", "x", "y", "z", "vx", "vy", "vz"):
-        return name, 1, 0
-    if name.lower() in ("t", "x", "y", "z", "vx", "vy", "vz"):
-        return name.lower(), 1, 1
+    if name.lower() in ("t", *COLUMNS):
+        return name.lower(), 1, int(name != name.lower())
     plain = unicodedata.normalize("NFD", name.lower()).replace("\u0307", "dot")
     plain = re.sub(r"['’′]$", "prime", plain)
     plain = "".join(letter for letter in plain if letter.isalnum())
@@ -168,7 +171,7 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
     units: dict[str, str] = {}
     for word in words:
         unit = plain_unit(word)
-        columns = ("t",) if unit in TIMES else ("x", "y", "z", "vx", "vy", "vz") if unit in LENGTHS else ()
+        columns = ("t",) if unit in TIMES else COLUMNS if unit in LENGTHS else ()
         if not columns:
             expected = f"units of time or length: {', '.join([*TIMES, *LENGTHS])}"
             raise InputError("--units", word, expected, "Separate two with a comma.")
@@ -178,11 +181,110 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
     return units
 
 
-def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:
-    """Multiply doubles with low parts; what is not finite, and will be refused, stays as it is."""
-    scaled, rest = near.copy(), np.zeros_like(low)
-    for i in np.flatnonzero(np.isfinite(near)).tolist():
-        exact = (Fraction(float(near[i])) + Fraction(float(low[i]))) * factor
-        scaled[i] = float(exact)
-        rest[i] = float(exact - Fraction(float(scaled[i])))
-    return scaled, rest
+@dataclass(frozen=True)
+class Naming:
+    """Hold the names and units that a user gives to the columns of a file.
+
+    Attributes:
+        columns: their names in order, as in a header, `-` for one that is not read; empty if the file says it.
+        units: of times and lengths where the names give none, such as ms or cm.
+    """
+
+    columns: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse units that are not known."""
+        defaults(self.units)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where each column stands.
+
+    Attributes:
+        places: index of each column that is read, in the order t, x, y, z, vx, vy, vz.
+        factors: by which a column's numbers come to SI units, east, north and up; only where it is not 1.
+        conventions: what is not plain about it.
+    """
+
+    places: dict[str, int]
+    factors: dict[str, Fraction]
+    conventions: tuple[Deviation, ...]
+
+    def converted(self, columns: dict[str, Array], low: dict[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+        """Return columns and their low parts in SI units."""
+        columns, low = dict(columns), dict(low)
+        for name, factor in self.factors.items():
+            if name in low:
+                columns[name], low[name] = multiplied(columns[name], low[name], factor)
+            elif name in columns:
+                columns[name] = columns[name] * float(factor.numerator) / float(factor.denominator)
+        return columns, low
+
+
+def layout(words: Sequence[str], needed: Sequence[str], units: tuple[str, ...], where: str) -> Layout:
+    """Resolve the words of a header.
+
+    Args:
+        words: one for each column of the file.
+        needed: columns that must be among them: `NEEDED`, beside which others are read, or t alone.
+        units: as in `Naming`.
+        where: the header's name in messages.
+
+    Raises:
+        InputError: a column is missing or there twice, or its unit is not known.
+    """
+    of_units = defaults(units)
+    meanings = [meaning(word, of_units) for word in words]
+    places: dict[str, int] = {}
+    chosen: dict[str, Meaning] = {}
+    for name in ("t", *COLUMNS) if len(needed) > 1 else needed:
+        ranked = [(word.rank, i, word) for i, word in enumerate(meanings) if word is not None and word.column == name]
+        best = [(i, word) for rank, i, word in ranked if rank == min(ranked)[0]]
+        if len(best) > 1:
+            same = ", ".join(words[i].strip() for i, _ in best)
+            raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
+        if best:
+            places[name], chosen[name] = best[0]
+        elif name in needed:
+            got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
+            raise InputError(where, got, f"one column {name}", advice(needed))
+    factors: dict[str, Fraction] = {}
+    for name, word in chosen.items():
+        if word.factor is None:
+            column = f"{where}: {words[places[name]].strip()}"
+            raise InputError(column, word.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
+        factors[name] = word.factor
+    said = []
+    renamed = [
+        f"{unquoted(words[i])} as {'-' if factors[name] < 0 else ''}{name}"
+        for name, i in places.items()
+        if chosen[name].rank == 2
+    ]
+    if renamed:
+        others = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
+        others = [word for word in others if word not in SKIPPED]
+        unread = f"; not read: {', '.join(others)}" if others else ""
+        said.append(Deviation("columns", f"{', '.join(renamed)}{unread}"))
+    converted = [f"{name} from {chosen[name].unit}" for name, factor in factors.items() if abs(factor) != 1]
+    if converted:
+        said.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
+    return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(said))
+
+
+def by_number(count: int, needed: Sequence[str], units: tuple[str, ...], where: str) -> Layout | None:
+    """Return the layout of a file without a header, by the number of its columns; None if that does not tell it."""
+    names = UNNAMED.get(count) if len(needed) > 1 else ("t",) if count == 1 else None
+    if names is None:
+        return None
+    made = layout([*names, *["-"] * (count - len(names))], needed, units, where)
+    text = f"no header: the columns are taken as {', '.join(names)} (--columns names others)"
+    said = (Deviation("no_header", text),) if len(needed) > 1 else ()
+    return replace(made, conventions=(*said, *made.conventions))
+
+
+def advice(needed: Sequence[str]) -> str:
+    """Return what a header has to name."""
+    more = f" and, if there, {', '.join(COLUMNS[2:])}" if len(needed) > 1 else ""
+    return f"The first line names the columns: {', '.join(needed)}{more}; or --columns does."

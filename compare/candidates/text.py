@@ -1,237 +1,239 @@
-"""Read a candidate from text: rows of numbers under a header that names the columns, or the output of foucPend.
-
-- A line names the columns in any order: t, x, y and any of z, vx, vy, vz, in these words or others; see `names.py`.
-- Without such a line three columns are t, x, y, four are t, x, y, z.
-- Fields are separated by commas, semicolons, tabs or white space. A line that begins with #, %, ! or // is a comment,
-  and the header may be one. Columns of other names are not read.
-- foucPend (Mathar, appendix B): no header; t x y z X Y Z φ λ speed separated by white space, of which the first
-  four are read; `# P n t f` names a transit.
-"""
+"""Text as lines and fields: bytes split within limits, what separates fields, how numbers are spelled, the header."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from decimal import Context, Decimal
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import BinaryIO
 
-import numpy as np
-
 from reference import InputError
-from reference.numbers.precision import Array
 
-from .candidate import COLUMNS, Candidate, Deviation, checked_transits
-from .layout import Header, Layout, Naming
-from .spelling import MARKS, Spelling, chunks, comment, is_number, spelling
+from .candidate import COLUMNS
+from .names import SKIPPED, Layout, Naming, advice, by_number, layout, meaning
 
-DOUBLE_DIGITS = 17  # decimal digits that identify a double
-SURE_DIGITS = 15  # decimals of up to this many digits survive a double, so a precise program means the decimal itself
-_EXACT = Context(prec=40)  # rounds a difference to 40 digits, far more than a low part holds
-
-
-def significant_digits(text: str) -> int:
-    """Count the significant digits of a printed number."""
-    return sum(map(str.isdigit, text.lower().partition("e")[0].strip().lstrip("+-0.")))
-
-
-def low_part(text: str, near: float) -> float:
-    """Return the printed number minus `near`, its nearest double; 0 if it may be just that double, printed."""
-    if significant_digits(text) <= DOUBLE_DIGITS:
-        return 0.0
-    printed, difference = _difference(text, near)
-    half_a_unit = Decimal((0, (5,), int(printed.as_tuple().exponent) - 1))
-    return 0.0 if abs(difference) <= half_a_unit else float(difference)
+MAX_BYTES = 1 << 30
+MAX_LINE = 1 << 16
+MAX_LINES = 4_000_000  # comments and empty lines included
+CHUNK = 1 << 22
+_BINARY = "Binary data is read from .npz only."
+COMMENTS = ("#", "%", "!", "//")  # a line that begins with one of these is a comment
+MARKS = {mark[0] for mark in COMMENTS}
+FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
+HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
+APART = re.compile(r"\s{2,}|\t")
+MOST = 1000  # lines above the first row that are looked at
+FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
+BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
 
 
-def low_part_of_time(text: str, near: float) -> float:
-    """Return the same for a time beside numbers more precise than doubles: there 0.1 is the decimal itself."""
-    if significant_digits(text) <= SURE_DIGITS:
-        return float(_difference(text, near)[1])
-    return low_part(text, near)
-
-
-def _difference(text: str, near: float) -> tuple[Decimal, Decimal]:
-    if near == 0 or not math.isfinite(near):  # a number that underflows to 0 is below every scale here
-        return Decimal(0), Decimal(0)
-    printed = Decimal(text.strip())
-    return printed, _EXACT.subtract(printed, Decimal(near))
-
-
-MAX_ROWS = 2_000_000
-SAMPLE = 50  # rows of a chunk that are searched for numbers with more digits than a double's
-DECIMAL_COMMA = Deviation("decimal_comma", "numbers have a comma for the decimal point")
-
-
-def read_text(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
-    """Read a candidate from a stream of bytes, of which `head` has been read already.
-
-    Raises:
-        InputError: the text cannot be read; the message names the line.
-    """
-    transits: list[float] = []
-
-    def read_transit(comment: str, line: int) -> None:
-        words = comment.split()
-        if words and words[0] == "P":
-            try:
-                transits.append(float(words[2]))
-            except (IndexError, ValueError):
-                expected = "# P, a count, a time in s, a frequency"
-                raise InputError(f"{name}: line {line}", f"# {comment[:80]}", expected) from None
-
-    expected = "a CSV file, foucPend's output, .npy or .npz"
-    reader = ColumnReader(name, ("t", "x", "y"), COLUMNS[2:], naming, expected, read_transit)
-    columns, low = reader.columns(stream, head)
-    times = checked_transits(np.array(transits), f"{name}: # P") if transits else None
-    notes = ("the last line does not end with a newline: it may be cut off",) if reader.cut_off else ()
-    conventions = reader.conventions
-    return Candidate.of(name, columns.pop("t"), columns, low=low, transits=times, notes=notes, conventions=conventions)
-
-
-class ColumnReader:
-    """A reader of one text; `columns` reads it.
+def chunks(stream: BinaryIO, name: str, head: bytes = b"") -> Iterator[tuple[list[str], bool]]:
+    """Yield lists of complete lines, each with a flag: whether the last line ended with a newline.
 
     Args:
-        name: its name in messages.
-        needed: columns that must be there; times come first.
-        optional: columns that are read if they are there.
-        naming: what the user says of the columns.
-        expected: what the text ought to be, for the message about an empty one.
-        on_comment: called with each comment, without its mark, and the number of its line.
-        repeats: whether times may be equal.
+        stream: bytes in UTF-8.
+        name: the stream's name in messages.
+        head: bytes that have been read from it already.
+
+    Raises:
+        InputError: there are too many bytes or lines, a line is too long, or the bytes are not text.
+    """
+    remainder, total, count = head, len(head), 0
+    while data := stream.read(CHUNK):
+        total += len(data)
+        if total > MAX_BYTES:
+            raise InputError(name, f"more than {MAX_BYTES} bytes", f"at most {MAX_BYTES}", "Thin the output out.")
+        count += data.count(b"\n")
+        if count > MAX_LINES:
+            raise InputError(name, f"more than {MAX_LINES} lines", f"at most {MAX_LINES}", "Thin the output out.")
+        remainder += data
+        complete, newline, remainder = remainder.rpartition(b"\n")
+        if newline:
+            yield _decoded(complete, name), True
+        if len(remainder) > MAX_LINE:
+            raise InputError(name, f"a line of more than {MAX_LINE} bytes", "lines of numbers", "Is it text?")
+    if remainder.strip():
+        yield _decoded(remainder, name), False
+
+
+def _decoded(data: bytes, name: str) -> list[str]:
+    if b"\0" in data:
+        raise InputError(name, "a zero byte", "text", _BINARY)
+    try:
+        return data.decode().split("\n")
+    except UnicodeDecodeError:
+        raise InputError(name, "bytes that are not UTF-8", "text", _BINARY) from None
+
+
+def is_number(text: str) -> bool:
+    """Return True for a number as C and Fortran print it (NaN and inf too), not for forms that only Python reads."""
+    if "_" in text or not text.isascii():
+        return False
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+@dataclass(frozen=True)
+class Spelling:
+    """How the rows of a text are written.
+
+    Attributes:
+        separator: between fields; None is white space.
+        decimal_comma: whether numbers have a comma for a point.
+        fortran: whether some exponent is written with a D.
+        quoted: whether some number stands in quotes.
     """
 
-    def __init__(
-        self,
-        name: str,
-        needed: tuple[str, ...],
-        optional: tuple[str, ...] = (),
-        naming: Naming | None = None,
-        expected: str = "a CSV file with a column t",
-        on_comment: Callable[[str, int], None] = lambda text, line: None,
-        repeats: bool = False,
-    ) -> None:
-        self.name, self.expected = name, expected
-        self.on_comment, self.repeats = on_comment, repeats
-        self.header = Header(name, needed, optional, naming or Naming())
-        self.spelled = Spelling(None)
-        self.layout: Layout | None = None  # once a row has been seen
-        self.fields = 0  # of a row
-        self.blocks: list[Array] = []
-        self.low_blocks: list[Array] = []
-        self.rows = self.line = 0
-        self.cut_off = False  # the last line does not end with a newline
+    separator: str | None
+    decimal_comma: bool = False
+    fortran: bool = False
+    quoted: bool = False
 
-    def columns(self, stream: BinaryIO, head: bytes = b"") -> tuple[dict[str, Array], dict[str, Array]]:
-        """Return the columns by name in SI units, and their low parts if some number is finer than a double.
+    @property
+    def is_plain(self) -> bool:
+        """True if rows are as `plain` returns them already."""
+        return not (self.decimal_comma or self.fortran or self.quoted)
 
-        Args:
-            stream: bytes in UTF-8.
-            head: bytes that have been read from it already.
+    def plain(self, line: str) -> str:
+        """Return a row with a point, an E and no quotes."""
+        if self.decimal_comma:
+            line = line.replace(",", ".")
+        if self.quoted:
+            line = line.replace('"', "")
+        return FORTRAN.sub("e", line) if self.fortran else line
+
+    def fields(self, line: str) -> list[str]:
+        """Return the fields of a row."""
+        return self.plain(line).split(self.separator)
+
+
+def spelling(line: str) -> Spelling | None:
+    """Return how a line is written if it is a row, that is if most of its fields are numbers; else None."""
+    best, most = None, 0.5  # of the fields
+    fortran, quoted = FORTRAN.search(line) is not None, '"' in line
+    for comma in (False, True) if "," in line else (False,):
+        for separator in (",", ";", "\t", None):
+            if (separator is not None and separator not in line) or (comma and separator == ","):
+                continue
+            tried = Spelling(separator, comma, fortran, quoted)
+            fields = [text.strip() for text in tried.fields(line)]
+            numbers = sum(is_number(text) or HEXFLOAT.fullmatch(text) is not None for text in fields)
+            share = numbers / max(1, len(fields) - (fields[-1:] == [""]))
+            if share > most:
+                best, most = tried, share
+    return best
+
+
+def words(line: str) -> list[list[str]]:
+    """Return the ways to take a header apart, the most likely first; a separator at its end adds no word."""
+    ways = [line.split(separator) for separator in (",", ";", "\t") if separator in line]
+    ways += [APART.split(line.strip()), BEFORE_BRACKET.sub("", line).split(), line.split()]
+    return [way[:-1] if len(way) > 1 and not way[-1].strip() else way for way in ways]
+
+
+def comment(line: str) -> str | None:
+    """Return a comment without its mark; None if the line is none."""
+    mark = next((mark for mark in COMMENTS if line.startswith(mark)), None)
+    return None if mark is None else line[len(mark) :].strip()
+
+
+@dataclass
+class Header:
+    """The lines above the first row; the header is the last of them that names the columns, a comment or not.
+
+    Attributes:
+        name: of the text, in messages.
+        needed: columns that must be there, as in `layout`.
+        naming: what the user says of the columns.
+        lines: those seen, each with its number and whether it is a comment.
+    """
+
+    name: str
+    needed: Sequence[str]
+    naming: Naming
+    lines: list[tuple[int, str, bool]] = field(default_factory=list)
+
+    def add(self, number: int, text: str, comment: bool) -> None:
+        """Take a line that is no row.
 
         Raises:
-            InputError: the text cannot be read; the message names the line.
+            InputError: there are too many before the first row.
         """
-        for lines, complete in chunks(stream, self.name, head):
-            self.cut_off = not complete
-            self._read_lines(lines)
-        if self.layout is None:
-            raise self.header.refuse(self.expected)
-        finer = any(block.any() for block in self.low_blocks)
-        return self.layout.converted(self._joined(self.blocks), self._joined(self.low_blocks) if finer else {})
+        self.lines.append((number, text, comment))
+        if len(self.lines) > MOST:
+            if not comment:
+                where, expected = f"{self.name}: line {number}", "a row of numbers before it"
+                raise InputError(where, text[:80], expected, advice(self.needed))
+            del self.lines[0]
 
-    @property
-    def conventions(self) -> tuple[Deviation, ...]:
-        """Return what is to be said of the way in which it was read."""
-        said = () if self.layout is None else self.layout.conventions
-        return (*said, DECIMAL_COMMA) if self.spelled.decimal_comma else said
+    def layout(self, row: str, spelled: Spelling, number: int) -> tuple[Layout, int]:
+        """Return which column stands where, and the number of fields in a row, from the first one and its line.
 
-    def _joined(self, blocks: list[Array]) -> dict[str, Array]:
-        table = np.concatenate(blocks)
-        return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(self._places)}
+        Raises:
+            InputError: no line names the columns, or one does but not all that are needed, and the first row does not
+                tell either.
+        """
+        fields = spelled.fields(row)
+        count = len(fields) - (len(fields) > 1 and not fields[-1].strip())
+        if self.naming.columns:
+            return self._given(count), len(fields)
+        for above, text, is_comment in reversed(self.lines):
+            header = self._named(text, count, is_comment)
+            if header is not None:
+                if len(header) != count:
+                    got, expected = f"{count} fields", f"{len(header)} as in the header, line {above}"
+                    raise InputError(f"{self.name}: line {number}", got, expected, "Is the line cut off?")
+                return layout(header, self.needed, self.naming.units, f"{self.name}: header"), len(fields)
+        made = by_number(count, self.needed, self.naming.units, self.name)
+        if made is None or (len(self.needed) == 1 and self.lines):
+            expected = "a header that names the columns"
+            raise InputError(f"{self.name}: first line", row[:80], expected, advice(self.needed))
+        return made, len(fields)
 
-    @property
-    def _places(self) -> dict[str, int]:
-        return {} if self.layout is None else self.layout.places
+    def _given(self, count: int) -> Layout:
+        """Return the layout of `--columns`."""
+        names = self.naming.columns
+        if len(names) != count:
+            expected = f"a name for each of the {count} columns, - for one that is not read"
+            raise InputError("--columns", ",".join(names), expected)
+        unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
+        if unknown:
+            expected = f"names of {', '.join(['t', *COLUMNS])}"
+            raise InputError("--columns", ", ".join(unknown), expected, "Write - for a column that is not read.")
+        missing = [name for name in self.needed if name not in _columns(names)]
+        if missing:
+            raise InputError("--columns", ",".join(names), f"a column {missing[0]} among them")
+        return layout(names, self.needed, self.naming.units, "--columns")
 
-    def _read_lines(self, lines: list[str]) -> None:
-        rows: list[str] = []
-        numbers: list[int] = []
-        for number, line in enumerate(lines, self.line + 1):
-            text = line.strip().removeprefix("\ufeff")
-            if not text:
-                continue
-            remark = comment(text) if text[0] in MARKS else None
-            if remark is not None:
-                if self.layout is None:
-                    self.header.add(number, remark, True)
-                self.on_comment(remark, number)
-            elif self.layout is not None or self._begins(text, number):
-                rows.append(text)
-                numbers.append(number)
-        self.line += len(lines)
-        self.rows += len(rows)
-        if self.rows > MAX_ROWS:
-            raise InputError(self.name, f"more than {MAX_ROWS} rows", f"at most {MAX_ROWS}", "Thin the output out.")
-        if rows:
-            self._parse(rows, numbers)
+    def _named(self, text: str, count: int, is_comment: bool) -> list[str] | None:
+        """Return the words of a line that names the columns, or is meant to; None for another."""
+        ways = [(way, _columns(way)) for way in words(text)]
+        fitting = [(way, named) for way, named in ways if len(way) == count]
+        for way, named in fitting:
+            if set(self.needed) <= named:
+                return way
+        for way, named in ways:  # of another number of columns
+            if set(self.needed) <= named and (not is_comment or len(named) == len(way)):
+                return way
+        few = max(min(FEW, len(self.needed)), count // 2) if is_comment else 0
+        return next((way for way, named in fitting if len(named) >= few), None)
 
-    def _begins(self, text: str, number: int) -> bool:
-        """Return True if a line is the first row, after taking from it and the lines above which column is where."""
-        spelled = spelling(text)
-        if spelled is None:
-            self.header.add(number, text, False)
-            return False
-        self.spelled = spelled
-        self.layout, self.fields = self.header.layout(text, spelled, number)
-        return True
-
-    def _parse(self, lines: list[str], numbers: list[int]) -> None:
-        separator, indices = self.spelled.separator, [*self._places.values()]
-        lines = lines if self.spelled.is_plain else [self.spelled.plain(line) for line in lines]
-        try:
-            uniform = {line.count(separator) if separator else len(line.split()) - 1 for line in lines}
-            if uniform != {self.fields - 1}:
-                raise ValueError
-            block = np.loadtxt(lines, delimiter=separator, usecols=indices, comments=None, ndmin=2)
-        except ValueError:
-            self._refuse_bad_line(lines, numbers)
-            raise InputError(self.name, "a number that cannot be read", "decimal numbers") from None
-        if self.blocks:
-            self._check_order(self.blocks[-1][-1, 0], block[0, 0], numbers[0])
-        self.blocks.append(block)
-        self.low_blocks.append(_low_parts(lines, separator, indices, block))
-
-    def _check_order(self, before: float, after: float, line: int) -> None:
-        """Refuse a stream whose times do not increase from chunk to chunk at once, not after a gigabyte."""
-        unordered = after < before if self.repeats else after <= before
-        if math.isfinite(before) and math.isfinite(after) and unordered:
-            raise InputError(
-                f"{self.name}: line {line}", f"t = {after:.17g} after {before:.17g}", "strictly increasing times"
-            )
-
-    def _refuse_bad_line(self, lines: list[str], numbers: list[int]) -> None:
-        """Raise an error for the first line that has another number of fields than the first, or no number in one."""
-        for line, number in zip(lines, numbers, strict=True):
-            fields = line.split(self.spelled.separator)
-            if len(fields) != self.fields:
-                got, expected = f"{len(fields)} fields", f"{self.fields} as in the first row"
-                raise InputError(f"{self.name}: line {number}", got, expected, "Is the line cut off?")
-            for name, i in self._places.items():
-                if not is_number(fields[i].strip()):
-                    raise InputError(f"{self.name}: line {number}: {name}", fields[i].strip()[:40], "a number")
+    def refuse(self, expected: str) -> InputError:
+        """Return the error for a text without rows."""
+        for i, (_, text, _) in enumerate(self.lines):
+            if any(set(self.needed) <= _columns(way) for way in words(text)):
+                later = [(number, line) for number, line, is_comment in self.lines[i + 1 :] if not is_comment]
+                if later:
+                    return InputError(f"{self.name}: line {later[0][0]}", later[0][1][:80], "a row of numbers")
+                return InputError(self.name, "no rows", "at least one row", "Is the output empty?")
+        first = next((line for line in self.lines if not line[2]), None)
+        if first is not None:
+            return InputError(f"{self.name}: line {first[0]}", first[1][:80], expected, advice(self.needed))
+        return InputError(self.name, "no header and no rows", expected, advice(self.needed))
 
 
-def _low_parts(lines: list[str], separator: str | None, indices: list[int], block: Array) -> Array:
-    """Return the printed numbers minus their doubles; zeros if a sample of rows holds nothing but doubles."""
-    sample = range(0, len(lines), 1 + len(lines) // SAMPLE)
-    if not any(_low_parts_of_row(lines[i].split(separator), indices, block[i])[1:].any() for i in sample):
-        return np.broadcast_to(0.0, block.shape)
-    return np.array(
-        [_low_parts_of_row(line.split(separator), indices, row) for line, row in zip(lines, block, strict=True)]
-    )
-
-
-def _low_parts_of_row(fields: list[str], indices: list[int], row: Array) -> Array:
-    t, *others = ((fields[k], float(value)) for k, value in zip(indices, row, strict=True))
-    return np.array([low_part_of_time(*t), *(low_part(*other) for other in others)])
+def _columns(way: Sequence[str]) -> set[str]:
+    return {read_as.column for word in way if (read_as := meaning(word, {})) is not None}

@@ -15,7 +15,7 @@ from reference.numbers.precision import DOUBLE
 
 from ..candidates.candidate import Candidate
 from ..candidates.external import SETTING, STEPS, arguments, run_program
-from ..candidates.layout import Naming
+from ..candidates.names import Naming
 from ..candidates.read import read_stream
 from ..report.folder import json_text, write_file, writing
 from ..score.experiments.findings import MOST_RUNS, Experiment, possible

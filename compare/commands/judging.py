@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -22,14 +22,16 @@ from reference.solver.uncertain import exact_texts, widths_of
 
 from .. import judge
 from ..approximations import APPROXIMATIONS, Motion
-from ..candidates.candidate import COLUMNS, Candidate, candidate_of
+from ..candidates.arrays import candidate_of
+from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing, timed
-from ..candidates.layout import Naming
+from ..candidates.names import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report import suite
 from ..score.baseline import document_of, rows_of
-from ..score.measured import APART, measured
-from ..score.passages import score_passages
+from ..score.document import of_outcome
+from ..score.measured import APART, Measured, measured
+from ..score.passages import PassageScore, score_passages
 from ..score.verdict import Outcome, Score
 from .experimenting import GIVEN, Runnable
 from .options import announce
@@ -201,7 +203,7 @@ class Judging:
         if path.suffix == DOCUMENT:
             return {str(row["scene"]): {"rows": [row]} for row in rows_of(document_of(path))}
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
-        return {outcome.scene: outcome.score or outcome.document() for outcome in outcomes}
+        return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
     def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> ToJudge:
         scene, times = load_scene(files.scene), self.times(files.transits)
@@ -251,13 +253,7 @@ def hold(
         with stoppable("nothing was written"), progress() as show:
             report: Any = show(f"the proof of {ranges.scene.id}", float(ranges.scene.exact.t_end))
             found.append(measured(rows, times, ranges, tolerance or 0.0, str(transits), report, section))
-    if as_json:
-        emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
-    else:
-        for line in (line for one in found for line in one.lines()):
-            typer.echo(line)
-    if any(one.verdict == APART for one in found):
-        raise typer.Exit(1)
+    _tell(found, as_json)
 
 
 def hold_passages(
@@ -269,12 +265,17 @@ def hold_passages(
     with stoppable("nothing was written"), progress() as show:
         report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
         found = score_passages(str(transits), times, scene, section, tolerance, announce, report)
+    _tell([found], as_json)
+
+
+def _tell(found: Sequence[Measured | PassageScore], as_json: bool) -> None:
+    """Print what was found; exit status 1 where something disagrees."""
     if as_json:
-        emit(found.document())
+        emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
     else:
-        for line in found.lines():
+        for line in (line for one in found for line in one.lines()):
             typer.echo(line)
-    if not found.agrees:
+    if any(one.verdict == APART for one in found):
         raise typer.Exit(1)
 
 

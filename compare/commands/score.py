@@ -147,7 +147,7 @@ def command(
     --run fills in {x0}, {latitude}, {t_end} … of the scene: see docs/commands.md, also on --approximation, --name,
     --repeats and ranges. Exit status 0: agrees (with --baseline: no worse), 1: disagrees, 2: cannot be judged.
     """
-    from ..candidates.layout import Naming
+    from ..candidates.names import Naming
     from .judging import hold, hold_passages, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
@@ -240,6 +240,7 @@ def command(
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
     from ..report.suite import annotation, append_summary, suite_document, summary, write_junit
+    from ..score.document import of_outcome
 
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:
@@ -250,7 +251,7 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
     if junit is not None:
         write_junit(outcomes, junit)
     if as_json:
-        emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
+        emit(of_outcome(outcomes[0]) if len(outcomes) == 1 else suite_document(outcomes))
         return
     lines = [line for outcome in outcomes for line in outcome.lines]
     if github:  # nothing in them is a command to it

@@ -1,16 +1,21 @@
-"""Least squares by Gauss-Newton: the numbers of a model moved to where the model leaves least of some rows."""
+"""Least squares: by Gauss-Newton the numbers of a model with which it leaves least of some rows; power laws."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from reference import InputError
+from reference.numbers.precision import Array
+
 Numbers = npt.NDArray[Any]  # real or complex
 Model = Callable[[Numbers], tuple[Numbers, Callable[[], Numbers]]]
+LEAST_POINTS = 3  # a fit with a standard error needs at least three
 
 
 def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbers:
@@ -92,3 +97,74 @@ def gauss_newton(
         else:
             strayed = True
     return best, least
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """y = factor · x**exponent, fitted by least squares in logarithms.
+
+    Attributes:
+        factor: y at x = 1.
+        exponent: slope in logarithms.
+        standard_error: of the exponent, if y scatters about a power law.
+        within: factor within which all points lie.
+        points: number of points fitted.
+        low: smallest x of these points.
+        high: largest x of these points.
+    """
+
+    factor: float
+    exponent: float
+    standard_error: float
+    within: float
+    points: int
+    low: float
+    high: float
+
+    def __call__(self, x: float) -> float:
+        """Return y at x."""
+        return float(self.factor * x**self.exponent)
+
+
+def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
+    """Fit a power law by least squares to the points with x > 0 and y > 0.
+
+    Raises:
+        InputError: there are fewer than three such points, or all have the same x.
+    """
+    points = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a > 0 and b > 0]
+    if len({u for u, _ in points}) < 2 or len(points) < LEAST_POINTS:
+        raise InputError(
+            "points", f"{len(points)} with x > 0 and y > 0", f"at least {LEAST_POINTS}, not all at the same x"
+        )
+    mean_u, mean_v = (math.fsum(column) / len(points) for column in zip(*points, strict=True))
+    spread = math.fsum((u - mean_u) ** 2 for u, _ in points)
+    exponent = math.fsum((u - mean_u) * (v - mean_v) for u, v in points) / spread
+    off = [v - mean_v - exponent * (u - mean_u) for u, v in points]
+    error = math.sqrt(math.fsum(one**2 for one in off) / (len(points) - 2) / spread)
+    within = math.exp(max(map(abs, off)))
+    low, high = min(u for u, _ in points), max(u for u, _ in points)
+    factor = math.exp(mean_v - exponent * mean_u)
+    return PowerLaw(factor, exponent, error, within, len(points), math.exp(low), math.exp(high))
+
+
+def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
+    """Return times and the largest error up to each, thinned to at most `parts` points equally far apart in log t.
+
+    Args:
+        t: times in s, above zero, increasing, shape (rows,), at least one.
+        error: errors at these times.
+        parts: number of points, so that late times do not weigh more.
+    """
+    at = np.searchsorted(t, np.geomspace(t[0], t[-1], parts), side="right") - 1
+    at = at[np.diff(at, prepend=-1) > 0]  # not by np.unique, which imports numpy.ma
+    return t[at], np.maximum.accumulate(error)[at]
+
+
+def power_of_time(t: Array, error: Array, parts: int) -> float | None:
+    """Return the exponent p of error ∝ t^p, fitted to the largest error so far; None if there are too few points.
+
+    The arguments are those of `largest_so_far`; errors are above zero.
+    """
+    times, largest = largest_so_far(t, error, parts)
+    return power_law(times.tolist(), largest.tolist()).exponent if len(times) >= LEAST_POINTS else None

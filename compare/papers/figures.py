@@ -15,7 +15,6 @@ from reference.system.documents import texts_of
 from ..approximations import motions
 from ..approximations.frequency import anharmonic
 from ..methods import METHODS, Problem, available
-from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
 from ..report.drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, logarithmic, name_ends, picture, sheet
 from .digits import degrees, mpf
@@ -156,7 +155,7 @@ def _three_orders() -> list[Panel]:
     above, below = [line("", smooth, path[:, 0], FAINT, width=1)], []
     for (name, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osX", strict=True):
         above.append(dots("", times, states[:, 0], colour, mark, 5))
-        gap = distance(map(difference, states.T[:3], truth.T[:3]))
+        gap = np.linalg.norm(states.T[:3] - truth.T[:3], axis=0)
         below.append(dots(FIXED_STEP[name], times, gap, colour, mark, 5, "-"))
     return [
         Panel(above, LATE | {"ylabel": "x in m"}, height=1.9),

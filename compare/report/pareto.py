@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Any
 
-from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
+from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
 from ..studies.row import Row
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named

@@ -11,7 +11,7 @@ import numpy as np
 from reference.errors import shortened
 from reference.status import Status
 
-from ..observed.position_error import largest_so_far
+from ..observed.least_squares import largest_so_far
 from ..studies.long_runs import LongRun
 from ..studies.stability import Cell
 from ..studies.users_program import NUMBER

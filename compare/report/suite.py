@@ -19,6 +19,7 @@ from xml.etree import ElementTree
 from reference.errors import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
+from ..score.document import of_outcome
 from ..score.verdict import REFUSED, Outcome, percent
 from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
 from .page import Html, Table, findings, page, paragraph, section, text
@@ -44,7 +45,7 @@ def suite_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "digits": _fewest_digits(outcomes),
         "data": DATA_VERSION,
         "verdict": max((outcome.verdict for outcome in outcomes), key=[*SIGNS].index),
-        "rows": [outcome.document() for outcome in outcomes],
+        "rows": [of_outcome(outcome) for outcome in outcomes],
     }
 
 
@@ -102,7 +103,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     table = Table(columns, list(map(_cells, outcomes)), kinds)
     parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
     reasons = [
-        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(outcome.main_lines)}")
+        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(_main_lines(outcome))}")
         for outcome in outcomes
         if outcome.verdict != "agrees" or outcome.since is not None
     ]
@@ -113,6 +114,12 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
         "the largest error, relative to the amplitude."
     )
     return page("Foucault pendulum: a suite of scenes", parts, lead=lead)
+
+
+def _main_lines(outcome: Outcome) -> list[str]:
+    """Return the lines for people without details, which are indented."""
+    first, *others = outcome.lines
+    return [first, *(line for line in others if not line.startswith("  "))]
 
 
 def _cells(outcome: Outcome) -> tuple[str, ...]:
@@ -132,7 +139,7 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
 def annotation(outcome: Outcome) -> str:
     """Return the workflow command that shows an outcome, with the verdict and what is known of its reason."""
     passes = outcome.exit_status == 0
-    lines = outcome.main_lines[:1] if passes and outcome.since is None else outcome.main_lines
+    lines = _main_lines(outcome)[: 1 if passes and outcome.since is None else None]
     place = f"file={_property(outcome.name)},title={_property(f'foucault {outcome.scene}')}"
     return f"::{'notice' if passes else 'error'} {place}::{_data(chr(10).join(lines))}"
 

@@ -16,19 +16,14 @@ import numpy as np
 from reference import InputError
 from reference.system.documents import json_document
 
-from .explanation.findings import AS_IF
-from .scored import WHOLE, Since
-from .verdict import REFUSED, Score, document, explained
+from .document import document, explained
+from .since import Since, changes, left_of
+from .verdict import REFUSED, WHOLE, Score
 
 SHARE = 0.1  # of a change: what is smaller is no part of it
 WOBBLE = 10.0  # times a change: a cause that moves the bob by more has not come with it
 ROUNDED = 10.0  # times the input floor: no more than this is no change
-STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
-SAME = 1e-9  # relative difference of two inputs that count as one
-STEP = "step"
 NEEDED, EXPECTED = {"scene", "candidate", "verdict"}, "a document of `foucault score --json`"
-
-Told = Mapping[str, Any]  # a convention or a cause, as in the document
 
 
 def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> Since | None:
@@ -94,7 +89,7 @@ def _since(new: Score, rows: Score | None, said: Mapping[str, Any], explains: bo
     worse = tuple(_worse(new, said, after - before, agreed))
     better = not worse and (before - after > new.allowed_m or (new.passes and not agreed))
     changed = apart > max(new.errors.bound_m, ROUNDED * new.input_floor_m)
-    changes, left_m = list[str](), None
+    told, left_m = tuple[str, ...](), None
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
     if changed and explains and new.candidate.positions:
         files = [(score.candidate, score.scene) for score in (new, rows) if score is not None]
@@ -102,11 +97,11 @@ def _since(new: Score, rows: Score | None, said: Mapping[str, Any], explains: bo
 
         both = [explain(file.t, file.columns, scene, allowed) for file, scene in files]
         now, then = explained(both[0], []), said if rows is None else explained(both[1], [])
-        left = _left(then, before), _left(now, after)
-        changes = list(_changes(then, now, left, math.inf if rows is None else WOBBLE * apart))
-        left_m = max(left) if changes else None
+        left = left_of(then, before), left_of(now, after)
+        told = tuple(changes(then, now, left, math.inf if rows is None else WOBBLE * apart))
+        left_m = max(left) if told else None
     name, complete = str(said["candidate"]), left_m is not None and left_m <= allowed
-    return Since(name, before, after, apart if changed else 0.0, worse, better, tuple(changes), left_m, complete)
+    return Since(name, before, after, apart if changed else 0.0, worse, better, told, left_m, complete)
 
 
 def _until(score: Score, end: float) -> float:
@@ -138,57 +133,3 @@ def _worse(new: Score, said: Mapping[str, Any], more: float, agreed: bool) -> It
         before, off = (len(said["transits"][key]) for key in ("missed_at", "extra_at")), len(new.transits.missed)
         if (off := off + len(new.transits.extra)) > (had := sum(before)):
             yield f"{off} transits are missed or extra, and {had} were"
-
-
-def _told(said: Mapping[str, Any]) -> Iterator[Told]:
-    """Yield what a document says for certain of its candidate: of the file, of the program."""
-    for one in (*said["conventions"], *said["causes"]):
-        if one["text"].startswith("your ") and not one["id"].startswith(AS_IF):
-            yield one
-    if said["slip"]:
-        yield {"id": "slip", "text": f"your program has a slip ({said['slip'].rstrip('.')})", "size_m": 0.0}
-
-
-def _left(said: Mapping[str, Any], error_m: float) -> float:
-    """Return what the causes of a document leave in m; all of its error where none is known."""
-    return float((said["corrected"] or {"max_error_m": error_m})["max_error_m"])
-
-
-def _changes(then: Told, now: Told, left: tuple[float, float], most: float) -> Iterator[str]:
-    """Yield what came and what went; a number that changed has come.
-
-    Args:
-        then: the document of the baseline.
-        now: that of the candidate.
-        left: what the causes of each leave in m: a smaller one may be in it untold.
-        most: how far in m one may move the bob.
-    """
-    before, after = list(_told(then)), list(_told(now))
-    came = [one for one in after if not any(_is_same(one, other) for other in before)]
-    went = [one for one in before if _kind(one) not in map(_kind, after)]
-    for when, ones, hidden in (("now", came, left[0]), ("no longer", went, left[1])):
-        for one in ones:
-            if 0 < one["size_m"] <= hidden or one["size_m"] > most:
-                continue
-            if one["id"] == "off_the_sphere" and STEP in map(_kind, ones):
-                continue  # a step takes the bob off the sphere
-            text = one["text"].partition(" (--set")[0]  # which is advice for a verdict
-            text = text.replace("your program", f"it {when}", 1).replace("your file", f"its file {when}", 1)
-            yield text if _kind(one) != STEP else f"the step ({text})" if when == "now" else "the step"
-
-
-def _kind(one: Told) -> str:
-    """Return the word for a thing of which a program has one: a step, a gravity."""
-    kinds = {"integrator_": STEP, "gravity_": "site.gravity"}
-    return next((kind for begin, kind in kinds.items() if one["id"].startswith(begin)), str(one["id"]))
-
-
-def _is_same(one: Told, other: Told) -> bool:
-    """Return whether two explanations tell the same."""
-    value, was = one.get("value"), other.get("value")
-    if (value is None or was is None) and _kind(one) == _kind(other) == STEP:
-        return bool(1 / STEPS < one["size_m"] / other["size_m"] < STEPS)
-    if value is None or was is None:
-        return bool(one["text"] == other["text"])
-    doubt = sum(part.get("uncertainty") or 0.0 for part in (one, other)) + SAME * abs(value)
-    return bool(one["id"] == other["id"] and abs(value - was) <= doubt)

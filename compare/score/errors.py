@@ -2,12 +2,22 @@
 
 Candidate and truth may agree to more digits than a double holds: both come as a double and its low part, and both
 parts are subtracted.
+
+A candidate whose ellipse is turned by a small angle δθ, and that is late by a small delay δτ, differs from the truth
+u = (x, y) - rest by
+
+    δu = δθ (-u_y, u_x) - δτ (ẋ, ẏ),
+
+two unknowns that least squares finds from the rows of about one swing; the candidate's velocities are not needed.
+For wide swings the same fit gives the turn about the vertical and the delay that explain most of the error.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,13 +26,48 @@ from reference.dataset.golden import Dense
 from reference.model.constants import constants_in_double
 from reference.model.force import energy, rates
 from reference.numbers.precision import Array
-from reference.scenes.inputs import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
-from ..observed.position_error import difference, distance, power_of_time
-from ..observed.swing_plane import SwingErrors, swing_errors
+from ..observed.least_squares import gauss_newton, power_of_time
 
+BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
+FEWEST = 3  # rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit
+ROWS = 12  # rows of a part at least
+MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
+TURNS = 4  # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
+
+
+class Worst(NamedTuple):
+    """One number of a candidate: its time in s and column, the truth, what it says, and their difference."""
+
+    t: float
+    component: str
+    expected: float
+    got: float
+    difference: float
+
+
+@dataclass(frozen=True, repr=False)
+class SwingErrors:
+    """Turn of the swing plane in radians (positive from east to north) and delay in s, for each part of the run."""
+
+    t: Array
+    turn: Array
+    delay: Array
+
+    def __repr__(self) -> str:
+        return f"SwingErrors(largest_turn={self.largest_turn}, largest_delay={self.largest_delay})"
+
+    @property
+    def largest_turn(self) -> float | None:
+        """Largest turn in radians; None if there were too few rows to fit."""
+        return float(np.abs(self.turn).max()) if len(self.turn) else None
+
+    @property
+    def largest_delay(self) -> float | None:
+        """Largest delay in s; None if there were too few rows to fit."""
+        return float(np.abs(self.delay).max()) if len(self.delay) else None
 
 
 @dataclass(frozen=True, repr=False)
@@ -128,7 +173,7 @@ class TrajectoryErrors:
     def swing(self, rest: tuple[float, float]) -> SwingErrors:
         """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
         if "x" not in self.components:
-            return SwingErrors(*(np.empty(0) for _ in range(3)))
+            return SwingErrors(*np.empty((3, 0)))
         error = np.column_stack([self.components["x"], self.components["y"]])
         return swing_errors(self.t, self.truth.states, error, rest)
 
@@ -150,12 +195,14 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
         if name in candidate.columns:
             low = candidate.low.get(name, 0.0) - truth.low[:, i]
             low = low if later is None else low - later[:, i]
-            components[name] = difference(candidate.columns[name], truth.states[:, i], low)
+            # the difference of doubles that agree so far is exact
+            components[name] = candidate.columns[name] - truth.states[:, i] + low
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
     amplitude = max(float(part.max()) for part in amplitudes) or float(golden.scene.exact.length)
-    speed = max(float(distance(part).max()) for part in ((golden.vx, golden.vy, golden.vz), truth.states.T[3:]))
+    velocities = (golden.vx, golden.vy, golden.vz), truth.states.T[3:]
+    speed = max(float(np.linalg.norm(part, axis=0).max()) for part in velocities)
     if candidate.positions:
-        position = distance(components[name] for name in ("x", "y", "z") if name in components)
+        position = np.linalg.norm([components[name] for name in "xyz" if name in components], axis=0)
     else:
         position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed) or math.inf)
     return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m, amplitude, speed)
@@ -167,19 +214,56 @@ def swing_rate(scene: Scene, speed_m_s: float) -> float:
     return max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), speed_m_s / float(k.length))
 
 
-def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
+def drifts(candidate: Candidate, scene: Scene) -> dict[str, float]:
     """Return the largest |h - h(first row)| (m²/s²; needs velocities and no drag) and the largest ||r| - l| (m)."""
-    inputs = scene.exact if isinstance(scene, Scene) else scene
-    largest: dict[str, float] = {}
-    columns = candidate.columns
-    k = constants_in_double(inputs)
+    columns, k = candidate.columns, constants_in_double(scene.exact)
     if "z" not in columns:
-        return largest
+        return {}
     n = tuple(columns[name] / k.length for name in ("x", "y", "z"))
     square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
-    largest["length_m"] = float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())
-    if all(name in columns for name in ("vx", "vy", "vz")) and not inputs.drag:
+    largest = {"length_m": float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())}
+    if all(name in columns for name in ("vx", "vy", "vz")) and not scene.exact.drag:
         v = tuple(columns[name] / k.length for name in ("vx", "vy", "vz"))
         h = energy(n, v, k)
         largest["h_m2_s2"] = float(np.abs(h - h[0]).max())
     return largest
+
+
+def swing_errors(t: Array, truth: Array, error: Array, rest: tuple[float, float]) -> SwingErrors:
+    """Fit turn and delay of a candidate, part by part.
+
+    Args:
+        t: times in s, shape (rows,).
+        truth: x, y, z, vx, vy, vz in m and m/s, shape (rows, 6).
+        error: candidate minus truth in x and y, shape (rows, 2), in m.
+        rest: x and y of the rest position in m.
+    """
+    if len(t) < FEWEST:
+        return SwingErrors(*np.empty((3, 0)))
+    parts = np.array_split(np.arange(len(t)), max(1, min(BLOCKS, len(t) // ROWS)))
+    samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
+    fits = [_fit(truth[part], error[part], rest) for part in samples]
+    middle = np.array([float(np.mean(t[part])) for part in parts])
+    return SwingErrors(middle, np.array([turn for turn, _ in fits]), np.array([delay for _, delay in fits]))
+
+
+def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, float]:
+    """Return turn and delay of one part."""
+    u = truth[:, :2] - np.array(rest)
+    rate = truth[:, 3:5]
+
+    def left(numbers: Array) -> tuple[Array, Callable[[], Array]]:
+        turn, delay = numbers.tolist()
+        sin, cos_minus_1 = np.sin(turn), -2 * np.sin(turn / 2) ** 2  # written so that nothing cancels
+        change = np.column_stack([cos_minus_1 * u[:, 0] - sin * u[:, 1], sin * u[:, 0] + cos_minus_1 * u[:, 1]])
+        turned = u + change
+        slopes = np.stack([np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1)
+        return (error - change + delay * rate).ravel(), lambda: slopes
+
+    (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
+    return float(turn), float(delay)
+
+
+def entry(name: str, value: str, remark: str = "") -> str:
+    """Return a line of a score: what it is, how much, and a remark."""
+    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"

@@ -23,15 +23,16 @@ from reference.model.start import Start
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
-from ..candidates.candidate import Candidate, Deviation, candidate_from
+from ..candidates.arrays import candidate_from
+from ..candidates.candidate import Candidate, Deviation
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
-from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
-from .transit_matching import TransitErrors, transit_errors
+from .errors import TrajectoryErrors, drifts, trajectory_errors
+from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
@@ -40,6 +41,7 @@ BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts
 ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
 SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
 FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
+DOUBT = 3  # times the reference's bound, which each of the three coordinates may be off by
 SAME = 1e-3  # relative difference of ratios that count as one scale
 
 
@@ -118,12 +120,12 @@ def judge(
             tolerance_m=allowed,
             swing=errors.swing(_rest(scene)),
             drifts=drifts(candidate, problem),
-            transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
+            transits=None if times is None or unjudged else judged_transits(times, golden, errors, allowed),
             notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
             covers=covers,
             as_model=as_model,
         )
-        if not result.in_doubt and (isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed):
+        if not in_doubt(result) and (isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed):
             break
     if explain and result.off_path and candidate.positions and result.covered:
         from .explanation.explain import explain as explained  # heyoka too
@@ -140,6 +142,13 @@ def judge(
     changed = since(result, baseline, explain)
     alone = () if changed else ("the baseline has no score of it: this verdict stands alone",)
     return replace(result, since=changed, notes=result.notes + alone)
+
+
+def in_doubt(score: Score) -> bool:
+    """Return whether the reference's own error could change the verdict."""
+    transits, tolerance = score.transits, score.tolerance_m
+    measured = [score.errors.max_m, *([transits.max_conditioned_m] if transits else [])]
+    return any(abs(error - tolerance) <= DOUBT * score.errors.bound_m for error in measured)
 
 
 def _truths(
@@ -260,40 +269,3 @@ def _flung_off(scene: Scene) -> tuple[str, ...]:
         return ()
     advice = "with site.gravity_is=effective g contains that force"
     return (f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",)
-
-
-def unjudged_transits(golden: Golden | Solution) -> str | None:
-    """Return the reason why a candidate's transits cannot be judged, or None."""
-    if isinstance(golden, Golden):
-        transits = golden.manifest.transits
-    else:
-        asked = golden.scene.run.transits
-        transits = "complete" if golden.zeros else "xdot is identically zero" if asked else "not asked for"
-    if transits == "not asked for":
-        return "the scene asks for no transits (run.transits): the candidate's were not judged"
-    return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
-
-
-def _truth(golden: Golden | Solution, times: Array) -> Dense:
-    if isinstance(golden, Solution):
-        again = roughly_solved(golden.scene, times, False, None)
-        assert again is not None  # as before, at other times
-        return again[1]
-    return (golden.function and by_function(golden, times)) or truth_at(golden, times)
-
-
-def _transits(times: Array, golden: Golden | Solution, errors: TrajectoryErrors, tolerance_m: float) -> TransitErrors:
-    end = float(golden.scene.exact.t_end)
-    judged = times[times <= end]  # beyond its end the truth is not known
-    for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
-        judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
-    truth = golden.transits
-    return transit_errors(
-        judged,
-        truth["t"],
-        truth["ax"],
-        swing_rate(golden.scene, errors.speed_m_s),
-        min(float(errors.t[-1]), end),
-        tolerance_m=tolerance_m,
-        away=lambda at: _truth(golden, at).states[:, 3],
-    )

@@ -16,11 +16,10 @@ from reference.model.start import Start
 from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
-from ..observed.position_error import distance
 from ..truth import DIGITS, Report, golden_of, truth_at
-from .errors import swing_rate
+from .errors import entry, swing_rate
 from .judge import TOLERANCE
-from .transit_matching import TransitErrors, entry, transit_errors
+from .transit_matching import TransitErrors, transit_errors
 
 
 @dataclass(frozen=True)
@@ -53,14 +52,9 @@ class PassageScore:
         return self.tolerance_m + self.bound_m
 
     @property
-    def agrees(self) -> bool:
-        """True if no passage is missed, extra, or off by more than `allowed_m`."""
-        return self.errors.within(self.allowed_m)
-
-    @property
     def verdict(self) -> str:
-        """'agrees' or 'disagrees'."""
-        return "agrees" if self.agrees else "disagrees"
+        """'agrees' if no passage is missed, extra, or off by more than `allowed_m`; else 'disagrees'."""
+        return "agrees" if self.errors.within(self.allowed_m) else "disagrees"
 
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""
@@ -116,7 +110,7 @@ def score_passages(
         raise InputError(f"{name}: t", "no time in the scene's span", f"times above 0, up to {scene.run.t_end} s")
     golden = golden_of(scene, DIGITS, announce, report, float(judged[-1]))
     truth = golden.sections[section]
-    speed = float(distance((golden.vx, golden.vy, golden.vz)).max())
+    speed = float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
     away = _distances(section, scene, swing_rate(scene, speed))
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
     allowed = TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
@@ -149,8 +143,8 @@ def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tu
             return (position @ a - float(form.d) * float(k.length)) / size, velocity @ a / size
         size = omega * np.linalg.norm(b)
         if form.direction:  # only what is along the sphere counts, and where that points changes with the place
-            aside, down = distance(np.cross(b, position).T), np.abs(position @ b)
-            size = (omega * aside + distance(velocity.T) * down / float(k.length)) / float(k.length)
+            aside, down = np.linalg.norm(np.cross(b, position), axis=1), np.abs(position @ b)
+            size = (omega * aside + np.linalg.norm(velocity, axis=1) * down / float(k.length)) / float(k.length)
         far, rate = velocity @ b / size, force @ b / size
         return np.where(rate * form.direction < 0, np.inf, far), rate
 

@@ -16,7 +16,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from reference import Golden, Solution
+from reference.dataset.golden import Dense
 from reference.numbers.precision import Array
+
+from ..truth import by_function, roughly_solved, truth_at
+from .errors import TrajectoryErrors, entry, swing_rate
 
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 MOST_EXTRA = 1000  # extra transits at which the truth is evaluated; if there are more, none is excused
@@ -97,11 +102,6 @@ class TransitErrors:
             "extra_at": self.extra,
             "undecided_at": self.undecided,
         }
-
-
-def entry(name: str, value: str, remark: str = "") -> str:
-    """Return a line of a score: what it is, how much, and a remark."""
-    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
 
 
 def _listed(texts: Iterable[str]) -> str:
@@ -189,3 +189,43 @@ def _vanishing(
         if depth <= tolerance_m:
             excused[i] = excused[i + 1] = True
     return excused
+
+
+def unjudged_transits(golden: Golden | Solution) -> str | None:
+    """Return the reason why a candidate's transits cannot be judged, or None."""
+    if isinstance(golden, Golden):
+        transits = golden.manifest.transits
+    else:
+        asked = golden.scene.run.transits
+        transits = "complete" if golden.zeros else "xdot is identically zero" if asked else "not asked for"
+    if transits == "not asked for":
+        return "the scene asks for no transits (run.transits): the candidate's were not judged"
+    return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
+
+
+def _truth(golden: Golden | Solution, times: Array) -> Dense:
+    if isinstance(golden, Solution):
+        again = roughly_solved(golden.scene, times, False, None)
+        assert again is not None  # as before, at other times
+        return again[1]
+    return (golden.function and by_function(golden, times)) or truth_at(golden, times)
+
+
+def judged_transits(
+    times: Array, golden: Golden | Solution, errors: TrajectoryErrors, tolerance_m: float
+) -> TransitErrors:
+    """Return the errors of a candidate's transits, in s; of those that the truth's end or proof leaves open none."""
+    end = float(golden.scene.exact.t_end)
+    judged = times[times <= end]  # beyond its end the truth is not known
+    for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
+        judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
+    truth = golden.transits
+    return transit_errors(
+        judged,
+        truth["t"],
+        truth["ax"],
+        swing_rate(golden.scene, errors.speed_m_s),
+        min(float(errors.t[-1]), end),
+        tolerance_m=tolerance_m,
+        away=lambda at: _truth(golden, at).states[:, 3],
+    )

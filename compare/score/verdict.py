@@ -1,26 +1,32 @@
-"""A judgement in lines for people, and as the JSON document of `foucault score --json`."""
+"""A judgement: its errors, what was allowed, the verdict that follows, and the lines for people that say so."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from html import escape
 from typing import Any
 
-from reference import FoucaultError, Solution
+from reference import FoucaultError, Golden, Scene, Solution
 from reference.status import Status
 
-from ..candidates.candidate import Deviation
-from .explanation.findings import Explanation
-from .scored import Scored, Since
-from .transit_matching import entry
+from ..candidates.candidate import COLUMNS, Candidate
+from ..candidates.external import Timing
+from .errors import SwingErrors, TrajectoryErrors, Worst, entry
+from .experiments.findings import Experiments
+from .explanation.case import Explanation
+from .input_floor import input_floor
+from .since import Since
+from .transit_matching import TransitErrors
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
+WHOLE = 1e-6  # a last row within this part of t_end counts as complete: a program that adds up its steps rounds
 
 
 @dataclass(frozen=True, repr=False)
-class Score(Scored):
+class Score:
     """The judgement of a candidate.
 
     Attributes:
@@ -42,6 +48,23 @@ class Score(Scored):
         since: the changes since a baseline, if there is one.
     """
 
+    candidate: Candidate
+    scene: Scene
+    why_inputs: str
+    golden: Golden | Solution
+    errors: TrajectoryErrors
+    tolerance_m: float
+    swing: SwingErrors
+    drifts: dict[str, float]
+    covers: float
+    as_model: bool
+    notes: tuple[str, ...]
+    transits: TransitErrors | None = None
+    timing: Timing | None = None
+    explanation: Explanation | None = None
+    since: Since | None = None
+    experiments: Experiments | None = None
+
     def __repr__(self) -> str:
         return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
 
@@ -52,8 +75,91 @@ class Score(Scored):
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"
 
+    @cached_property
+    def input_floor_m(self) -> float:
+        """Distance in m by which rounding the inputs to binary64 moves the bob; computed at the first use."""
+        return input_floor(self.scene, float(self.candidate.t[-1]))
 
-def lines(score: Scored) -> Iterator[str]:
+    @property
+    def worst(self) -> Worst:
+        """The component in which the largest position error shows most."""
+        return self._at(*self.errors.worst)
+
+    @property
+    def worst_of_each(self) -> dict[str, Worst]:
+        """The largest error of each column."""
+        return {name: self._at(row, name) for name, row in self.errors.worst_rows.items()}
+
+    def _at(self, row: int, name: str) -> Worst:
+        expected, got = self.errors.truth.states[row, COLUMNS.index(name)], self.candidate.columns[name][row]
+        difference = self.errors.components[name][row]
+        return Worst(float(self.errors.t[row]), name, float(expected), float(got), float(difference))
+
+    @cached_property
+    def covered(self) -> float:
+        """Share of the scene's span up to the last row, from 0 to 1; of transits alone, up to the next true one."""
+        last, end = float(self.errors.t[-1]), float(self.scene.exact.t_end)
+        if not self.candidate.positions:
+            later = self.golden.transits["t"]
+            later = later[later > last + self.tolerance_m / self.errors.speed_m_s]
+            last = float(later[0]) if len(later) else float(self.golden.t[-1])
+        return 1.0 if last >= end * (1 - WHOLE) else last / end
+
+    @property
+    def falls_short(self) -> bool:
+        """True if it says nothing of the motion, having no row after t = 0, or covers less than is demanded."""
+        return self.covered < self.covers or not self.covered > 0
+
+    @property
+    def allowed_m(self) -> float:
+        """Tolerance in m plus the reference's own bound; nothing is judged more finely than the reference is known."""
+        return self.tolerance_m + self.errors.bound_m
+
+    @property
+    def off_path(self) -> bool:
+        """True if the largest position error is above `allowed_m`."""
+        return self.errors.max_m > self.allowed_m
+
+    @property
+    def agrees(self) -> bool:
+        """True if nothing is off by more than `allowed_m`, missed, extra or left out."""
+        met = self.transits is None or self.transits.within(self.allowed_m)
+        return met and not (self.off_path or self.falls_short)
+
+    @property
+    def verdict(self) -> str:
+        """'agrees' or 'disagrees', as in the JSON document."""
+        return "agrees" if self.agrees else "disagrees"
+
+    @property
+    def grade(self) -> str:
+        """'agrees', 'agrees as the model …' where it is exact within a named simplification, or 'disagrees'."""
+        model = None if self.explanation is None else self.explanation.model
+        return self.verdict if self.agrees or model is None else f"agrees as the model: {model.text}"
+
+    @property
+    def passes(self) -> bool:
+        """True if it agrees, or agrees as a named model and `as_model` says that this is enough."""
+        modelled = self.explanation is not None and self.explanation.model is not None
+        return self.agrees or (self.as_model and modelled and not self.falls_short and self.transits is None)
+
+    @property
+    def accepted(self) -> bool:
+        """True if it passes or, where there is a baseline, if it became no worse."""
+        return self.passes if self.since is None else not self.since.worse
+
+    @property
+    def problem(self) -> dict[str, Any]:
+        """The inputs of the scene as they are written, by section and name."""
+        return self.scene.model_dump(include={"pendulum", "site", "release"}, exclude_none=True)
+
+    @property
+    def at_bound(self) -> bool:
+        """True if the largest error is at or below the reference's own bound."""
+        return self.errors.max_m <= self.errors.bound_m
+
+
+def lines(score: Score) -> Iterator[str]:
     """Yield the verdict line by line."""
     errors = score.errors
     yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
@@ -64,7 +170,8 @@ def lines(score: Scored) -> Iterator[str]:
     elif score.falls_short:
         yield entry("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
     yield entry("largest error", f"{errors.max_m:.3g} m", _largest(score))
-    yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
+    growth = "" if errors.growth_exponent is None else f"grows like t^{errors.growth_exponent:.2f}"
+    yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", growth)
     scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
     yield entry("digits", _one_decimal(errors.digits), scale)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
@@ -72,7 +179,8 @@ def lines(score: Scored) -> Iterator[str]:
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
     yield entry("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
-    each = (f"{name} {abs(row.difference):.2g} {_unit(name)}" for name, row in score.worst_of_each.items())
+    of_each = score.worst_of_each.items()
+    each = (f"{name} {abs(row.difference):.2g} m{'/s' if name.startswith('v') else ''}" for name, row in of_each)
     yield entry("worst of each", ", ".join(each))
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
@@ -99,17 +207,13 @@ def lines(score: Scored) -> Iterator[str]:
         yield f"Note: {note}."
 
 
-def _verdict(score: Scored) -> str:
+def _verdict(score: Score) -> str:
     if score.grade == score.verdict:
         return f"{score.verdict} with {score.scene.id}"
     assert score.explanation is not None and score.explanation.model is not None
     would_pass = not score.passes and replace(score, as_model=True).passes
     enough = "; --as-model takes that as enough" if would_pass else ""
     return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}{enough}"
-
-
-def _unit(component: str) -> str:
-    return "m/s" if component.startswith("v") else "m"
 
 
 def percent(share: float) -> str:
@@ -125,14 +229,14 @@ def _one_decimal(digits: float | None) -> str:
     return "none" if digits is None else f"{round(digits, 1) + 0.0:.1f}"
 
 
-def _span(score: Scored) -> str:
+def _span(score: Score) -> str:
     t, end = score.errors.t, score.scene.run.t_end
     what = "row" if score.candidate.positions else "transit"
     rows = f"1 {what}" if len(t) == 1 else f"{len(t)} {what}s"
     return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s: {percent(score.covered)}"
 
 
-def _largest(score: Scored) -> str:
+def _largest(score: Score) -> str:
     errors = score.errors
     if score.at_bound:
         return "at or below the reference's bound"
@@ -143,85 +247,6 @@ def _largest(score: Scored) -> str:
         return f"{allowed}; the inputs are doubles as they stand"
     ratio = errors.max_m / score.input_floor_m
     return f"{allowed}; {ratio:.2g} times the input floor of {score.input_floor_m:.2g} m"
-
-
-def _growth(exponent: float | None) -> str:
-    return "" if exponent is None else f"grows like t^{exponent:.2f}"
-
-
-def document(score: Scored) -> dict[str, Any]:
-    """Return a score as a JSON document; its keys are part of the command line's contract."""
-    errors, transits = score.errors, score.transits
-    turn = score.swing.largest_turn
-    fields: dict[str, Any] = {
-        "scene": score.scene.id,
-        "candidate": score.candidate.name,
-        "verdict": score.verdict,
-        "inputs": score.scene.inputs,
-        "why_inputs": score.why_inputs,
-        "rows": len(errors.t),
-        "covered": score.covered,
-        "covered_s": [float(errors.t[0]), float(errors.t[-1])],
-        "max_error_m": errors.max_m,
-        "rms_error_m": errors.rms_m,
-        "end_error_m": errors.end_m,
-        "at_or_below_bound": score.at_bound,
-        "digits": errors.digits,
-        "scd": errors.scd,
-        "mescd": errors.mescd,
-        "scale_m": errors.amplitude_m,
-        "tolerance_m": score.tolerance_m,
-        "input_floor_m": score.input_floor_m,
-        "error_over_floor": errors.max_m / score.input_floor_m if score.input_floor_m else None,
-        "growth_exponent": errors.growth_exponent,
-        "swing_plane_error_deg": None if turn is None else math.degrees(turn),
-        "phase_error_s": score.swing.largest_delay,
-        "h_drift_m2_s2": score.drifts.get("h_m2_s2"),
-        "length_drift_m": score.drifts.get("length_m"),
-        "worst": score.worst._asdict(),
-        "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
-        "transits": None if transits is None else transits.document(score.allowed_m),
-        "reference": {"level": score.golden.level, "bound_m": errors.bound_m},
-        "grade": score.grade,
-        "conventions": [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions],
-        "model": None,
-        "causes": [],
-        "corrected": None,
-        "slip": None,
-        "diagnosis": None,
-        "baseline": None if score.since is None else vars(score.since) | {"text": score.since.text},
-        "problem": score.problem,
-        "notes": list(score.notes),
-    }
-    if score.timing is not None:
-        fields["timing"] = vars(score.timing)
-    if score.experiments is not None:
-        fields["experiments"] = score.experiments.document()
-    if score.explanation is not None:
-        fields |= explained(score.explanation, fields["conventions"])
-    return fields
-
-
-def explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
-    diagnosis, corrected = explanation.diagnosis, explanation.corrected_m
-    return {
-        "conventions": [*readings, *(_said("your file", convention) for convention in explanation.conventions)],
-        "model": None if explanation.model is None else vars(explanation.model),
-        "causes": [_said("your program", cause) | _fitted(cause) for cause in explanation.causes],
-        "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
-        "slip": explanation.slip or None,
-        "diagnosis": None if diagnosis is None else vars(diagnosis),
-    }
-
-
-def _said(subject: str, deviation: Deviation) -> dict[str, Any]:
-    return {"id": deviation.id, "text": f"{subject} {deviation.text}", "size_m": deviation.size_m}
-
-
-def _fitted(cause: Deviation) -> dict[str, float | None]:
-    numbers = {"value": cause.value, "shift": cause.shift, "uncertainty": cause.uncertainty}
-    return {name: number for name, number in numbers.items() if math.isfinite(number or 0.0)}
 
 
 @dataclass(frozen=True)
@@ -263,15 +288,3 @@ class Outcome:
         if self.score is not None:
             return list(lines(self.score))
         return [f"{self.name} was not judged by {self.scene}: {self.error}"]
-
-    @property
-    def main_lines(self) -> list[str]:
-        """The lines for people without details."""
-        first, *others = self.lines
-        return [first, *(line for line in others if not line.startswith("  "))]
-
-    def document(self) -> dict[str, Any]:
-        """Return it as a row of the JSON document."""
-        if self.score is not None:
-            return document(self.score)
-        return {"scene": self.scene, "candidate": self.name, "verdict": REFUSED, "error": str(self.error)}

@@ -19,7 +19,6 @@ from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..approximations import Approximation, Motion, motions, quantities
-from ..observed.position_error import difference, distance
 from ..observed.swing_plane import Gauge
 from .row import failure
 
@@ -105,7 +104,7 @@ class ReferenceMotion:
         """
         rows = motion.trajectory(self.scene, self.times)
         gauge = self.gauge if motion.rest is None else _gauge(self.scene, motion.rest(self.scene))
-        position = distance(map(difference, rows.T[:3], self.rows.T[:3]))
+        position = np.linalg.norm(rows.T[:3] - self.rows.T[:3], axis=0)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
         return ApproximationErrors(self.times, np.maximum.accumulate(position), np.fmax.accumulate(plane))

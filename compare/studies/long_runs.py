@@ -18,7 +18,7 @@ from reference import Scene, load_scene
 from reference.status import Status
 
 from ..methods import METHODS, Problem, available
-from ..observed.position_error import power_of_time
+from ..observed.least_squares import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, campaign
 from .measure import OnScene, timed

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, Self, TypeAlias
 
 import numpy as np
 
@@ -17,8 +18,8 @@ from reference.status import Status
 
 from ..candidates.candidate import COLUMNS
 from ..methods import Outcome
-from ..observed.position_error import Column, difference, distance
 
+Column: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
 H_ROWS = 64  # rows at which h is evaluated
 _ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax
@@ -160,9 +161,8 @@ class GridTruth:
     def position_errors(self, outcome: Outcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         columns = [_column(outcome, name) for name in "xyz"]
-        return distance(
-            difference(column, true[: len(column)]) for column, true in zip(columns, self.exact, strict=True)
-        )
+        off = [difference(column, true[: len(column)]) for column, true in zip(columns, self.exact, strict=True)]
+        return np.asarray(np.linalg.norm(off, axis=0))
 
     def transit_errors(self, scene: Scene, outcome: Outcome) -> tuple[Array, float]:
         """Return the error of each transit's time in s, in any number type, and what is resolved of it in s.
@@ -206,6 +206,13 @@ def h_drift(scene: Scene, outcome: Outcome) -> float | None:
         values.append(invariant(n, v, k))
         kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
     return float(max(abs(value - values[0]) for value in values) / kinetic) if kinetic else None
+
+
+def difference(one: Column, other: Column) -> Array:
+    """Return one - other as doubles, shape (rows,); where a number is exact, it is subtracted exactly."""
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.asarray(one - other)  # the difference of doubles that agree so far is exact
+    return np.array([float(Fraction(p) - Fraction(q)) for p, q in zip(one, other, strict=True)])
 
 
 def _column(outcome: Outcome, name: str) -> Column:

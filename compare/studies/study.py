@@ -18,7 +18,7 @@ from reference.status import Status
 
 from ..candidates.candidate import Candidate
 from ..methods import METHODS, external
-from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
+from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
 from ..truth import Report, golden_of
 from .campaign import Counted, campaign, machine
 from .measure import Bench, OnScene

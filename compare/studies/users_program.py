@@ -22,7 +22,6 @@ from ..candidates.external import SETTING, FailedError, OutOfTimeError, argument
 from ..candidates.read import read, read_stream
 from ..methods import METHODS
 from ..methods.method import LONGEST_NAME
-from ..observed.position_error import difference, distance
 from ..truth import truth_at
 from .campaign import load_per_core
 from .row import Row
@@ -132,7 +131,7 @@ def _against(
         raise InputError("its output", "no row after t = 0", f"rows to t = {end:g} s")
     truth = truth_at(golden, t)
     places = [i for i, name in enumerate("xyz") if name in candidate.columns]
-    errors = distance(difference(candidate.columns["xyz"[i]][kept], truth.states[:, i]) for i in places)
+    errors = np.linalg.norm([candidate.columns["xyz"[i]][kept] - truth.states[:, i] for i in places], axis=0)
     short = t[-1] < end - step
     row = replace(
         base,

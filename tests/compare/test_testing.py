@@ -35,7 +35,7 @@ def test_the_golden_numbers_agree(golden, states, columns):
 def test_what_nobody_asks_for_is_not_computed(monkeypatch):
     """The input floor costs a run of the variational equations."""
     asked = []
-    monkeypatch.setattr("compare.score.scored.input_floor", lambda scene, until: asked.append(until) or 5e-13)
+    monkeypatch.setattr("compare.score.verdict.input_floor", lambda scene, until: asked.append(until) or 5e-13)
     made = assert_agrees("paris", *TWO_ROWS, tolerance=1e-9)
     assert asked == []
     assert (made.input_floor_m, made.input_floor_m, asked) == (5e-13, 5e-13, [60.0])

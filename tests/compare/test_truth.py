@@ -11,7 +11,8 @@ from interruption import gone_within, interrupted
 from small_scenes import make_scene
 
 from compare import judge
-from compare.truth import _why_solved, by_function, floor_of_what_ships, golden_of, shipped, solves, truth_at
+from compare.score.input_floor import floor_of_what_ships
+from compare.truth import _why_solved, by_function, golden_of, shipping, solves, truth_at
 from reference import load, load_scene, solve, write
 from reference.solver.sensitivity import sensitivity
 from reference.system import cache
@@ -62,7 +63,7 @@ def test_a_dataset_solves_a_scene_only_with_its_inputs_span_and_transits():
     assert solves(golden, paris.with_values(["run.t_end=100", "run.grid_step=7"]))
     for change in ("site.latitude=1", "inputs=binary64", "run.t_end=86401", "release.x=0.31", "pendulum.drag=1e-9"):
         assert not solves(golden, paris.with_values([change]))
-    assert shipped(make_scene("unheard_of")) == []
+    assert shipping(make_scene("unheard_of")) is None
 
 
 def test_a_scene_of_the_users_own_is_solved_once_and_kept(own_cache):

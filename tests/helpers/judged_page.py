@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from places import ROOT
 
-from compare.score.explanation.findings import AS_IF
+from compare.score.explanation.case import AS_IF
 from compare.score.explanation.fitted import MODELS
 from compare.score.judge import judge
 from compare.score.verdict import Score

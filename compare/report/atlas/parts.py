@@ -20,14 +20,13 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
 
-from ...candidates import candidate, layout, names, spelling
+from ...candidates import candidate, names, read
 from ...candidates import text as text_reader
-from ...observed.position_error import distance
 from ...score import judge
 from ...score.errors import swing_rate
 from ...score.explanation import conventions
-from ...score.judge import unjudged_transits
-from ...score.scored import WHOLE
+from ...score.transit_matching import unjudged_transits
+from ...score.verdict import WHOLE
 from ..page import Html, Table, facts, text
 from .entry import Entry, MethodResult, StudyResults
 
@@ -164,7 +163,7 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
     Transits come with the weight |ax|/ω in 1/s·m, by which an error of time becomes one of position. The golden
     function is `made`, or in a file `beside` the page.
     """
-    inputs, speed = golden.scene.exact, float(distance((golden.vx, golden.vy, golden.vz)).max())
+    inputs, speed = golden.scene.exact, float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
     omega, length = swing_rate(golden.scene, speed), float(inputs.length)
     reason, transits = unjudged_transits(golden), golden.transits
     weight = np.abs(transits["ax"]) / omega if omega else np.zeros(len(transits))
@@ -188,7 +187,7 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
 
 def _vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
-    reading = names, layout, spelling, text_reader, candidate
+    reading = names, text_reader, read, candidate
     found = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
     said = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
     limits = {

@@ -163,7 +163,7 @@ function layoutOf(words, needed, vocabulary) {
   return places;
 }
 
-// What is to be said of a header: columns by other names, those not read, units converted; as layout.py says it.
+// What is to be said of a header: columns by other names, those not read, units converted; as names.py says it.
 function conventionsOf(words, places, vocabulary) {
   const read = Object.values(places);
   const renamed = read.filter((one) => one.rank === 2).map((one) => `${one.word} as ${one.factor[0] < 0 ? "-" : ""}${one.column}`);

@@ -19,16 +19,15 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
+from ..explanation.case import Case, Explanation, largest
 from ..explanation.causes import FITTED, Cause, causes_of
 from ..explanation.explain import KnownScene
 from ..explanation.families import Fit, fits_of
-from ..explanation.findings import Explanation
 from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
 from ..explanation.gate import Evidence, may_be_told
 from ..explanation.programs import Program
 from ..explanation.readings import Reader, Reading
 from ..explanation.stepped import LONGEST, Steps, step_cause
-from ..explanation.unexplained import Case, largest
 
 RULE, TYPED, FACTOR = (
     "",

@@ -10,9 +10,9 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from .case import Case
 from .phasors import METHODS
 from .programs import Program
-from .unexplained import Case
 
 NAMED = 0.3  # decades by which a named cause has to lower what is left, to be believed
 RARE = 0.5  # one that is met less often

@@ -18,9 +18,10 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ...candidates.names import LENGTHS, LONG_NAMES, TIMES
+from .case import Rows, largest
 from .phasors import as_angles, fit_phasors, sinc
-from .unexplained import NEAR, Rows, is_release, largest
 
+NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
 FLAT = "gives z a constant: its bob does not rise as it swings"
 SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
 OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is said
@@ -45,25 +46,10 @@ AXES_SAID = {  # order and signs by which a file's horizontal columns become the
 PARTS = 4  # of a row: programs that write every second or fourth step are off by that
 
 
-def made_right(
-    times: Array, columns: dict[str, Array], release: Array, length: float, frequency: float, rename: bool = True
-) -> Rows:
-    """Return the rows in the scene's conventions.
-
-    Args:
-        times: as in the file.
-        columns: x, y and perhaps z as in the file.
-        release: x, y, z, vx, vy, vz of the exact release in m and m/s.
-        length: of the cord in m.
-        frequency: of the scene's swing in rad/s.
-        rename: whether the horizontal axes may have each other's names, or point the other way.
-    """
-    positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
-    rows = heights(digits(Rows(times, positions, 0.0)), length)
-    rows = axes(rows, release, length, rename)
-    rows = clock(rows, release)
-    rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
-    return rows if rows.starts else shifted(rows, release, frequency, length)
+def is_release(row: Array, release: Array, noise: float) -> bool:
+    """Return whether a row is the release but for its rounding."""
+    size = max(float(np.hypot(release[0], release[1])), 1e-6 * float(np.abs(release).max()))
+    return bool(np.abs(row[:2] - release[:2]).max() <= NEAR * size + 2 * noise)
 
 
 def digits(rows: Rows) -> Rows:

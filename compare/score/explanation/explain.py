@@ -13,21 +13,18 @@ from reference.numbers.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
+from .case import HARMLESS, Case, Explanation, Model, Rows, largest, rms
 from .causes import NAMED
-from .conventions import ROUGHLY, made_right, other_ways
-from .findings import HARMLESS, Explanation, Model
+from .conventions import ROUGHLY, axes, clock, digits, heights, other_ways, rounded_clock, shifted, unit_of_time
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
 from .programs import Pendulum, Program
-from .slips import slip
+from .slips import falls, growth, slip
 from .stepped import of_steps
-from .unexplained import Case, Rows, largest, rms
 
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
-PARTS, GROWN = 4, 2.0  # of the rows, and how many times as far as in the first a growing motion reaches in the last
-FREELY = 0.5, 2.5  # of g: what a fall's mean acceleration is between, from row 0 to every other
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
 SHARE = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
@@ -78,8 +75,19 @@ class KnownScene:
         return math.sqrt(abs(self.right.theta()[5]))
 
     def rows(self, times: Array, columns: dict[str, Array], rename: bool = True) -> Rows:
-        """Return the rows of a file in the scene's conventions; `rename` as in `made_right`."""
-        return made_right(times, columns, self.start, self.right.length, self.frequency, rename)
+        """Return the rows of a file in the scene's conventions.
+
+        Args:
+            times: as in the file.
+            columns: x, y and perhaps z as in the file.
+            rename: whether the horizontal axes may have each other's names, or point the other way.
+        """
+        start, length, frequency = self.start, self.right.length, self.frequency
+        positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
+        rows = heights(digits(Rows(times, positions, 0.0)), length)
+        rows = clock(axes(rows, start, length, rename), start)
+        rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
+        return rows if rows.starts else shifted(rows, start, frequency, length)
 
     def case(self, rows: Rows, allowed_m: float) -> Case:
         """Return what is to be explained of rows, of which some are taken."""
@@ -107,12 +115,11 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         allowed_m, 1.5 * rows.noise
     )
     if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
-        wrong_term = slip(rows.times, rows.positions, scene)
+        wrong_term = slip(rows, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
             return Explanation(best.conventions, slip=wrong_term)
         if not best.known:
-            fall = falls(rows.times, rows.plane, problem.right)
-            return replace(best, slip=fall or growth(rows.times, rows.plane))
+            return replace(best, slip=falls(rows, problem.right) or growth(rows))
     return best
 
 
@@ -172,30 +179,6 @@ def _is_mirrored(cause: Deviation) -> bool:
         return False
     scene = cause.value - cause.shift
     return abs(cause.value + scene) < ROUGHLY * abs(scene)
-
-
-def falls(times: Array, plane: Array, right: Program) -> str:
-    """Return in a sentence which coordinate falls from row 0 on to far below the cord; empty if none does."""
-    time, gone = times[1:] - times[0], plane[1:] - plane[0]
-    for name, way in zip("xy", gone.T, strict=True):
-        pulls = np.abs(2 * way / time**2) / right.g
-        if pulls.min() > FREELY[0] and pulls.max() < FREELY[1] and abs(way[-1]) > GROWN * right.length:
-            fell = f"Its {name} falls by {abs(way[-1]):.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
-            return f"{fell}: {name} is its vertical, and its cord pulls too little."
-    return ""
-
-
-def growth(times: Array, plane: Array) -> str:
-    """Return in a sentence how fast a motion grows; empty if it does not, part by part of the rows."""
-    parts = np.array_split(np.arange(len(times)), PARTS)
-    if len(times) < 2 * PARTS:
-        return ""
-    reach = np.array([float(np.hypot(*plane[part].T).max()) for part in parts])
-    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > GROWN * reach[0]:
-        return ""
-    between = float(times[parts[-1]].mean() - times[parts[0]].mean())
-    fold = between / math.log(reach[-1] / reach[0])
-    return f"Its motion grows by a factor of e in {fold:.2g} s: a force does work, or the cord does not hold."
 
 
 def _sample(count: int) -> Array:

@@ -15,9 +15,9 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import best_change
+from .case import Case, rms
 from .phasors import Phasors, as_angles, fit_phasors
 from .programs import NAMES, Pendulum, Program, phasors_of, theta_of
-from .unexplained import Case, rms
 
 LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")  # numbers that two phasors tell
 STEPS = 16  # Gauss-Newton steps in one window at most

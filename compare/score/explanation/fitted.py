@@ -12,13 +12,12 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ...observed.least_squares import by_differences, gauss_newton
+from .case import AS_IF, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
-from .findings import AS_IF, HARMLESS, Explanation, Model
 from .gate import CLEAN, Evidence, loose, may_be_told, without_doubtful_steps
 from .programs import Program
 from .readings import Reader, Reading
-from .unexplained import Case, largest, rms
 
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished

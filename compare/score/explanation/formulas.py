@@ -19,13 +19,12 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import gauss_newton, solved
+from .case import Case, Explanation, Rows
 from .causes import NAMED, causes_of
 from .families import Fit, windows
-from .findings import Explanation
 from .fitted import sized
 from .programs import NAMES, Program
 from .readings import Reader, Reading
-from .unexplained import Case, Rows
 
 PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
 LEAST = 24  # rows, twice the numbers that are fitted

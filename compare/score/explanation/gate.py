@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ...candidates.candidate import Deviation
-from .findings import AS_IF
+from .case import AS_IF
 from .readings import SAME
 
 CHANCE = 0.02  # that a number which nobody typed has as few digits, within its uncertainty

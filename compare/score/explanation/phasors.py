@@ -225,8 +225,16 @@ class Method:
 
     def computed(self, phasors: Phasors, step: float) -> Phasors:
         """Return the phasors that the rows of a program with this method show; the same if it cannot be told."""
+
+        def shown(rate: complex) -> complex:
+            z = 1j * rate * step
+            return cmath.log(sum(c * z**n for n, c in enumerate(self.coefficients))) / (1j * step)
+
         try:
-            return self._polynomial(phasors, step) if self.coefficients else self._split(phasors, step)
+            if not self.coefficients:
+                return self._split(phasors, step)
+            first, second = phasors.rates
+            return Phasors((shown(first), shown(second)), phasors.amplitudes, phasors.centre)
         except (ValueError, ZeroDivisionError, OverflowError, np.linalg.LinAlgError):
             return phasors
 
@@ -245,15 +253,6 @@ class Method:
         if self.order == 3:
             return float(max(-12 * growth, 0.0) ** (1 / 3)) / omega
         return float(max(-60 * excess, 0.0) ** 0.25) / omega
-
-    def _polynomial(self, phasors: Phasors, step: float) -> Phasors:
-        def shown(rate: complex) -> complex:
-            z = 1j * rate * step
-            value = sum(c * z**n for n, c in enumerate(self.coefficients))
-            return cmath.log(value) / (1j * step)
-
-        first, second = phasors.rates
-        return Phasors((shown(first), shown(second)), phasors.amplitudes, phasors.centre)
 
     def _split(self, phasors: Phasors, step: float) -> Phasors:
         """Return the modes of one step of w'' = -d w' - q w about the centre, d and q complex."""

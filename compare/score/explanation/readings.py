@@ -19,10 +19,10 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import best_change, by_differences, gauss_newton
+from .case import Case
 from .causes import Cause
 from .families import Fit
 from .programs import Program
-from .unexplained import Case
 
 ENOUGH = 5000  # combinations that are tried
 BEAM = 20  # combinations that are kept of each size

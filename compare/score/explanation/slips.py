@@ -1,4 +1,4 @@
-"""A slip in a formula: the part of the force that is off, from the accelerations of the rows themselves.
+"""A slip in a program's force, told from its rows alone: a term that is off, or a bob that falls or swings ever wider.
 
 Near its lowest point the bob's acceleration is nearly linear in x, y and their velocities. What the rows have more than
 the model is fitted by such terms, and the largest are told beside what the model has in their place. Needs rows close
@@ -7,6 +7,7 @@ enough to be differentiated twice.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -18,6 +19,8 @@ from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import solved
+from .case import Rows
+from .programs import Program
 
 FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
 SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
@@ -32,19 +35,15 @@ ALIKE = 0.2  # by which two terms that are off alike may differ
 LOW = 0.3  # of the length: farther out, the force is not linear
 TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
 NUDGE = 1e-6
+PARTS, GROWN = 4, 2.0  # of the rows, and how many times as far as in the first a growing motion reaches in the last
+FREELY = 0.5, 2.5  # of g: what a fall's mean acceleration is between, from row 0 to every other
 
 
-def slip(times: Array, positions: Array, scene: Scene) -> str:
-    """Return which part of the force is off, as a sentence; empty if the rows do not tell.
-
-    Args:
-        times: of the rows in s, shape (rows,).
-        positions: x, y and perhaps z in m, shape (rows, 2 or 3).
-        scene: the scene.
-    """
+def slip(rows: Rows, scene: Scene) -> str:
+    """Return which part of the force is off, as a sentence; empty if the rows do not tell."""
     k = constants_in_double(scene.exact)
     rate = float(np.linalg.norm([float(part) for part in k.pull])) ** 0.5
-    motion = _differentiated(times, positions[:, :2], rate)
+    motion = _differentiated(rows.times, rows.plane, rate)
     if motion is None:
         return ""
     state, rates, error = motion
@@ -148,3 +147,27 @@ def _alike(off: list[tuple[str, str, float]]) -> bool:
 def _sentence(equation: str, term: str, value: float, right: float) -> str:
     name = "the constant term" if term == "1" else f"the term with {term}"
     return f"in the equation of {equation}, {name} is {value:.6g} {TERMS[term]} where the model has {right:.6g}"
+
+
+def falls(rows: Rows, right: Program) -> str:
+    """Return in a sentence which coordinate falls from row 0 on to far below the cord; empty if none does."""
+    time, gone = rows.times[1:] - rows.times[0], rows.plane[1:] - rows.plane[0]
+    for name, way in zip("xy", gone.T, strict=True):
+        pulls = np.abs(2 * way / time**2) / right.g
+        if pulls.min() > FREELY[0] and pulls.max() < FREELY[1] and abs(way[-1]) > GROWN * right.length:
+            fell = f"Its {name} falls by {abs(way[-1]):.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
+            return f"{fell}: {name} is its vertical, and its cord pulls too little."
+    return ""
+
+
+def growth(rows: Rows) -> str:
+    """Return in a sentence how fast a motion grows; empty if it does not, part by part of the rows."""
+    parts = np.array_split(np.arange(len(rows.times)), PARTS)
+    if len(rows.times) < 2 * PARTS:
+        return ""
+    reach = np.array([float(np.hypot(*rows.plane[part].T).max()) for part in parts])
+    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > GROWN * reach[0]:
+        return ""
+    between = float(rows.times[parts[-1]].mean() - rows.times[parts[0]].mean())
+    fold = between / math.log(reach[-1] / reach[0])
+    return f"Its motion grows by a factor of e in {fold:.2g} s: a force does work, or the cord does not hold."

@@ -23,14 +23,13 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ...observed.least_squares import best_change
+from .case import AS_IF, Case, Explanation, largest, rms
 from .causes import FITTED
 from .families import fit_pendulum
-from .findings import AS_IF, Explanation
 from .fitted import best_of, explanation_of
 from .phasors import METHODS
 from .programs import Pendulum, Program
 from .readings import Reading
-from .unexplained import Case, largest, rms
 
 TITLES = {method.id: method.title for method in METHODS}
 TITLES["heun"] = TITLES["rk2"]

@@ -10,8 +10,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from compare.candidates.layout import Naming
-from compare.candidates.names import LENGTHS, LONG_NAMES, TIMES, defaults, meaning, size_of
+from compare.candidates.names import LENGTHS, LONG_NAMES, TIMES, Naming, defaults, meaning, size_of
 from compare.candidates.read import read, read_stream
 from reference import InputError, load
 

@@ -14,8 +14,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from places import ROOT
 
-from compare.candidates.read import MAX_UNPACKED, read, read_stream, read_transits
-from compare.candidates.text import MAX_ROWS
+from compare.candidates.arrays import MAX_UNPACKED
+from compare.candidates.read import MAX_ROWS, read, read_stream, read_transits
 from reference import InputError
 
 ROWS = [
@@ -185,7 +185,7 @@ def test_a_last_line_without_its_end_is_noted():
 
 
 def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
-    monkeypatch.setattr("compare.candidates.spelling.CHUNK", 7)
+    monkeypatch.setattr("compare.candidates.text.CHUNK", 7)
     assert_read(read_stream(csv(), "run"))
 
 
@@ -411,7 +411,8 @@ def test_a_damaged_archive_is_read_or_explained(data):
 
 FLOOD = """
 import itertools, resource, sys
-from compare.candidates.read import MAX_UNPACKED, read_stream
+from compare.candidates.arrays import MAX_UNPACKED
+from compare.candidates.read import read_stream
 from reference import InputError
 
 class Flood:
@@ -456,7 +457,7 @@ def test_a_gigabyte_of_nothing_is_refused_in_bounded_memory(head, piece, said):
 
 
 def test_more_rows_than_are_judged_are_refused(monkeypatch):
-    monkeypatch.setattr("compare.candidates.text.MAX_ROWS", 2)
+    monkeypatch.setattr("compare.candidates.read.MAX_ROWS", 2)
     refused(csv(), "more than 2 rows")
     assert MAX_ROWS >= 1_000_000
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import reference
-from compare.candidates.candidate import candidate_of
+from compare.candidates.arrays import candidate_of
 from compare.observed.swing_plane import Gauge
 from compare.report.motion import Motion
 from compare.report.motion_pictures import length_unit, time_unit

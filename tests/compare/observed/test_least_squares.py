@@ -1,4 +1,4 @@
-"""Gauss-Newton: known numbers come back, and a search that leads nowhere keeps what it had."""
+"""Gauss-Newton: known numbers come back, and a search that leads nowhere keeps what it had. Power laws."""
 
 from __future__ import annotations
 
@@ -7,8 +7,18 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.stats import linregress
 
-from compare.observed.least_squares import Numbers, best_change, by_differences, gauss_newton, solved
+from compare.observed.least_squares import (
+    Numbers,
+    best_change,
+    by_differences,
+    gauss_newton,
+    power_law,
+    power_of_time,
+    solved,
+)
+from reference import InputError
 
 TIMES = np.linspace(0.0, 3.0, 40)
 
@@ -80,3 +90,40 @@ def test_numbers_that_are_not_finite_are_refused_and_lapack_prints_nothing(bad, 
             solved(matrix, right)
         place[0] = kept
     assert capfd.readouterr() == ("", "")
+
+
+def test_the_power_law_and_its_standard_error_are_those_of_scipy():
+    x = [10.0, 19.0, 31.0, 45.0, 74.0]
+    y = [0.9, 2.1, 6.3, 11.0, 37.0]
+    law, truth = power_law(x, y), linregress([math.log(v) for v in x], [math.log(v) for v in y])
+    assert law.exponent == pytest.approx(truth.slope, rel=1e-12)
+    assert law.standard_error == pytest.approx(truth.stderr, rel=1e-12)
+    assert law.factor == pytest.approx(math.exp(truth.intercept), rel=1e-12)
+    assert (law.points, law.low, law.high) == (5, pytest.approx(10), pytest.approx(74))
+
+
+@pytest.mark.parametrize("x", [[], [1.0, 2.0], [3.0, 3.0, 3.0], [-1.0, 0.0, 2.0]])
+def test_a_power_law_needs_three_points_at_different_places(x):
+    with pytest.raises(InputError):
+        power_law(x, [1.0] * len(x))
+
+
+@pytest.mark.parametrize("power", [0.0, 0.5, 1.0, 1.5, 2.0, 7.0])
+@pytest.mark.parametrize("times", [np.linspace(1, 1e4, 5000), np.geomspace(1e-3, 1e9, 300)])
+def test_a_power_comes_back_whatever_the_times(power, times):
+    assert power_of_time(times, 1e-12 * times**power, 24) == pytest.approx(power, abs=0.01)
+
+
+def test_an_error_that_swings_grows_as_its_envelope_does():
+    t = np.linspace(500, 50000, 400000)  # from sixty half swings on: the first ones have reached no envelope yet
+    assert power_of_time(t, 1e-15 * t**1.5 * np.abs(np.sin(0.38 * t)) + 1e-30, 30) == pytest.approx(1.5, abs=0.05)
+
+
+def test_late_times_count_no_more_than_early_ones():
+    t = np.arange(1.0, 10001.0)
+    kinked = np.where(t < 100, t, 100.0)  # half of the decades grow, a hundredth of the rows
+    assert power_of_time(t, kinked, 40) == pytest.approx(0.5, abs=0.15)
+
+
+def test_fewer_than_three_points_have_no_power():
+    assert power_of_time(np.array([1.0, 10.0]), np.array([1.0, 10.0]), 40) is None

@@ -17,8 +17,8 @@ from compare.observed.swing_plane import (
     frequency,
     precession_period,
     rest_in_metres,
-    swing_errors,
 )
+from compare.score.errors import swing_errors
 from reference import UnreachableError, load_scene, parse_scene, trajectory
 from reference.engines.trajectory import Variants
 
@@ -183,7 +183,7 @@ def test_thinning_a_part_changes_nothing(model, scene, monkeypatch):
     u = truth[:, :2] - REST
     error = 1e-3 * np.column_stack([-u[:, 1], u[:, 0]])
     whole = swing_errors(TIMES, truth, error, REST)
-    monkeypatch.setattr("compare.observed.swing_plane.MOST_ROWS", 15)
+    monkeypatch.setattr("compare.score.errors.MOST_ROWS", 15)
     assert np.allclose(swing_errors(TIMES, truth, error, REST).turn, whole.turn, rtol=1e-6)
 
 

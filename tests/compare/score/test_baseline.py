@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 
 from compare.candidates.candidate import Candidate
 from compare.score.judge import judge
-from compare.score.scored import Since
+from compare.score.since import Since
 
 COMPILER = shutil.which("cc")
 FINE = {"swing": 900.0}

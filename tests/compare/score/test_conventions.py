@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy.special import ellipj, ellipk
 
+from compare.score.explanation.case import Rows
 from compare.score.explanation.conventions import unit_of_time
-from compare.score.explanation.unexplained import Rows
 
 
 def test_no_wide_swing_counts_time_in_another_unit():

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from small_scenes import make_scene
 
-from compare.candidates.candidate import COLUMNS, Candidate, candidate_of
+from compare.candidates.arrays import candidate_of
+from compare.candidates.candidate import COLUMNS, Candidate
 from compare.score.errors import drifts, swing_rate, trajectory_errors
 from reference import load, load_scene, trajectory
 from reference.dataset.golden import dense
@@ -144,6 +145,17 @@ def test_long_doubles_are_judged_with_all_their_digits(golden, truth):
     arrays = {"t": TIMES, "x": wide[:, 0] + np.longdouble("1e-18"), "y": wide[:, 1]}
     made = trajectory_errors(candidate_of("wide", arrays), truth, golden)
     assert made.max_m == pytest.approx(1e-18, rel=0.1)
+
+
+def test_low_parts_count_where_doubles_agree(golden, truth):
+    plain, wave = replace(truth, low=np.zeros_like(truth.low)), 1e-25 * np.arange(1, len(TIMES) + 1)
+    columns = dict(zip("xyz", truth.states[:, :3].T.copy(), strict=True))
+    finer = Candidate.of("finer", TIMES, columns, low=dict.fromkeys("xyz", wave))
+    made = trajectory_errors(finer, plain, golden)
+    assert all(np.array_equal(made.components[name], wave) for name in "xyz")
+    assert made.position == pytest.approx(wave * np.sqrt(3), rel=1e-12)
+    off = trajectory_errors(replace(finer, columns={**columns, "x": columns["x"] + 1e-3}), plain, golden)
+    assert off.components["x"] == pytest.approx(1e-3, rel=1e-11)
 
 
 def test_a_time_that_is_no_double_is_taken_as_it_is(golden):

@@ -20,7 +20,7 @@ from ambiguous import GIVEN, MISTAKES, Ambiguous, ambiguous, drawn, words_said
 from places import MISTAKEN_C, ROOT
 
 from compare.candidates.external import placeholders
-from compare.candidates.layout import Naming
+from compare.candidates.names import Naming
 from compare.commands.experimenting import Runnable
 from compare.commands.judging import Judging
 from compare.score.experiments.findings import MOST_RUNS

@@ -25,11 +25,11 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
+from compare.score.document import diagnosis
+from compare.score.explanation.case import Explanation, Rows
 from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.families import fits_of
-from compare.score.explanation.findings import Explanation
 from compare.score.explanation.fitted import readers_of
-from compare.score.explanation.unexplained import Rows
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from foucault import commands
@@ -140,10 +140,11 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
 def test_an_input_is_found_whether_its_shift_is_small_or_large(name: str, value: str, decimals: int, rows: int) -> None:
     paris = load_scene("paris", [SPAN])
     made = synthetic(paris, name, value, decimals, rows)
-    assert made.explanation is not None and made.explanation.diagnosis is not None
-    assert made.explanation.diagnosis.id == name
+    assert made.explanation is not None
+    told = diagnosis(made.explanation)
+    assert told is not None and told["id"] == name
     true = sensitivity(paris, [0.0]).values[name]
-    assert made.explanation.diagnosis.shift == pytest.approx(float(Fraction(value) - true), rel=1e-3)
+    assert told["shift"] == pytest.approx(float(Fraction(value) - true), rel=1e-3)
 
 
 def test_a_simplification_is_a_grade_of_its_own(program: Path) -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from small_scenes import make_scene
 
-from compare.score import scored as module
-from compare.score.scored import _span, input_floor
+from compare.score import input_floor as module
+from compare.score.input_floor import _span, input_floor
 from reference import load, load_scene
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.read import read
-from compare.score.explanation.findings import Explanation, Model
+from compare.score.explanation.case import Explanation, Model
 from compare.score.judge import (
     _amplitude,
     _beyond_the_cord,
@@ -22,12 +22,10 @@ from compare.score.judge import (
     _flung_off,
     _reading,
     _rest,
-    _transits,
-    _truth,
+    in_doubt,
     judge,
-    unjudged_transits,
 )
-from compare.score.transit_matching import TransitErrors
+from compare.score.transit_matching import TransitErrors, _truth, judged_transits, unjudged_transits
 from reference import InputError, Solution, load, load_scene, solve, trajectory
 from reference.engines.heyoka.model import Numbers
 from reference.engines.trajectory import Variants
@@ -587,7 +585,7 @@ def test_transits_within_an_interval_that_the_truth_leaves_open_are_not_judged(g
     errors = judge(good, "paris", explain=False).errors
     possible = [SimpleNamespace(from_s="10", to_s="11")]
     unsure = replace(golden, manifest=golden.manifest.model_copy(update={"possible": possible}))
-    found = _transits(np.array([9.0, 10.0, 10.5, 11.0, 12.0]), unsure, errors, 1e-6)
+    found = judged_transits(np.array([9.0, 10.0, 10.5, 11.0, 12.0]), unsure, errors, 1e-6)
     assert np.sort([*found.at + found.errors_s, *found.extra]).tolist() == [9.0, 12.0]
 
 
@@ -624,9 +622,9 @@ def test_a_named_model_passes_where_that_is_asked_for(tmp_path, golden, states, 
 
 
 def test_the_truth_at_a_transit_is_that_of_the_function_where_there_is_one(monkeypatch, golden):
-    monkeypatch.setattr("compare.score.judge.truth_at", lambda *_: "solved")
+    monkeypatch.setattr("compare.score.transit_matching.truth_at", lambda *_: "solved")
     for at, expected in (("function", "function"), (None, "solved")):
-        monkeypatch.setattr("compare.score.judge.by_function", lambda *_, at=at: at)
+        monkeypatch.setattr("compare.score.transit_matching.by_function", lambda *_, at=at: at)
         assert _truth(golden, np.ones(1)) == expected
     assert _truth(replace(golden, function=None), np.ones(1)) == "solved"
 
@@ -640,9 +638,9 @@ def test_a_verdict_is_in_doubt_up_to_three_bounds_from_the_tolerance(good):
     score = judge(good, "paris", explain=False)
     errors = replace(score.errors, position=np.array([1.0]), bound_m=0.25)
     for tolerance, doubt in ((0.25, True), (0.24, False), (1.75, True), (1.76, False)):
-        assert replace(score, errors=errors, tolerance_m=tolerance).in_doubt is doubt
+        assert in_doubt(replace(score, errors=errors, tolerance_m=tolerance)) is doubt
     late = SimpleNamespace(max_conditioned_m=3.0)
-    assert replace(score, errors=errors, tolerance_m=2.5, transits=late).in_doubt
+    assert in_doubt(replace(score, errors=errors, tolerance_m=2.5, transits=late))
 
 
 @pytest.mark.parametrize(("part", "amplitude"), [(0.0, 7.0), (0.05, 0.35), (0.1, 7.0), (1.0, 7.0)])
@@ -720,7 +718,7 @@ def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_i
         assert (known == rough) is enough
     closer = judge(rows, path, tolerance=score.errors.max_m, explain=False)
     assert closer.errors.bound_m < score.errors.bound_m / 3
-    assert not closer.in_doubt
+    assert not in_doubt(closer)
 
 
 def test_a_baseline_is_explained_only_where_a_model_may_pass(monkeypatch, good):

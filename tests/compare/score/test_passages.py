@@ -35,10 +35,10 @@ def test_what_is_missed_extra_or_another_section_is_told():
     scene, here = swung("planar")
     times = here.sections["gate 30"].table["t"]
     lost = score_passages("lost", np.delete(times, 1), scene, "gate 30")
-    assert not lost.agrees and lost.errors.missed == [pytest.approx(times[1], abs=1e-12)]
+    assert lost.verdict == "disagrees" and lost.errors.missed == [pytest.approx(times[1], abs=1e-12)]
     more = score_passages("more", np.sort([*times, times[0] + 1]), scene, "gate 30")
-    assert not more.agrees and more.errors.extra == [times[0] + 1]
+    assert more.verdict == "disagrees" and more.errors.extra == [times[0] + 1]
     other = score_passages("other", here.sections["lowest"].table["t"], scene, "highest")
-    assert not other.agrees and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
+    assert other.verdict == "disagrees" and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
     with pytest.raises(InputError, match="no time in the scene's span"):
         score_passages("none", np.array([31.0]), scene, "gate 30")

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 from compare.candidates.candidate import Deviation
-from compare.score.explanation.findings import Explanation, Model
-from compare.score.scored import Since, Worst
+from compare.score.document import document
+from compare.score.errors import Worst
+from compare.score.explanation.case import Explanation, Model
+from compare.score.since import Since
 from compare.score.transit_matching import TransitErrors
-from compare.score.verdict import document, lines, percent
+from compare.score.verdict import lines, percent
 
 WIND = Explanation(causes=(Deviation("wind", "leaves out the wind", 0.25, "input"),), corrected_m=1e-9)
 RUN = Made(id="paris", run=Made(t_end="86400"), inputs="binary64")

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from compare.score.explanation.case import Explanation, Rows, largest
 from compare.score.explanation.explain import KnownScene, explain
-from compare.score.explanation.findings import Explanation
-from compare.score.explanation.unexplained import Rows, largest
 from compare.score.judge import judge
 from reference import load_scene
 

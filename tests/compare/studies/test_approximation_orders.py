@@ -7,7 +7,7 @@ import pytest
 
 from compare.approximations import APPROXIMATIONS, Motion
 from compare.approximations.case import Case
-from compare.observed.position_error import difference, distance, power_law
+from compare.observed.least_squares import power_law
 from compare.studies.approximation_limits import varied
 from reference import parse_scene, trajectory
 
@@ -24,7 +24,7 @@ def error(word, scene):
     approximation = APPROXIMATIONS[word]
     if isinstance(approximation, Motion):
         approximate, true = (rows.T[:3] for rows in (approximation.trajectory(scene, TIMES), trajectory(scene, TIMES)))
-        return float(distance(map(difference, approximate, true)).max())
+        return float(np.linalg.norm(approximate - true, axis=0).max())
     truth = approximation.truth(scene)
     gap = approximation.value(scene) - truth
     return float(abs(gap / truth if approximation.relative else gap))

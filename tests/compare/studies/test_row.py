@@ -1,18 +1,21 @@
-"""The status of a row: one enumeration for all of compare; of a run that raised, who stopped it decides."""
+"""The status of a row, one enumeration for all of compare; of a run that raised, who stopped it; exact differences."""
 
 from __future__ import annotations
 
 import ast
 import json
+from fractions import Fraction
 
+import numpy as np
 import pytest
 from places import ROOT
 
 from compare.report.stability_charts import LETTERS
-from compare.studies.row import FAILURES, Row, failure
+from compare.studies.row import FAILURES, Row, difference, failure
 from reference import InputError, IntegrationError, UnreachableError
 from reference.status import Status
 
+THIRD = Fraction(1, 3)
 FILES = sorted((ROOT / "compare").rglob("*.py"))
 
 
@@ -53,3 +56,21 @@ def test_what_can_go_wrong_says_what_to_do_and_has_a_letter_of_its_own() -> None
 def test_an_integrator_gives_up_and_a_method_refuses(error, status, reason):
     assert isinstance(error, FAILURES)
     assert failure(error) == (status, reason)
+
+
+def test_exact_numbers_keep_a_difference_of_any_size() -> None:
+    tiny = Fraction(1, 10**60)
+    assert difference([THIRD + tiny, THIRD], [THIRD, THIRD + 2 * tiny]) == pytest.approx([1e-60, -2e-60], rel=1e-15)
+
+
+def test_a_double_is_taken_as_it_stands_beside_an_exact_number() -> None:
+    doubles = np.array([float(THIRD)])
+    off = float(Fraction(float(THIRD)) - THIRD)  # 1.9e-17, which a subtraction of doubles would lose
+    assert off != 0
+    assert difference(doubles, [THIRD]) == [off]
+    assert difference([THIRD], doubles) == [-off]
+
+
+def test_columns_of_unlike_length_are_no_trajectories_at_the_same_times() -> None:
+    with pytest.raises(ValueError, match="zip"):
+        difference([THIRD], [THIRD, THIRD])

@@ -1,8 +1,9 @@
-"""A file that is to be explained: its rows as the stages change them, the truth, and what a right program has."""
+"""A file that is to be explained, and what explains it: rows and truth, causes, and the lines that say so."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,13 +11,15 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
-from .findings import Explanation, Model
 from .phasors import sinc
 from .programs import NAMES, Pendulum, Program
 
-NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention has to explain
+HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
+UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
+AS_IF = "as_if"  # stage of a number that no person typed: the motion is like that, the cause is not known
+BEGIN = "It seems that your program"
 
 
 @dataclass(frozen=True)
@@ -49,12 +52,6 @@ class Rows:
         return replace(self, conventions=(*self.conventions, convention), **fields)  # type: ignore[arg-type]
 
 
-def is_release(row: Array, release: Array, noise: float) -> bool:
-    """Return whether a row is the release but for its rounding."""
-    size = max(float(np.hypot(release[0], release[1])), 1e-6 * float(np.abs(release).max()))
-    return bool(np.abs(row[:2] - release[:2]).max() <= NEAR * size + 2 * noise)
-
-
 def largest(difference: Array) -> float:
     """Return the largest distance in m that differences of rows make."""
     return float(np.linalg.norm(difference, axis=1).max())
@@ -63,6 +60,78 @@ def largest(difference: Array) -> float:
 def rms(difference: Array) -> float:
     """Return the root mean square distance in m that they make."""
     return float(np.linalg.norm(difference)) / math.sqrt(len(difference))
+
+
+@dataclass(frozen=True)
+class Model:
+    """A named simplification that the file is exact within.
+
+    Attributes:
+        id: a stable word.
+        text: its name.
+        exact_to_m: the largest distance in m between the file and it.
+        costs_m: the largest distance in m between it and the full Lagrangian.
+    """
+
+    id: str
+    text: str
+    exact_to_m: float
+    costs_m: float
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Reasons for an error, and how much of it they explain.
+
+    Attributes:
+        conventions: of the rows.
+        causes: in the order gravity, model, inputs, release, frame, clock, integrator.
+        model: the simplification that the file is exact within, if it is.
+        corrected_m: the largest error in m that is left after all of these.
+        slip: where none is known, which part of the force is off: a sentence.
+        explained: share of the root mean square error that is gone with them.
+        score: decades, as in `readings`: of two explanations the lower one is the better.
+        allowed_m: distance in m that counts as agreement.
+    """
+
+    conventions: tuple[Deviation, ...] = ()
+    causes: tuple[Deviation, ...] = ()
+    model: Model | None = None
+    corrected_m: float = math.nan
+    slip: str = ""
+    explained: float = 0.0
+    score: float = 0.0
+    allowed_m: float = math.inf
+
+    @property
+    def known(self) -> list[Deviation]:
+        """The causes but those that the motion is merely like."""
+        return [cause for cause in self.causes if cause.stage != AS_IF]
+
+    def lines(self) -> Iterator[str]:
+        """Yield what is known, line by line, for people."""
+        for convention in self.conventions:
+            yield f"Your file {convention.text}."
+        begin = f"{BEGIN} "
+        if self.model is not None:
+            begin = "- "
+            yield (
+                f"As that model it is exact to {self.model.exact_to_m:.2g} m; "
+                f"against the full Lagrangian it is {self.model.costs_m:.3g} m off:"
+            )
+        elif len(self.causes) > 1:
+            begin = "- "
+            yield f"{BEGIN} (largest effect first)"
+        for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
+            yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
+        if self.slip:
+            yield self.slip
+        if self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions):
+            these = "this" if len(self.causes) == 1 else "all this"
+            left, many = f"With {these} put right, {self.corrected_m:.2g} m are left", self.corrected_m / self.allowed_m
+            yield f"{left}, {many:.2g} tolerances: no known mistake explains them." if many > 1 else f"{left}."
+        elif not self.slip:
+            yield "No mistake known to foucault explains the error."
 
 
 @dataclass(frozen=True)

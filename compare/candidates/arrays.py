@@ -1,0 +1,172 @@
+"""Read a candidate from arrays: NumPy's files, of arrays by name or one table of rows, or columns in memory."""
+
+from __future__ import annotations
+
+import tempfile
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from reference import InputError
+from reference.numbers.precision import Array
+
+from .candidate import ADVICE, COLUMNS, Candidate, checked_transits
+from .names import NEEDED, Layout, Naming, by_number, layout, meaning
+from .text import CHUNK, MAX_BYTES
+
+MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
+MOST_ARRAYS = 1000
+TRANSITS = "transits"
+TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
+_EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
+
+
+def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None = None) -> Candidate:
+    """Make a candidate of named arrays of real numbers, t among them; long doubles keep their digits in `low`.
+
+    Raises:
+        InputError: as in `Candidate.of`.
+    """
+    near = {key: np.asarray(array, dtype=np.float64) for key, array in arrays.items()}
+    low = {}
+    for key, array in arrays.items():
+        if array.dtype.itemsize > 8 and np.isfinite(near[key]).all():
+            remainder = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
+            if remainder.any():
+                low[key] = remainder
+    columns = {key: near[key] for key in COLUMNS if key in near}
+    return Candidate.of(name, near["t"], columns, low=low, transits=transits)
+
+
+def candidate_from(columns: Any) -> Candidate:
+    """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
+
+    Raises:
+        InputError: it has no names, or as in `Candidate.of`.
+    """
+    names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
+    if "t" not in names:
+        got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
+        raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
+    arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
+    return candidate_of("candidate", arrays)
+
+
+def real_array(values: Any, name: str) -> Array:
+    """Return values as an array of real numbers.
+
+    Raises:
+        InputError: they are rows of different lengths, or no real numbers.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(name, "rows of different lengths", "an array of real numbers") from None
+    if array.size and array.dtype.kind not in "fiu":
+        raise InputError(name, f"dtype {array.dtype}", "real numbers")
+    return array
+
+
+def read_archive(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
+    """Read a candidate from the bytes of an .npz archive, of which `head` has been read already.
+
+    Raises:
+        InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
+    """
+    with tempfile.TemporaryFile() as spool:
+        _bounded(stream, head, spool, name)
+        arrays = _arrays(spool, name)
+    if not arrays:
+        raise InputError(name, "none of them", _EXPECTED)
+    if [*arrays] == [TABLE]:
+        return _of_table(arrays[TABLE], name, naming)
+    if naming.columns:
+        raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
+    times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
+    transits = None if times is None else checked_transits(np.asarray(_real(times, field), dtype=np.float64), field)
+    made = layout([*arrays], NEEDED, naming.units, name)
+    return _candidate(name, [*arrays.values()], made, transits)
+
+
+def read_array(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
+    """Read a candidate from the bytes of an .npy file: a table of rows, or an array of records with names.
+
+    Raises:
+        InputError: the file is too large or damaged, or its columns are not known.
+    """
+    with tempfile.TemporaryFile() as spool:
+        _bounded(stream, head, spool, name, MAX_UNPACKED)
+        try:
+            array = np.load(spool, allow_pickle=False)
+        except Exception as error:  # numpy raises several kinds of errors for a damaged file
+            raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
+    if array.dtype.names and array.ndim == 1 and not naming.columns:
+        words = array.dtype.names
+        return _candidate(name, [array[word] for word in words], layout(words, NEEDED, naming.units, name))
+    return _of_table(array, name, naming)
+
+
+def _of_table(array: object, name: str, naming: Naming) -> Candidate:
+    """Make a candidate of a table, shape (rows, columns); the user names its columns, or their number does."""
+    table, made = _real(array, name), None
+    count = table.shape[1] if table.ndim == 2 else 0
+    if not naming.columns:
+        made = by_number(count, NEEDED, naming.units, "--columns")
+    elif len(naming.columns) == count:
+        made = layout(naming.columns, NEEDED, naming.units, "--columns")
+    if made is None:
+        expected = f"{len(naming.columns)} columns" if naming.columns else "3, 4 or 7 columns, t, x, y first"
+        advice = "One row for each time; --columns names the columns."
+        raise InputError(name, f"shape {table.shape}", f"a table of {expected}", advice)
+    return _candidate(name, [*table.T], made)
+
+
+def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Array | None = None) -> Candidate:
+    """Make a candidate of arrays of which each column is the one at its place, in SI units."""
+    columns = {column: _real(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
+    candidate = candidate_of(name, columns, transits)
+    scaled, low = made.converted({"t": candidate.t, **candidate.columns}, candidate.low)
+    return replace(candidate, t=scaled.pop("t"), columns=scaled, low=low, conventions=made.conventions)
+
+
+def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str, most: int = MAX_BYTES) -> None:
+    """Copy the stream to a file, up to a limit: a zip archive is read from its end."""
+    total, data = 0, head
+    while data:
+        total += len(data)
+        if total > most:
+            raise InputError(name, f"more than {most} bytes", f"at most {most} bytes", "Thin the output out.")
+        spool.write(data)
+        data = stream.read(CHUNK)
+    spool.seek(0)
+
+
+def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
+    """Return the arrays whose names mean something, or the only one if it has no name."""
+    try:
+        with zipfile.ZipFile(data) as archive:
+            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
+        if any(word.startswith("xl/") for word in members):
+            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
+        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
+        chosen = chosen or [word for word in members if word == TABLE]
+        size = sum(members[word].file_size for word in chosen)
+        if size <= MAX_UNPACKED:
+            data.seek(0)
+            with np.load(data, allow_pickle=False) as arrays:
+                return {word: arrays[word] for word in chosen}
+    except InputError:
+        raise
+    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
+        raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
+    raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
+
+
+def _real(array: object, name: str) -> Array:
+    if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu":
+        kind = f"dtype {array.dtype}" if isinstance(array, np.ndarray) else "no NumPy array"
+        raise InputError(name, kind, "an array of real numbers")
+    return array

@@ -1,0 +1,111 @@
+"""A judgement as the JSON document of `foucault score --json`; its keys are part of the command line's contract."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..candidates.candidate import Deviation
+from .explanation.case import BEGIN, Explanation
+from .verdict import REFUSED, Outcome, Score
+
+
+def of_outcome(outcome: Outcome) -> dict[str, Any]:
+    """Return an outcome as a JSON document, or as a row of one of several."""
+    if outcome.score is not None:
+        return document(outcome.score)
+    return {"scene": outcome.scene, "candidate": outcome.name, "verdict": REFUSED, "error": str(outcome.error)}
+
+
+def document(score: Score) -> dict[str, Any]:
+    """Return a score as a JSON document."""
+    errors, transits = score.errors, score.transits
+    turn = score.swing.largest_turn
+    fields: dict[str, Any] = {
+        "scene": score.scene.id,
+        "candidate": score.candidate.name,
+        "verdict": score.verdict,
+        "inputs": score.scene.inputs,
+        "why_inputs": score.why_inputs,
+        "rows": len(errors.t),
+        "covered": score.covered,
+        "covered_s": [float(errors.t[0]), float(errors.t[-1])],
+        "max_error_m": errors.max_m,
+        "rms_error_m": errors.rms_m,
+        "end_error_m": errors.end_m,
+        "at_or_below_bound": score.at_bound,
+        "digits": errors.digits,
+        "scd": errors.scd,
+        "mescd": errors.mescd,
+        "scale_m": errors.amplitude_m,
+        "tolerance_m": score.tolerance_m,
+        "input_floor_m": score.input_floor_m,
+        "error_over_floor": errors.max_m / score.input_floor_m if score.input_floor_m else None,
+        "growth_exponent": errors.growth_exponent,
+        "swing_plane_error_deg": None if turn is None else math.degrees(turn),
+        "phase_error_s": score.swing.largest_delay,
+        "h_drift_m2_s2": score.drifts.get("h_m2_s2"),
+        "length_drift_m": score.drifts.get("length_m"),
+        "worst": score.worst._asdict(),
+        "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
+        "transits": None if transits is None else transits.document(score.allowed_m),
+        "reference": {"level": score.golden.level, "bound_m": errors.bound_m},
+        "grade": score.grade,
+        "conventions": [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions],
+        "model": None,
+        "causes": [],
+        "corrected": None,
+        "slip": None,
+        "diagnosis": None,
+        "baseline": None if score.since is None else vars(score.since) | {"text": score.since.text},
+        "problem": score.problem,
+        "notes": list(score.notes),
+    }
+    if score.timing is not None:
+        fields["timing"] = vars(score.timing)
+    if score.experiments is not None:
+        fields["experiments"] = score.experiments.document()
+    if score.explanation is not None:
+        fields |= explained(score.explanation, fields["conventions"])
+    return fields
+
+
+def explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
+    corrected = explanation.corrected_m
+    return {
+        "conventions": [*readings, *(_said("your file", convention) for convention in explanation.conventions)],
+        "model": None if explanation.model is None else vars(explanation.model),
+        "causes": [_said("your program", cause) | _fitted(cause) for cause in explanation.causes],
+        "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
+        "slip": explanation.slip or None,
+        "diagnosis": diagnosis(explanation),
+    }
+
+
+def diagnosis(explanation: Explanation) -> dict[str, Any] | None:
+    """Return the cause that matters most, a simpler model before all, and what all causes say; None if none is known.
+
+    Beside its id stand the share of the root mean square error that is gone with all causes, how far a fitted input is
+    off in its unit, and the ids of the other causes.
+    """
+    known = sorted(explanation.known, key=lambda cause: -cause.size_m)
+    if not known:
+        return None
+    first = next((cause for cause in known if cause.stage == "model"), known[0])
+    return {
+        "id": first.id,
+        "explained": explanation.explained,
+        "text": f"{BEGIN} {'; it '.join(cause.text for cause in known)}.",
+        "shift": first.shift,
+        "also": tuple(cause.id for cause in known if cause is not first),
+    }
+
+
+def _said(subject: str, deviation: Deviation) -> dict[str, Any]:
+    return {"id": deviation.id, "text": f"{subject} {deviation.text}", "size_m": deviation.size_m}
+
+
+def _fitted(cause: Deviation) -> dict[str, float | None]:
+    numbers = {"value": cause.value, "shift": cause.shift, "uncertainty": cause.uncertainty}
+    return {name: number for name, number in numbers.items() if math.isfinite(number or 0.0)}

@@ -1,0 +1,73 @@
+"""The input floor: how far rounding the inputs of a scene to binary64 moves the bob, whatever a candidate does."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from fractions import Fraction
+
+import numpy as np
+
+from reference import Scene
+from reference.numbers.precision import Array
+from reference.system.cache import arrays
+
+from ..truth import by_function, shipping, with_function
+
+TIMES = 577  # in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
+_FORMAT = "floor 3"  # changes with the content of the cached entries, so that older ones are computed again
+STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
+
+
+def input_floor(scene: Scene, until: float) -> float:
+    """Return how far, in m, rounding the decimal inputs to binary64 moves the bob up to a time in s.
+
+    It depends on the scene alone and is the same for every candidate. Where both motions ship it is their distance;
+    else one cached run serves all ends within a factor of two.
+    """
+    ships = floor_of_what_ships(scene, until)
+    if ships is not None:
+        return ships
+    from reference.solver.sensitivity import sensitivity
+
+    decimal = scene.with_values(["inputs=decimal"])
+    document = decimal.model_dump(mode="json")
+    parts = [document[key] for key in ("pendulum", "site", "release")]
+    times = np.linspace(0.0, _span(float(scene.exact.t_end), until), TIMES) if until > 0 else np.zeros(1)
+    recipe = json.dumps([_FORMAT, parts, float(times[-1])], sort_keys=True).encode()
+
+    def make() -> dict[str, Array]:
+        moved = sensitivity(decimal, times).rounding()[:, :3]
+        return {"largest": np.maximum.accumulate(np.sqrt((moved**2).sum(axis=1)))}
+
+    largest = arrays("floor", f"{hashlib.sha256(recipe).hexdigest()[:32]}.npz", make)["largest"]
+    return float(largest[np.searchsorted(times, until)])
+
+
+def floor_of_what_ships(scene: Scene, until: float) -> float | None:
+    """Return how far, in m, rounding the inputs to binary64 moves the bob up to a row of the grid that is not before.
+
+    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the latter's x and
+    y; z follows from the sphere. None where they do not ship.
+    """
+    one, other = (scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64"))
+    golden, rounded = shipping(one), with_function(other)
+    if golden is None or rounded is None:
+        return None
+    rows = slice(0, int(np.searchsorted(golden.t, until)) + 1)
+    later = np.array([float(t - Fraction(float(t))) for t in golden.times[rows]])
+    truth = by_function(rounded, golden.t[rows])
+    assert truth is not None
+    x, y, z = truth.states.T[:3] + later * truth.states.T[3:]
+    dx, dy, length = golden.x[rows] - x, golden.y[rows] - y, float(one.exact.length)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        dz = (length * float(one.exact.length - other.exact.length) - x * dx - y * dy) / z
+    dz = np.where(np.abs(z) > STEEP * length, dz, golden.z[rows] - z)
+    return float(np.sqrt(dx**2 + dy**2 + dz**2).max())
+
+
+def _span(t_end: float, until: float) -> float:
+    """Return the scene's span, halved as long as it reaches `until`; `until` itself if that is beyond the span."""
+    while t_end / 2 >= until:
+        t_end /= 2
+    return max(t_end, until)
