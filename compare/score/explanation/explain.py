@@ -18,6 +18,7 @@ from .causes import NAMED
 from .conventions import ROUGHLY, axes, clock, digits, heights, other_ways, rounded_clock, shifted, unit_of_time
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
+from .gate import SHARE
 from .programs import Pendulum, Program
 from .slips import falls, growth, slip
 from .stepped import of_steps
@@ -26,7 +27,7 @@ RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
-SHARE = 0.01  # of the error that an approximation may leave
+CLOSELY = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
 
 
@@ -74,20 +75,21 @@ class KnownScene:
         """The frequency of its swing in rad/s."""
         return math.sqrt(abs(self.right.theta()[5]))
 
-    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True) -> Rows:
+    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True) -> Rows:
         """Return the rows of a file in the scene's conventions.
 
         Args:
             times: as in the file.
             columns: x, y and perhaps z as in the file.
             rename: whether the horizontal axes may have each other's names, or point the other way.
+            late: whether the clock may be off.
         """
         start, length, frequency = self.start, self.right.length, self.frequency
         positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
         rows = heights(digits(Rows(times, positions, 0.0)), length)
         rows = clock(axes(rows, start, length, rename), start)
         rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
-        return rows if rows.starts else shifted(rows, start, frequency, length)
+        return rows if rows.starts or not late else shifted(rows, start, frequency, length)
 
     def case(self, rows: Rows, allowed_m: float) -> Case:
         """Return what is to be explained of rows, of which some are taken."""
@@ -111,6 +113,10 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         told = first_good_explanation(problem.case(other, allowed_m), scene)
         if told.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in told.causes):
             best, rows = min((best, rows), (told, other), key=lambda pair: pair[0].score)
+    clock = [part.size_m for part in best.conventions if part.id in ("rows_early", "rows_late")]
+    if clock and not best.known and clock[0] < SHARE * best.corrected_m:  # what is left may look like it
+        rows = problem.rows(times, columns, late=False)
+        best = first_good_explanation(problem.case(rows, allowed_m), scene)
     unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
         allowed_m, 1.5 * rows.noise
     )
@@ -154,7 +160,7 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
         return None
     best: tuple[Deviation, Model, Array] | None = None
-    least = max(SHARE * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5)
+    least = max(CLOSELY * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5)
     for word, motion in APPROXIMATIONS.items():
         if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
             continue

@@ -22,6 +22,8 @@ from .readings import Reader, Reading
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
 POLISHED = 3  # steps by which fitted numbers are moved
+TIE = 0.2  # decades: readings that may as well be true, and are told apart by what they leave below the tolerance
+EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
 BETTER = 0.9  # of what was left, for a step that is taken
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
 NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
@@ -60,6 +62,10 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading 
         return [cause for cause in causes_of(case, kind) if integrators or cause.stage != "integrator"]
 
     run = ranked(case, readers_of(case, fits), causes)
+    finest = max(case.rows.noise, 1.2 * least)
+    if sure and run and _is_tied(run):
+        exact = ranked(case, readers_of(case, fits, finest), causes)
+        run = next((one for one in (exact, run) if one[0].rest <= EXACT * finest), [])
     best = polished(case, run[0]) if run else None
     if best is None or not sure:
         return best
@@ -67,10 +73,24 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading 
     return best if best.rest <= max(share * case.error, noise) else None
 
 
-def readers_of(case: Case, fits: Sequence[Fit]) -> list[Reader]:
-    """Return what reads a case, for each family that fits it about as well as the best."""
+def _is_tied(run: Sequence[Reading]) -> bool:
+    """Return whether a reading that has nothing in common with the best one is about as likely."""
+    best, *others = (
+        (reading.score + EXTRA[reading.reader.right.kind], {cause.group for cause in reading.causes}) for reading in run
+    )
+    return any(score < best[0] + TIE and causes.isdisjoint(best[1]) for score, causes in others)
+
+
+def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> list[Reader]:
+    """Return what reads a case, for each family that fits it about as well as the best.
+
+    Args:
+        case: the file.
+        fits: of the families.
+        floor: as in `Reader`; None for the tolerance's, or that of the fits.
+    """
     least = min((fit.rest for fit in fits), default=math.inf)
-    floor = max(case.floor, 1.2 * least)
+    floor = floor or max(case.floor, 1.2 * least)
     near = [fit for fit in fits if not fit.rest > 3 * max(least, floor / 1.2)]
     return [Reader(replace(case.right, kind=fit.kind), fit, floor, least) for fit in near]
 
