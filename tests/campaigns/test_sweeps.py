@@ -20,7 +20,10 @@ from random_rows import KINDS, random_kinds
 from reference.engines.registry import batches
 
 WORDS = ["sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
-SMALL_PARTS = "import reference.sweeps.request as request; request.PART_S = 0.0; from foucault import main; main()"
+SMALL_PARTS = """import reference.sweeps.request as request
+from foucault import main
+request.PART_S, request.LEAST_PART = 0.0, 4
+main()"""
 
 
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])
@@ -70,7 +73,7 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally
 # rows side by side, in threads; rows that the solver solves, in processes
 WAYS = {
     "threads": ["--over", "site.latitude=-90:90:1", "--engine", "heyoka"],
-    "processes": ["--over", "site.latitude=-80:80:4", "--digits", "16", "--want", "transits", "--workers", "2"],
+    "processes": ["--over", "site.latitude=-80:80:8", "--digits", "16", "--want", "transits", "--workers", "2"],
 }
 MANY_DIGITS = {"many digits": ["--over", "site.latitude=-80:80:4", "--digits", "32", "--workers", "2"]}
 

@@ -288,6 +288,8 @@ def at_any_time(request, tmp_path_factory):
     """A scene and a dataset of it that has a golden function: z from the sphere, and z as a series."""
     pytest.importorskip("flint")
     scene = reference.load_scene(request.param, ["inputs=binary64", "run.t_end=600"])
+    if scene.id == "hard":  # which ships as it is wanted; of paris a day does
+        return scene, reference.load("hard.binary64")
     short = scene.with_values(["run.digits=12"])
     solution = reference.solve(short, level="enclosed", engine="limbs", function=True)
     return scene, reference.load(reference.write(solution, tmp_path_factory.mktemp("function") / scene.id))
