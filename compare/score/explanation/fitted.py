@@ -23,6 +23,7 @@ TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
 POLISHED = 3  # steps by which fitted numbers are moved
 TIE = 0.2  # decades: readings that may as well be true, and are told apart by what they leave below the tolerance
+FINEST = 1e-3  # of the tolerance: below it a program's own rounding begins
 EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
 BETTER = 0.9  # of what was left, for a step that is taken
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
@@ -62,14 +63,15 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading 
         return [cause for cause in causes_of(case, kind) if integrators or cause.stage != "integrator"]
 
     run = ranked(case, readers_of(case, fits), causes)
-    finest = max(case.rows.noise, 1.2 * least)
+    finest = max(case.rows.noise, 1.2 * least, FINEST * case.floor)
     if sure and run and _is_tied(run):
         exact = ranked(case, readers_of(case, fits, finest), causes)
         run = next((one for one in (exact, run) if one[0].rest <= EXACT * finest), [])
     best = polished(case, run[0]) if run else None
     if best is None or not sure:
         return best
-    share = FITTED_SHARE if any(cause.free for cause in best.causes) else NAMED_SHARE
+    one_of_many = any(cause.free or cause.group == "g" for cause in best.causes)  # 9.81, 9.80665 and so on
+    share = FITTED_SHARE if one_of_many else NAMED_SHARE
     return best if best.rest <= max(share * case.error, noise) else None
 
 
@@ -78,7 +80,7 @@ def _is_tied(run: Sequence[Reading]) -> bool:
     best, *others = (
         (reading.score + EXTRA[reading.reader.right.kind], {cause.group for cause in reading.causes}) for reading in run
     )
-    return any(score < best[0] + TIE and causes.isdisjoint(best[1]) for score, causes in others)
+    return any(score < best[0] + TIE and causes and causes.isdisjoint(best[1]) for score, causes in others)
 
 
 def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> list[Reader]:

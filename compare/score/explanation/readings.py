@@ -117,6 +117,10 @@ class Reader:
             if not cause.free or cause.stage == "integrator":
                 continue
             value = reading.value(cause)
+            if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
+                sign = next(other for other in causes if other.id == "coriolis_sign")
+                together = tuple(sign if part is cause else part for part in reading.causes)
+                return self._judged(together, sign.change(reading.program.with_input("rate", self.right.rate)))
             for other in causes:
                 if other.free or other.group != cause.group:
                     continue

@@ -204,6 +204,8 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (4713, 124, {"integrator_semi_implicit_euler_drift"}),  # on a swing of 69 degrees
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
         (17, 169, {"integrator_leapfrog"}),  # in single precision
+        (90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}),  # its clock seemed to be off
+        (70007, 146, {"coriolis_sign", "radians"}),  # whose rate is that of the Earth, but for its sign
         (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
         (61126, 153, {"pendulum.length", "solar_day"}),
     ],
@@ -218,6 +220,19 @@ def test_beside_a_step_error_without_a_name_no_model_is_told(mistaken: Path) -> 
     found = told(made, *made.rows(mistaken))
     assert "integrator_loose" in words_of(found)
     assert not made.wrong(found)
+
+
+@pytest.mark.parametrize(
+    ("seed", "number"),
+    [
+        (90001, 198),  # three readings within the tolerance, each of them contradicted below it
+        (70007, 70),  # a g and a step's error that look like another g
+        (70007, 154),  # a clock and drag, which a step and three numbers that nobody types make as well
+    ],
+)
+def test_what_was_once_told_wrongly(mistaken: Path, seed: int, number: int) -> None:
+    made = case(number, seed)
+    assert not made.wrong(told(made, *made.rows(mistaken)))
 
 
 @pytest.mark.parametrize(
