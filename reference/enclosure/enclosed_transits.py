@@ -39,7 +39,7 @@ class Slope:
 
     def push(self, s: arb) -> int:
         """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
-        k, bend = self.piece.k, [f.derivative()(s) / self.unit + self.forms[1][1] for f in self.piece.v]
+        k, bend = self.piece.k, [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
         return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
 
     def row(self, s: arb) -> Vector:

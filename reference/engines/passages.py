@@ -45,32 +45,29 @@ class SectionSearch:
         self.whole = [[int(to_fraction(x) * (1 << self.bits)) for x in v] for v in (form.a, form.b, [form.d])]
         self.left, self.found = 0, list[tuple[list[int], int, list[int]]]()
 
-    def take(self, steps: list[TaylorStep], rows: list[list[list[int]]]) -> None:
-        """Find the passages in steps that follow each other; `rows` of each are its polynomials x, y, z over l."""
-        for step, row, sign in zip(steps, rows, self._sides(steps, rows), strict=True):
-            if not self.left or sign != self.left:
-                self._search(step, row)
+    def take(self, steps: list[TaylorStep], rows: list[list[list[int]]], series: Array) -> None:
+        """Find the passages in steps that follow each other; most have none, as doubles show.
 
-    def _sides(self, steps: list[TaylorStep], rows: list[list[list[int]]]) -> list[int]:
-        """Return of each step the sign that doubles show the form to have all through, or 0."""
-        n = np.array([[[c / (1 << step.bits) for c in row] for row in x] for step, x in zip(steps, rows, strict=True)])
-        h, (a, b) = np.array([[float(step.h)] for step in steps]), (np.array(v, float) for v in self.form[:2])
-        position, rate, far = n[..., :-1], n[..., 1:] * np.arange(1, n.shape[2]), np.zeros((len(h), n.shape[2] - 1))
-        far[:, :1] = h * float(self.form.d)
-        form, sizes = h * (a @ position) + b @ rate - far, h * (abs(a) @ abs(position)) + abs(b) @ abs(rate) + abs(far)
+        `rows` of each step are its polynomials x, y, z over l, `series` the same in doubles, shape (steps, 3, orders).
+        """
+        h, k = np.array([[float(step.h)] for step in steps]), np.arange(1, series.shape[2] + 1)
+        a, b = (np.array(v, float) for v in self.form[:2])
+        form = h * (a @ series[..., :-1]) + b @ (series[..., 1:] * k[:-1])
+        form[:, :1] -= h * float(self.form.d)
+        sizes = (h * abs(a).sum() + abs(b).sum()) * abs(series).sum(1) * k
         noise = ROUNDING * sizes.sum(1) + sizes[:, MOST_TERMS:].sum(1)
-        bounds = form[:, :MOST_TERMS] @ bernstein(min(n.shape[2] - 1, MOST_TERMS))[0].T
-        sides: list[int] = ((bounds.min(1) > noise).astype(int) - (bounds.max(1) < -noise)).tolist()
-        return sides
+        bounds = form[:, :MOST_TERMS] @ bernstein(min(len(k) - 1, MOST_TERMS))[0].T
+        sides = (bounds.min(1) > noise).astype(int) - (bounds.max(1) < -noise)
+        for step, row, side in zip(steps, rows, sides.tolist(), strict=True):
+            if not self.left or side != self.left:
+                self._search(step, row)
 
     def _search(self, step: TaylorStep, rows: list[list[int]]) -> None:
         unit, h, (a, b, d) = 1 << self.bits, step.h, self.whole
         a, d = ([x * h.numerator // h.denominator for x in v] for v in (a, d))
-        g = [0] * (len(rows[0]) - 1)
+        g = [-d[0] << step.bits] + [0] * (len(rows[0]) - 2)
         for p, q, row in zip(a, b, rows, strict=True):
-            g = [x + p * c for x, c in zip(g, row, strict=False)] if p else g
-            g = [x + q * k * c for k, (x, c) in enumerate(zip(g, row[1:], strict=True), 1)] if q else g
-        g[0] -= d[0] << step.bits
+            g = [x + p * c + q * k * rate for k, (x, c, rate) in enumerate(zip(g, row, row[1:], strict=False), 1)]
         least = (sum(map(abs, a)) + sum(map(abs, b))) << step.bits >> self.noise
         if not self.left:  # at the release
             while g and abs(g[0]) <= least:
@@ -215,14 +212,15 @@ def passages(
     while batch := list(islice(steps, BATCH)):
         rows = []
         for step in batch:
-            x, second, third = step.coefficients[:3]
+            x, second, third, *_ = step.coefficients
             if step.columns[:3] != LOCAL:
                 pairs = list(zip(second, third, strict=True))
                 second = [(m * sin + w * cos) // unit for m, w in pairs]
                 third = [(w * sin - m * cos) // unit for m, w in pairs]
             rows.append([x, second, third])
+        series = (np.array(rows, object) / (1 << step.bits)).astype(float)
         for search in searches:
-            search.take(batch, rows)
+            search.take(batch, rows, series)
         if report is not None:
             report(float(batch[-1].centre))
     bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)

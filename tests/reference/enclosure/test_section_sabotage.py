@@ -91,7 +91,7 @@ def few_bits_hold(module):
     slow = [Fraction((-1) ** (k // 3), 2 + k) for k in range(48)]  # whose last orders are not small
     rows = tuple([int(c * 2**BITS) for c in row] for row in (wave, slow, [0], [0]))
     piece = Piece(SceneBalls(scene(), BITS + 64), TaylorStep(*map(Fraction, (0, 1, -1, 1)), BITS, rows, EARTH))
-    tube, ends = Tube(*map(arb, ("1e-25", "2e-25", "3e-25"))), [Fraction(k, 8) for k in range(-8, 9)]
+    tube, ends = Tube(*map(arb, ("1e-9", "2e-9", "3e-9"))), [Fraction(k, 8) for k in range(-8, 9)]
     for (x, m), (n, (low, high)) in product(((1, 0), (0, 1), (2, 1)), product((0, 1), combinations(ends, 2))):
         with ctx.workprec(BITS + 64):
             made = module.Form(Covered(piece, tube), [arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0))
@@ -365,7 +365,7 @@ FAULTS = [
         "cut(arb_poly(g) * (1 / arb(self.unit)), SHORT // 2) + off",
         "(arb_poly(g) * (1 / arb(self.unit))).truncate(SHORT // 2) + off",
     ),
-    ("(1 / arb(self.unit))", "(1 / arb(piece.unit))"),
+    ("(1 / arb(self.unit))", "(1 / arb(self.piece.unit))"),
     ("plain = self.short[n](s)", "plain = self.short[0](s)"),
     ("return self.short[n](arb_poly", "return self.short[1 - n](arb_poly"),
     ("arb_poly([s.mid(), 1]))(s - s.mid())\n        return plain", "arb_poly([s.mid(), 1]))(s)\n        return plain"),
