@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import replace
 from fractions import Fraction
 
-from ...numbers.precision import LONG_DOUBLE_BITS, cheapest_type, real
+from ...numbers.precision import LONG_DOUBLE_BITS, cheapest_type
 from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
 from ..plan import Engine, Pace, Plan, Report, Run
@@ -35,13 +34,6 @@ class Heyoka(Engine):
         from .run import run
 
         return run(plan, report, pace)
-
-    def taylor_steps(
-        self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
-    ) -> Generator[TaylorStep, None, Run]:
-        """Yield the Taylor steps of a run in MPFR, as a proof takes them; return the run."""
-        plan = self.plan(inputs, prec, times, transits=False)
-        return self.expanded(replace(plan, number=real(plan.number.prec)), coefficient_bits)
 
     def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
         """Yield the Taylor steps of a run, n east, north, up; return the run."""
