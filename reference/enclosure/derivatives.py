@@ -244,9 +244,7 @@ class Derivatives:
         watched.close(self.bound.ways)
         own_zeros = pairwise(watched.own.finish())
         demand(all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in own_zeros), "zeros must be in order")
-        pairs = zip(watched.scan.found, watched.zeros, strict=True)
-        kept = [(q, row) for q, row in pairs if not word or self.windows.sections.counts(word, q)]
-        for z, (q, row) in zip(proved, kept, strict=False):
+        for z, q, row in zip(proved, watched.scan.found, watched.zeros, strict=False):
             known = row if all(x.is_finite() for parts in row for x in parts) else []
             own = watched.centre(q) if known else None  # in the scene's own clock, which is that of the course
             zeros.append(replace(z, t=within(z.t, own.t, self.bound.ways, [x[0] for x in row])) if own else z)

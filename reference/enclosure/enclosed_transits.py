@@ -24,18 +24,18 @@ class Slope:
     """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
 
     def __init__(self, covered: Covered) -> None:
-        self.covered, self.piece, self.tube, (piece, tube) = covered, *covered, covered
+        self.covered, self.piece, self.unit, (piece, tube) = covered, covered.piece, covered.piece.unit, covered
         self.centre, self.slow, self.flat = ball(piece.step.centre), piece.balls.slow, piece.balls.flat
-        self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
+        self.forms: Any = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> Any:
         """Return a ball that contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
-        return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
+        return self.forms[n][0](s) / self.unit + self.forms[n][1]
 
     def rate(self, s: arb) -> Any:
         """Return a ball that contains xddot on `s`; about the middle of `s` where the series about 0 shows no sign."""
         (f, off), plain = self.forms[1], self.at(1, s)
-        return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
+        return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.unit + off
 
     def push(self, s: arb) -> int:
         """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
@@ -49,12 +49,15 @@ class Slope:
 
 
 class Scan:
-    """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8)."""
+    """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8).
 
-    def __init__(self, balls: SceneBalls, slope: Any = Slope, found: Any = EnclosedTransit) -> None:
+    With `only` a direction, single zeros in the other one are left out.
+    """
+
+    def __init__(self, balls: SceneBalls, slope: Any = Slope, kind: Any = EnclosedTransit, only: int = 0) -> None:
         self.balls, self.left, self.time, self.leaves, self.slope = balls, 0, Fraction(0), 0, slope
         self.end: tuple[Slope, arb] | None = None
-        self.kind, self.found, self.cluster = found, list[Any](), list[Leaf]()
+        self.kind, self.only, self.found, self.cluster = kind, only, list[Any](), list[Leaf]()
 
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
@@ -84,7 +87,7 @@ class Scan:
         deep = 2 * depth >= self.balls.prec or self.leaves > MOST_LEAVES
         if way:
             self._close(way)
-        elif bend or deep or not speed.abs_upper() > 3 * slope.tube.u:
+        elif bend or deep or not speed.abs_upper() > 3 * slope.forms[0][1].rad():
             self.cluster.append(Leaf(bend, low, high, slope))
         else:
             self._sort(slope, low, middle, depth + 1)
@@ -100,7 +103,7 @@ class Scan:
         leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
         steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
         demand(product >= 0 or (leaves[0].bend == right if steady else bool(leaves)), "two enclosures contradict")
-        if not leaves or (steady and product > 0):
+        if not leaves or (steady and (product > 0 or (product < 0 and leaves[0].bend == -self.only))):
             return
         ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
         begin, end = (slope.centre + s * slope.piece.k.h for slope, s in ends)

@@ -7,10 +7,10 @@ from flint import arb, ctx
 from .balls import SHORT
 from .shapes import Leaf
 
-POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
 ORDERS = 40  # of the Taylor series, enough for this: a coefficient is about a quarter of the one before
+POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
 NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
-NEGLIGIBLE = arb(2) ** -30  # part of what xdot is uncertain by
+NEGLIGIBLE = arb(2) ** -12  # part of what xdot is uncertain by
 MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
 
@@ -20,13 +20,13 @@ def around_zero(leaves: list[Leaf]) -> tuple[arb, arb]:
     slope, s = leaf.slope, ((leaf.low + leaf.high) / 2).mid()
     (f, off), (g, _) = slope.forms
     with ctx.workprec(SHORT):
-        short_f, short_g = f.truncate(ORDERS), g.truncate(ORDERS)
+        short_f, short_g = getattr(slope, "short", None) or (f.truncate(ORDERS), g.truncate(ORDERS))
         for _ in range(POLISH):
-            before, s = s, (s - short_f(s) / short_g(s)).mid()
+            before, s = s, (s - short_f(s).mid() / short_g(s).mid()).mid()
             if abs(s - before) < NEAR:
                 break
         rate = g(s).mid()
-    value, width = f(s), off.rad() * slope.piece.unit
+    value, width = f(s), off.rad() * slope.unit
     for _ in range(ctx.prec // SHORT):
         if abs(value) < NEGLIGIBLE * width:
             break

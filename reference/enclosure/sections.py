@@ -4,14 +4,15 @@ from fractions import Fraction
 from json import loads
 from typing import Any
 
-from flint import arb, arb_poly, ctx
+from flint import arb, arb_poly, ctx, fmpz_poly
 
-from .balls import UNIT, Vector, add, ball, cross, demand, dot, size, times, total, upper
+from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, fixed, size, times, total, upper
 from .bound import SceneBalls, state
 from .course import FINISHED, Course
-from .enclosed_transits import Scan, Slope
+from .enclosed_transits import Scan, Slope, sign
 from .printed import check_rows
 from .shapes import Covered, EnclosedPassage, ProvedSections
+from .six_columns import cut
 
 HEADER, WAYS = "k,t,direction,x,y,z,vx,vy,vz,bound", {"highest": -1, "lowest": 1}
 
@@ -36,14 +37,29 @@ class Form(Slope):
     """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'."""
 
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb) -> None:
-        piece, (eta, u, bend), h = covered.piece, covered.tube, covered.piece.k.h
-        terms = zip([*times(h, a), *b], [*piece.p, *piece.v], strict=True)
-        f = sum((arb_poly(g) * x for x, g in terms if not x.is_zero()), -h * d * arb_poly([piece.unit]))
-        off, more = (arb(0, upper(size(a) * h * x + size(b) * y)) for x, y in ((eta, u), (u, bend)))
-        self.covered, self.piece, self.centre = covered, piece, ball(piece.step.centre)
-        self.forms, self.tube = ((f, off), (f.derivative(), more)), covered.tube._replace(u=off.rad())
+        (piece, (eta, u, bend)), h = covered, covered.piece.k.h
+        # a, b, d as integers over 2^bits, which are off by at most `miss` in all
+        factors, miss = fixed([*times(h, a), *b, h * d], piece.step.bits)
+        terms = zip(factors, [*piece.p, *piece.v, fmpz_poly([-piece.unit])], strict=True)
+        self.covered, self.piece, self.centre, self.unit = covered, piece, ball(piece.step.centre), piece.unit**2
+        self.lost, x, y = miss * max(map(len, piece.p)) * (piece.sizes.p + piece.sizes.k), h * size(a), size(b)
         # at rest, of a velocity alone
-        self.slow, self.flat = all(x.is_zero() for x in [*a, d, *piece.balls.release[1]]), False
+        self.slow, self.flat = all(q.is_zero() for q in [*a, d, *piece.balls.release[1]]), False
+        self.hold(sum((n * g for n, g in terms if n), fmpz_poly()), x * eta + y * u, x * u + y * bend)
+
+    def hold(self, f: Any, *offs: arb) -> None:
+        """Take f, and what it and f' miss; both in few bits and orders as well, which are enough for most signs."""
+        self.forms = [(g, arb(0, upper(off + self.lost))) for g, off in zip((f, f.derivative()), offs, strict=True)]
+        with ctx.workprec(SHORT):
+            self.short = [cut(arb_poly(g) * (1 / arb(self.unit)), SHORT // 2) + off for g, off in self.forms]
+
+    def at(self, n: int, s: arb) -> Any:
+        """Return a ball that contains the form (n = 0) or its rate (n = 1) on the ball `s`."""
+        plain = self.short[n](s) if ctx.prec == SHORT else super().at(n, s)
+        # about the middle where the series about 0 shows no sign, and there may be one: both ends have the same
+        if ctx.prec == SHORT and not sign(plain) and self.short[n](s.lower()) * self.short[n](s.upper()) > 0:
+            return self.short[n](arb_poly([s.mid(), 1]))(s - s.mid())
+        return plain
 
     def row(self, s: arb) -> Vector:
         """Return the state over the length."""
@@ -57,19 +73,13 @@ class Apsis(Form):
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb) -> None:
         super().__init__(covered, a, b, d)
         piece, (eta, u, bend), long = self.piece, covered.tube, size(b)
-        rows, miss, bits = (
-            (*piece.p, *piece.v, *(f.derivative() for f in piece.v)),
-            dot(piece.p, piece.v),
-            piece.step.bits,
-        )
-        x = [f(UNIT) / piece.unit for f in rows]
+        miss, bits = dot(piece.p, piece.v), piece.step.bits
+        x = [f(UNIT) / piece.unit for f in (*piece.p, *piece.v, *(f.derivative() for f in piece.v))]
         aside, low, most, lost = size(cross(x[:3], b)), dot(x[:3], b).abs_lower(), size(x[3:6]), miss.derivative()
         if low > 0:
             first = aside * u + long * (eta * (most + u) + total(miss, 2 * bits))
             second = eta * (size(x[6:]) + bend) + u * (2 * most + u) + total(lost, 2 * bits)
-            offs = [arb(0, upper(long / low * y)) for y in (first, aside * bend + long * second)]
-            self.forms = ((self.forms[0][0], offs[0]), (self.forms[1][0], offs[1]))
-            self.tube = self.tube._replace(u=offs[0].rad())
+            self.hold(self.forms[0][0], long / low * first, long / low * (aside * bend + long * second))
 
     def row(self, s: arb) -> Vector:
         """Return the state over the length, about the middle of `s`."""
@@ -91,7 +101,7 @@ class Sections:
         """Return a scan for the passages of a section."""
         with ctx.workprec(balls.prec):
             f, kind = form(balls, word), self.apsis if word in WAYS else Form
-        return Scan(balls, lambda covered: kind(covered, *f), EnclosedPassage)
+        return Scan(balls, lambda covered: kind(covered, *f), EnclosedPassage, WAYS.get(word, 0))
 
     def advance(self, covered: Covered) -> None:
         """Take the next step's tube."""
@@ -99,18 +109,12 @@ class Sections:
         for scan in self.scans:
             scan.advance(covered)
 
-    @staticmethod
-    def counts(word: str, z: EnclosedPassage) -> bool:
-        """Return whether a zero is a passage: at highest and lowest points the form has to fall or to grow."""
-        return z.parity != "one" or z.direction == WAYS.get(word, z.direction)
-
     def finish(self, proved: Any) -> ProvedSections:
         """Return the passages in the course, whose result is `proved`."""
         right = proved in FINISHED and proved.times is self.course.times
         demand(right and {scan.time for scan in self.scans} == {proved.times[-1]}, "the proof is of another course")
         found = zip(self.words, self.scans, strict=True)
-        kept = {word: tuple(z for z in scan.finish() if self.counts(word, z)) for word, scan in found}
-        FINISHED.add(sections := ProvedSections(proved, kept))
+        FINISHED.add(sections := ProvedSections(proved, {word: tuple(scan.finish()) for word, scan in found}))
         return sections
 
 

@@ -11,9 +11,9 @@ A zero at the release that no digit of the run tells from it, as that of every v
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from fractions import Fraction
+from collections.abc import Iterator
 from functools import cache
+from itertools import islice
 from math import comb
 from typing import Any
 
@@ -28,6 +28,7 @@ from ..numbers.table import Table
 from ..numbers.taylor_step import LOCAL, TaylorStep
 from .plan import Plan, Report
 
+BATCH = 64  # steps that are looked at together
 SPARE_BITS = 64  # of forms, places and states beyond the run's own
 NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
 MOST_PIECES = 200  # that a step is cut into
@@ -37,19 +38,36 @@ GRAZING = "Ask for more digits, or leave this section out (run.sections)."
 
 
 class SectionSearch:
-    """The passages of one section: `take` every step in order."""
+    """The passages of one section: `take` all steps in order."""
 
     def __init__(self, word: str, form: Form, prec: int) -> None:
         self.word, self.form, self.bits, self.noise = word, form, prec + SPARE_BITS, prec - NOISE_BITS
+        self.whole = [[int(to_fraction(x) * (1 << self.bits)) for x in v] for v in (form.a, form.b, [form.d])]
         self.left, self.found = 0, list[tuple[list[int], int, list[int]]]()
 
-    def take(self, step: TaylorStep, rows: list[list[int]]) -> None:
-        """Find the passages in a step whose polynomials are x, y, z over l."""
-        unit, h = 1 << self.bits, step.h
-        a, b = ([int(to_fraction(x) * f * unit) for x in v] for v, f in ((self.form.a, h), (self.form.b, 1)))
-        three, orders = list(zip(a, b, rows, strict=True)), range(len(rows[0]) - 1)
-        g = [sum(p * row[k] + (k + 1) * q * row[k + 1] for p, q, row in three) for k in orders]
-        g[0] -= int(to_fraction(self.form.d) * h * unit) << step.bits
+    def take(self, steps: list[TaylorStep], rows: list[list[list[int]]], series: Array) -> None:
+        """Find the passages in steps that follow each other; most have none, as doubles show.
+
+        `rows` of each step are its polynomials x, y, z over l, `series` the same in doubles, shape (steps, 3, orders).
+        """
+        h, k = np.array([[float(step.h)] for step in steps]), np.arange(1, series.shape[2] + 1)
+        a, b = (np.array(v, float) for v in self.form[:2])
+        form = h * (a @ series[..., :-1]) + b @ (series[..., 1:] * k[:-1])
+        form[:, :1] -= h * float(self.form.d)
+        sizes = (h * abs(a).sum() + abs(b).sum()) * abs(series).sum(1) * k
+        noise = ROUNDING * sizes.sum(1) + sizes[:, MOST_TERMS:].sum(1)
+        bounds = form[:, :MOST_TERMS] @ bernstein(min(len(k) - 1, MOST_TERMS))[0].T
+        sides = (bounds.min(1) > noise).astype(int) - (bounds.max(1) < -noise)
+        for step, row, side in zip(steps, rows, sides.tolist(), strict=True):
+            if not self.left or side != self.left:
+                self._search(step, row)
+
+    def _search(self, step: TaylorStep, rows: list[list[int]]) -> None:
+        unit, h, (a, b, d) = 1 << self.bits, step.h, self.whole
+        a, d = ([x * h.numerator // h.denominator for x in v] for v in (a, d))
+        g = [-d[0] << step.bits] + [0] * (len(rows[0]) - 2)
+        for p, q, row in zip(a, b, rows, strict=True):
+            g = [x + p * c + q * k * rate for k, (x, c, rate) in enumerate(zip(g, row, row[1:], strict=False), 1)]
         least = (sum(map(abs, a)) + sum(map(abs, b))) << step.bits >> self.noise
         if not self.left:  # at the release
             while g and abs(g[0]) <= least:
@@ -59,9 +77,10 @@ class SectionSearch:
         places = Places(g, least, self.bits, self.word)
         left, right = self.left or places.sign(0), places.sign(unit)
         for low, high, sign in places.isolated(left, right):
-            s = places.root(low, high, sign)
             if self.form.direction in (0, -sign):
-                lost = [_shifted(int(_left_out(row, s / unit) / h), self.bits - step.bits) + 1 for row in rows]
+                s = places.root(low, high, sign)
+                last = (_left_out(row, s / unit) * h.denominator // h.numerator for row in rows)
+                lost = [_shifted(int(x), self.bits - step.bits) + 1 for x in last]
                 self.found.append((self._moment(step, rows, s), -sign, lost))
         self.left = right
 
@@ -69,8 +88,9 @@ class SectionSearch:
         """Return time in s, n and n' in 1/s at a place, as integers over 2**bits."""
         values = [horner(row, s, self.bits) for row in rows]
         n, v = ([_shifted(value[i], self.bits - step.bits) for value in values] for i in (0, 1))
-        t = step.centre + step.h * Fraction(s, 1 << self.bits)
-        return [int(t * (1 << self.bits)), *n, *(int(x / step.h) for x in v)]
+        t, h = step.centre, step.h
+        time = (t.numerator << self.bits) // t.denominator + s * h.numerator // h.denominator
+        return [time, *n, *(x * h.denominator // h.numerator for x in v)]
 
 
 class Places:
@@ -165,10 +185,10 @@ def bernstein(terms: int) -> tuple[Array, Array]:
     return form, np.array([[comb(j, i) / 2**j for i in n] for j in n])
 
 
-def _left_out(row: list[int], s: float) -> Fraction:
+def _left_out(row: list[int], s: float) -> int:
     """Return about what a rate lacks at a place: twice the next term, as terms fall like the last four, two by two."""
     last, before = (max(map(abs, pair)) for pair in (row[-2:], row[-4:-2]))
-    return 2 * len(row) * min(last, last * last // max(before, 1)) * Fraction(s ** (len(row) - 1))
+    return 2 * len(row) * min(last, last * last // max(before, 1)) * int(s ** (len(row) - 1) * 2**53) >> 53
 
 
 def _shifted(value: int, bits: int) -> int:
@@ -176,7 +196,7 @@ def _shifted(value: int, bits: int) -> int:
 
 
 def passages(
-    plan: Plan, steps: Iterable[TaylorStep], report: Report | None = None
+    plan: Plan, steps: Iterator[TaylorStep], report: Report | None = None
 ) -> dict[str, tuple[Table, list[int]]]:
     """Return `columns.SECTION` at each passage of a plan's sections, and its direction, from the plan's Taylor steps.
 
@@ -189,17 +209,20 @@ def passages(
     searches = [SectionSearch(word, form_of(word, start), plan.number.prec) for word in plan.sections]
     unit = 1 << plan.number.prec + SPARE_BITS
     sin, cos = ((int(to_fraction(x) * unit)) for x in ((start.k.sin, start.k.cos) if start.k.rate else (1, 0)))
-    for step in steps:
-        x, second, third, *_ = (step.coefficients[i] for i in range(3))
-        if step.columns[:3] == LOCAL:
-            rows = [x, second, third]
-        else:
-            pairs = list(zip(second, third, strict=True))
-            rows = [x, [(m * sin + w * cos) // unit for m, w in pairs], [(w * sin - m * cos) // unit for m, w in pairs]]
+    while batch := list(islice(steps, BATCH)):
+        rows = []
+        for step in batch:
+            x, second, third, *_ = step.coefficients
+            if step.columns[:3] != LOCAL:
+                pairs = list(zip(second, third, strict=True))
+                second = [(m * sin + w * cos) // unit for m, w in pairs]
+                third = [(w * sin - m * cos) // unit for m, w in pairs]
+            rows.append([x, second, third])
+        series = (np.array(rows, object) / (1 << step.bits)).astype(float)
         for search in searches:
-            search.take(step, rows)
+            search.take(batch, rows, series)
         if report is not None:
-            report(float(step.centre))
+            report(float(batch[-1].centre))
     bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)
     tables = {}
     for search in searches:

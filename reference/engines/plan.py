@@ -17,7 +17,7 @@ import numpy as np
 from ..model.force import tension
 from ..model.start import Start
 from ..numbers.columns import STATE
-from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, NumberType
+from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, NumberType, real
 from ..numbers.table import Table
 from ..numbers.taylor_step import TaylorStep
 from ..scenes.inputs import Inputs
@@ -155,7 +155,10 @@ class Engine(ABC):
             prec: precision of the run in bits.
             coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits.
         """
-        return self.expanded(self.plan(inputs, prec, times, transits=False), coefficient_bits)
+        plan = self.plan(inputs, prec, times, transits=False)
+        # not in hardware: a proof's bytes are the same on every machine
+        plan = replace(plan, number=real(plan.number.prec)) if plan.number.hardware else plan
+        return self.expanded(plan, coefficient_bits)
 
     @abstractmethod
     def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:

@@ -63,7 +63,7 @@ class PlumbCourse:
         for step in steps:
             if not rows:
                 one, (a, b) = 1 << step.bits, _axes(step, inputs)
-            x, m, w = (np.array(step.coefficients[i], object) for i in range(3))
+            x, m, w, *_ = (np.array(row, object) for row in step.coefficients)
             # doubles at once: the integers of a day's steps fill gigabytes
             rows.append((np.array([x, (b * m - a * w) // one, (a * m + b * w) // one]) / one).astype(float))
             places.append((float(step.centre), float(step.h)))

@@ -36,7 +36,7 @@ class Heyoka(Engine):
         return run(plan, report, pace)
 
     def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
-        """Yield the Taylor steps of a run in MPFR: n east, north, up, then, in `momentum`, h H; return the run."""
+        """Yield the Taylor steps of a run, n east, north, up; return the run."""
         from .run import taylor_steps
 
         return taylor_steps(plan, coefficient_bits)

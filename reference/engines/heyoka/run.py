@@ -19,7 +19,7 @@ from ...model.carried import carried
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes, zero_at_release
 from ...numbers.columns import STATE
-from ...numbers.precision import GUARD_BITS, real, to_mpf
+from ...numbers.precision import GUARD_BITS, to_mpf
 from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep
 from ..plan import MOST_TURN, Pace, Plan, Report, Run
@@ -33,11 +33,11 @@ STEP_BITS = 6  # mantissa of a step size: equal steps share their scaled constan
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
-    """Yield the Taylor steps of a run from t = 0 to one step beyond the last time, in MPFR; return the run.
+    """Yield the Taylor steps of a run from t = 0 to one step beyond the last time; return the run.
 
-    Their rows are n east, north and up, and h H, in `momentum`, or what else the formulation has.
+    Their rows are n east, north and up, which the formulation has to begin with.
     """
-    plan = replace(plan, number=real(plan.number.prec), transits=False)
+    plan = replace(plan, transits=False)
     times, start = plan.times, Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, span=times[-1])
     grid = [stepper.numbers.of(t) for t in times]
@@ -49,7 +49,7 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
     while not beyond:
         beyond = stepper.time > grid[-1]
         t, h, series = stepper.expand(limit, coefficient_bits)
-        yield TaylorStep(t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series), LOCAL)
+        yield TaylorStep(t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series[:3]), LOCAL)
         while len(states) < len(grid) and grid[len(states)] <= stepper.time:
             states.append(stepper.sample(grid[len(states)]))
         limit = stepper.numbers.of(min(_next_step(h, series, coefficient_bits), longest))
