@@ -156,6 +156,9 @@ class Poor:
         return self.nothing
 
 
+ROUNDED = Fraction(1, 10**24)  # a difference of two runs with forty digits, over 2e-12
+
+
 def slopes_at(inputs, key, times):
     """Differences of runs: of the states, and of each transit."""
     off = Fraction(1, 10**12)
@@ -217,7 +220,7 @@ def slopes_hold(found, j, truths, case):
     rows, *zeros = truths
     for i, column in enumerate(rows):
         for k, (slope, row) in enumerate(zip(column, found.states, strict=False)):
-            slack = abs(slope) / 10**15
+            slack = abs(slope) / 10**15 + ROUNDED
             assert row[j][i].low - slack <= slope <= row[j][i].high + slack, (*case, i, k)
     highest = found.proved.sections["highest"], found.passages["highest"]
     made = [(found.proved.transits, found.transits, "times"), (*highest, "times"), (*highest, "azimuths")]
