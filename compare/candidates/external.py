@@ -191,7 +191,7 @@ def _end_of(
         elif max(os.fstat(stream.fileno()).st_size for stream in streams) > max_bytes:
             exceeded = InputError, f"at most {max_bytes} bytes of output"
         if exceeded is not None:
-            process.kill()
+            os.kill(process.pid, signal.SIGKILL)  # Popen.kill would take the status that is waited for
         time.sleep(min(0.02, waited / 50))
 
 

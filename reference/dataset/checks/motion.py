@@ -40,7 +40,7 @@ Progress = Callable[[float, float], None]  # called with the simulated time reac
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
     """Return a sentence for every number that the motion contradicts, and what was not decided, with the reason."""
     if not engines()["limbs"].installed:
-        return [], _undecided("integrating it again needs numba: pip install 'foucault-reference[methods]'")
+        return [], _undecided("integrating it again needs numba: pip install 'foucault-reference[fast]'")
     manifest = files.manifest
     allowed_s = BASE_S + ROW_S * manifest.counts.grid + TRANSIT_S * manifest.counts.transits
     prec, steps, expected_s, most_s = _first_prec(manifest), _steps(files), 0.0, allowed_s

@@ -20,7 +20,7 @@ class Limbs(Engine):
     name = "limbs"
     formulation = "inertial"
     requires = ("numba",)
-    extra = "methods"
+    extra = "fast"
     bits = range(LEAST_PREC, MOST_PREC + 1)
     own_process = False
     start_s = 0.5

@@ -208,6 +208,19 @@ def test_too_much_output_ends_the_program(stream):
         run_program(python(flood), max_bytes=1_000_000)
 
 
+def test_a_program_may_end_just_before_it_is_killed(monkeypatch):
+    looked = os.wait4
+
+    def wait4(pid, options):
+        seen = looked(pid, options)
+        time.sleep(0.5)  # meanwhile it has ended
+        return seen
+
+    monkeypatch.setattr("compare.candidates.external.os.wait4", wait4)
+    with pytest.raises(InputError, match="at most 10 bytes of output"):
+        run_program(python("import time; time.sleep(0.2); print('0,0,0' * 100)"), max_bytes=10)
+
+
 def test_repeats_are_timed_after_a_warm_up(tmp_path):
     note = tmp_path / "runs"
     output, took = timed(python(f"open({str(note)!r}, 'a').write('x'); print(1)"), repeats=2)

@@ -139,7 +139,7 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
     for words in (("conical",), ("conical", "--out", tmp_path / "conical")):
         status, out, err = foucault("generate", *words)
         assert (status, out) == (2, "")
-        assert "--engine" in err and "numba" in err and "--engine heyoka" in err
+        assert "--engine" in err and "numba" in err and "The engine heyoka does without." in err
     scene = load_scene("conical")
     with pytest.raises(InputError, match="numba"):
         reference.solve(scene, **making_of(scene, "conical", tmp_path).asked_of(scene))
