@@ -47,6 +47,11 @@ class Rows:
         """x and y in m, shape (rows, 2)."""
         return self.positions[:, :2]
 
+    @property
+    def relative(self) -> bool:
+        """Whether smaller numbers are rounded by less: single precision, or a number of digits."""
+        return any(convention.id in ("single_precision", "digits") for convention in self.conventions)
+
     def changed(self, convention: Deviation, **fields: object) -> Rows:
         """Return the rows with some fields replaced, and what is to be said of that."""
         return replace(self, conventions=(*self.conventions, convention), **fields)  # type: ignore[arg-type]

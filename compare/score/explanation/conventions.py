@@ -118,19 +118,14 @@ def heights(rows: Rows, length: float) -> Rows:
         if right is not rows:
             return replace(right, positions=np.column_stack([plane, column]))
         # a slight drift is no matter of its own, but no height to fit either
-        return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or _is_relative(rows) else rows
+        return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or rows.relative else rows
     return _flat(rows)
-
-
-def _is_relative(rows: Rows) -> bool:
-    """Return whether smaller numbers are rounded by less."""
-    return any(convention.id in ("single_precision", "digits") for convention in rows.conventions)
 
 
 def _flat(rows: Rows) -> Rows:
     """Leave the heights out of the explanation."""
     plane = np.ascontiguousarray(rows.plane)
-    finer = float(np.abs(plane).max() / np.abs(rows.positions).max()) if _is_relative(rows) else 1.0
+    finer = float(np.abs(plane).max() / np.abs(rows.positions).max()) if rows.relative else 1.0
     return replace(rows, positions=plane, noise=rows.noise * finer)
 
 
