@@ -81,7 +81,7 @@ def test_an_engine_that_is_not_there_is_refused(monkeypatch):
     with pytest.raises(InputError, match=r"one of auto, .*heyoka, .*limbs"):
         checked("abacus")
     monkeypatch.setattr(type(engines()["limbs"]), "requires", ("no_such_module",))
-    with pytest.raises(InputError, match=r"foucault-reference\[methods\]"):
+    with pytest.raises(InputError, match=r"foucault-reference\[fast\]"):
         checked("limbs")
     assert fastest(160, "limbs").name == "heyoka"
 
