@@ -156,8 +156,9 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     evidence = Evidence(corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown)
     read = [*sized(case, reading), *([] if step is None else [step])]
     causes = list(may_be_told(read, evidence))
-    if kind != "sphere" and any(cause.id == "integrator_loose" for cause in causes):
-        causes = [loose(largest(rows.positions - case.truth))]  # which changes the period, as a linear model does
+    words = {word for cause in causes for word in (cause.stage, cause.id)}
+    if rows.cord is not None and words >= {"model", "integrator_loose"}:
+        causes = [loose(largest(rows.positions - case.truth))]  # a linear model has no height, or that of the sphere
     program = _with(reading, causes)
     if program != reading.program:  # what is not told is not put right
         left = case.left(program)

@@ -86,7 +86,7 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
             continue  # several numbers that nobody typed make what a step does
         # what is not known may look like anything that is smaller, and what is not known of a step like a model
         like = 0.0 if agrees else max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
-        if cause.size_m < SHARE * max(like, nameless if cause.stage in ("gravity", "model") else 0.0):
+        if cause.size_m < max(SHARE * like, nameless if cause.stage in ("gravity", "model") else 0.0):
             continue
         if sure:
             yield cause

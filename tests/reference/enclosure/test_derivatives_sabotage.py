@@ -378,10 +378,10 @@ FAULTS = [
     ("y, z * later + u], 2) for y, z, u in zip(r, v, rho", "y, z * later], 2) for y, z, u in zip(r, v, rho"),
     ("y, z * later + u], 2) for y, z, u in zip(v, a, rate", "y, u], 2) for y, z, u in zip(v, a, rate"),
     ("y, z * later + u], 2) for y, z, u in zip(v, a, rate", "y, z * later], 2) for y, z, u in zip(v, a, rate"),
-    ("times(twin.length, twin.turned(R, -1))", "times(covered.piece.balls.length, twin.turned(R, -1))"),
-    ("times(twin.length, twin.turned(R, -1))", "times(twin.length, covered.piece.balls.turned(R, -1))"),
-    ("times(twin.length * twin.pace, twin", "times(twin.length, twin"),
-    ("times(twin.length * twin.pace, twin.turned(V, -1))", "times(twin.length * twin.pace, twin.turned(V, 1))"),
+    ("times(twin.length, moving[:3])", "times(covered.piece.balls.length, moving[:3])"),
+    ("*twin.turned(R, -1)", "*covered.piece.balls.turned(R, -1)"),
+    ("times(twin.length * twin.pace, moving", "times(twin.length, moving"),
+    ("*twin.turned(V, -1)", "*twin.turned(V, 1)"),
     ("[first(q) / way.scale for q in moving]", "[first(q) for q in moving]"),
 ]  # fmt: skip
 OF_BOXES = [
