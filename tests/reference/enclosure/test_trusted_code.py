@@ -20,7 +20,7 @@ OF_FUNCTIONS = "function"  # what a proof without a golden function does not imp
 OF_BOXES = ("box", "printed_box", "derivatives")  # what a proof of a point does not import
 OF_SECTIONS = "sections"  # what a proof of xdot = 0 alone does not import
 APART = (OF_FUNCTIONS, *OF_BOXES, OF_SECTIONS)
-BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET, SECTIONS_BUDGET = 480, 411, 80, 463, 97  # lines of code
+BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET, SECTIONS_BUDGET = 480, 411, 80, 461, 97  # lines of code
 
 
 def source(name):
