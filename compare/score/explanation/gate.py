@@ -82,7 +82,8 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
     for cause, sure in zip(causes, typed, strict=True):
         if cause.stage != "integrator" and cause.size_m < rough:
             continue
-        if cause.stage == "integrator" and typed.count(False) > 1 and cause.size_m < unknown:
+        doubtful = typed.count(False) > 1 and left > EXACTLY * allowed
+        if cause.stage == "integrator" and doubtful and cause.size_m < unknown:
             continue  # several numbers that nobody typed make what a step does
         # what is not known may look like anything that is smaller, and what is not known of a step like a model
         like = 0.0 if agrees else max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)

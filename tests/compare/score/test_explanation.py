@@ -205,6 +205,7 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
         (17, 169, {"integrator_leapfrog"}),  # in single precision
         (90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}),  # its clock seemed to be off
+        (20, 78, {"integrator_semi_implicit_euler_drift"}),  # beside a clock, which g and the rate stand for
         (70007, 146, {"coriolis_sign", "radians"}),  # whose rate is that of the Earth, but for its sign
         (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
         (61126, 153, {"pendulum.length", "solar_day"}),
