@@ -228,6 +228,8 @@ def test_beside_a_step_error_without_a_name_no_model_is_told(mistaken: Path) -> 
     [
         (90001, 198),  # three readings within the tolerance, each of them contradicted below it
         (70007, 70),  # a g and a step's error that look like another g
+        (70007, 263),  # a linear model beside the same without its gravity
+        (61126, 264),  # vertical alone, Ω of the other hemisphere is Ω of the other sign
         (70007, 154),  # a clock and drag, which a step and three numbers that nobody types make as well
     ],
 )
