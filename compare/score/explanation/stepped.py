@@ -96,14 +96,15 @@ class Steps(Pendulum):
         state = np.column_stack([self.start(theta) for theta in thetas.T])
         rows = np.full((count + 1, *state[:2].shape), np.nan)
         rows[0] = state[:2]
-        step, alike = _step(self.method), bool((every == every[0]).all())
-        for done in range(1, count * int(every.max()) + 1):
-            state = step(state, pars=numbers)
-            if not alike:
-                ended = np.flatnonzero((done % every == 0) & (done <= count * every))
-                rows[done // every[ended], :, ended] = state[:2, ended].T
-            elif done % every[0] == 0:
-                rows[done // every[0]] = state[:2]
+        # by row and column, the number of steps that reach it; those that the same number reaches, together
+        ends, step, done = np.arange(1, count + 1)[:, None] * every, _step(self.method), 0
+        numbers_of_steps, first = np.unique(np.sort(ends, axis=None), return_index=True)
+        reached = np.split(np.argsort(ends, axis=None), first[1:])
+        for steps, ended in zip(numbers_of_steps.tolist(), reached, strict=True):
+            for _ in range(steps - done):
+                state = step(state, pars=numbers)
+            row, column = np.divmod(ended, len(every))
+            rows[row + 1, :, column], done = state[:2, column].T, steps
         return np.asarray(rows * thetas[11])
 
 
