@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -154,8 +155,16 @@ def fit_pendulum(
             return None
         answers = np.linalg.norm(best.slopes * scales, axis=0) * WINDOWS
         nudges = np.clip(SEEN * size / np.maximum(answers, 1e-300), 1e-13, 1e-2)
-        best = _in_window(pendulum, times[:count], rows[:count], best.theta, guess, scales, noise, nudges)
+        # what a short window hardly tells may have been led astray: a guess may be nearer
+        start = min((best.theta, *guesses), key=partial(_left, pendulum, times[:count], rows[:count]))
+        best = _in_window(pendulum, times[:count], rows[:count], start, guess, scales, noise, nudges)
     return best if best.rest <= HOPELESS * float(np.abs(rows[:, :2]).max()) else None
+
+
+def _left(pendulum: Pendulum, times: Array, rows: Array, theta: Array) -> float:
+    """Return the root mean square in m that a pendulum leaves of rows, infinity where it makes none."""
+    left = rms(rows - pendulum.rows(theta, times, rows.shape[1]))
+    return left if math.isfinite(left) else math.inf
 
 
 def _in_window(
