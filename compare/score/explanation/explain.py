@@ -13,7 +13,7 @@ from reference.numbers.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
-from .case import HARMLESS, Case, Explanation, Model, Rows, largest, rms
+from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest, rms
 from .causes import NAMED
 from .conventions import ROUGHLY, axes, clock, digits, heights, other_ways, rounded_clock, shifted, unit_of_time
 from .fitted import MODELS, best_of, explanation_of
@@ -136,7 +136,9 @@ def first_good_explanation(case: Case, scene: Scene) -> Explanation:
     reading = best_of(case)
     named = None if reading is None else explanation_of(case, reading)
     if named is not None and named.corrected_m <= case.enough:
-        return named
+        untyped = any(cause.stage == AS_IF for cause in named.causes)
+        simple = _of_approximation(case, scene, None) if untyped else None
+        return simple if simple is not None and simple.corrected_m <= case.enough else named
     linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
     second = None if linear and case.rows.cord is None else of_steps(case, reading)
     second = second or of_formula(case)
