@@ -87,11 +87,15 @@ def gauss_newton(
         made = slopes()
         if not np.isfinite(made).all():
             break
-        numbers = numbers + best_change(made, left)[: len(numbers)]
+        change = best_change(made, left)
+        foreseen = float(np.linalg.norm(left - made @ change))
+        numbers = numbers + change[: len(numbers)]
         left, slopes = model(numbers)
         size = float(np.linalg.norm(left))
         if size < gain * least:
             best, least, strayed = numbers, size, False
+            if gain * size < foreseen:  # the slopes held: another step would gain nothing
+                break
         elif strayed or not (strays and least < gain * size < math.inf):
             break
         else:
