@@ -12,7 +12,7 @@ LOCKED := $(INSTALL) --no-deps --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test quick atlas docs peers campaign coverage mutants studies lint lock clean
+.PHONY: golden test all-tests quick atlas docs peers campaign coverage mutants studies lint lock clean
 
 golden: .venv/solving
 	@echo "Proving 24 h of the pendulum in Paris, and confirming the proof by a second run: one to three minutes"
@@ -21,7 +21,10 @@ golden: .venv/solving
 	$(BIN)/foucault verify paris
 
 # Each worker takes whole files: what a file prepares is prepared once.
-test: lint
+test: .venv/testing
+	@$(MAKE) --no-print-directory --jobs=2 lint all-tests
+
+all-tests: .venv/testing
 	@echo "Running the tests: 7 to 20 minutes on two cores"
 	$(PYTEST)
 

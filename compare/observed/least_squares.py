@@ -94,7 +94,7 @@ def gauss_newton(
         size = float(np.linalg.norm(left))
         if size < gain * least:
             best, least, strayed = numbers, size, False
-            if gain * size < foreseen:  # the slopes held: another step would gain nothing
+            if abs(size - foreseen) < (1 - gain) * size:  # the slopes hold: another step would gain nothing
                 break
         elif strayed or not (strays and least < gain * size < math.inf):
             break
