@@ -219,7 +219,7 @@ class Case:
             model: as in `Explanation`.
             slip: as in `Explanation`.
         """
-        explained, score = 1 - rest / self.error, self.score_of(corrected_m) + price
+        explained, score = 1 - rest / self.error, self.score_of(rest) + price
         return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score, self.allowed_m)
 
     def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:

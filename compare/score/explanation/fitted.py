@@ -161,9 +161,10 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
         causes = [loose(largest(rows.positions - case.truth))]  # a linear model has no height, or that of the sphere
     program = _with(reading, causes)
     if program != reading.program:  # what is not told is not put right
-        left = case.left(program)
-        corrected = largest(left)
+        without = case.left(program)
+        corrected = largest(without)
         causes = without_doubtful_steps(causes, corrected, enough)
+        left = left if corrected <= enough else without  # what is within the tolerance speaks against no reading
     more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
     if more and reader.drifts(case, reading.program):
         causes.append(loose(corrected))

@@ -119,8 +119,9 @@ def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
     """
     rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
+    hung = case.right.changed(length=case.rows.cord or case.right.length)
     found = []
-    for steps in likely_steps(flat, None if reading is None else reading.program):
+    for steps in likely_steps(replace(flat, right=hung), None if reading is None else reading.program):
         within = rows.times <= steps.spacing / steps.every * max(LONGEST, min(FEWEST * steps.every, 2 * LONGEST))
         told = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
         if told is not None:

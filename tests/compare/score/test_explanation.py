@@ -165,7 +165,7 @@ def told(made: Case, times: np.ndarray, columns: dict[str, np.ndarray]) -> Expla
 def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
     mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
-    count, right, whole, agree, wrong = size(20, 300), 0, 0, 0, {}
+    count, right, whole, agree, wrong = size(12, 300), 0, 0, 0, {}
     begun = time.process_time()
     for number in range(count):
         made = case(number)
@@ -197,30 +197,26 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
 @pytest.mark.parametrize(
     ("seed", "number", "words"),
     [
-        (4711, 9, {"integrator_semi_implicit_euler"}),  # 1.4 swings from row to row, and another g
+        # 1.4 swings from row to row, and another g
+        pytest.param(4711, 9, {"integrator_semi_implicit_euler"}, marks=LONG),
         (4711, 54, {"integrator_explicit_euler"}),
         (4711, 72, {"rows_reversed", "unit_of_length"}),
         (4711, 183, {"integrator_semi_implicit_euler"}),
         (4713, 124, {"integrator_semi_implicit_euler_drift"}),  # on a swing of 69 degrees
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
-        (17, 169, {"integrator_leapfrog"}),  # in single precision
+        pytest.param(17, 169, {"integrator_leapfrog"}, marks=LONG),  # in single precision
         (90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}),  # its clock seemed to be off
         (20, 78, {"integrator_semi_implicit_euler_drift"}),  # beside a clock, which g and the rate stand for
         (70007, 146, {"coriolis_sign", "radians"}),  # whose rate is that of the Earth, but for its sign
         (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
         (61126, 153, {"pendulum.length", "solar_day"}),
+        (61126, 193, {"integrator_rk4"}),  # on a wide swing, beside a model
+        (81001, 43, {"integrator_rk4", "pendulum.length"}),  # a step a row, on a swing of half a cord
     ],
 )
 def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: set[str]) -> None:
     made = case(number, seed)
     assert words_of(told(made, *made.rows(mistaken))) >= words
-
-
-def test_beside_a_step_error_without_a_name_no_model_is_told(mistaken: Path) -> None:
-    made = case(193, 61126)
-    found = told(made, *made.rows(mistaken))
-    assert "integrator_loose" in words_of(found)
-    assert not made.wrong(found)
 
 
 @pytest.mark.parametrize(
@@ -231,6 +227,7 @@ def test_beside_a_step_error_without_a_name_no_model_is_told(mistaken: Path) -> 
         (70007, 263),  # a linear model beside the same without its gravity
         (61126, 264),  # vertical alone, Ω of the other hemisphere is Ω of the other sign
         (70007, 154),  # a clock and drag, which a step and three numbers that nobody types make as well
+        (81001, 94),  # x and y in each other's place, and Ω's sign, which leave less below the tolerance
     ],
 )
 def test_what_was_once_told_wrongly(mistaken: Path, seed: int, number: int) -> None:
@@ -241,7 +238,8 @@ def test_what_was_once_told_wrongly(mistaken: Path, seed: int, number: int) -> N
 @pytest.mark.parametrize(
     ("seed", "number"),
     [
-        *((17, n) for n in (55, 94, 100, 118, 204, 224, 288)),
+        pytest.param(17, 94, marks=LONG),
+        *((17, n) for n in (55, 100, 118, 204, 224, 288)),
         *((23, 70), (23, 102), (4711, 133), (4711, 138), (5001, 24), (4713, 207), (4713, 289)),
     ],
 )
@@ -427,10 +425,10 @@ for (let i = 0; i <= 300; i++) {
 @pytest.mark.parametrize(
     "word",
     [
-        "linear_3d",
+        "linear_recentred",
         *(
             pytest.param(word, marks=LONG)
-            for word in ("mathar_item_5", "gastebois_6_2", "mathar_items_1_2", "linear_recentred")
+            for word in ("mathar_item_5", "gastebois_6_2", "mathar_items_1_2", "linear_3d")
         ),
     ],
 )
