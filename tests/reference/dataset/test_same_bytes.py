@@ -21,7 +21,7 @@ from reference.dataset.record import Making, command, making_of
 from reference.dataset.render import render
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
-from reference.numbers.precision import LONG_DOUBLE
+from reference.numbers.precision import DOUBLE
 from reference.numbers.table import Table
 from reference.scenes.scene import load_scene
 from reference.scenes.shipped import golden_root, index, seals
@@ -82,7 +82,7 @@ def test_the_noise_is_felt_where_hardware_computes_the_result_and_the_guard_writ
     types = jitter(monkeypatch, 40)
     after = [render(reference.solve(scene)) for scene in (rough, proof)]
     assert before[0] != after[0] and before[1] == after[1]
-    assert types[-1] == str(LONG_DOUBLE)  # of the guard
+    assert types[-1] == str(DOUBLE)  # of the guard
     monkeypatch.undo()
     jitter(monkeypatch, 1 << 50)  # so wrong a guard is made again with more digits
     solution = reference.solve(proof)
