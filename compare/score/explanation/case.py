@@ -150,6 +150,7 @@ class Case:
         pendulum: runs a program.
         frequency: of the scene's swing in rad/s.
         allowed_m: distance in m that counts as agreement.
+        intervals: between the rows of the whole file, from the release on; 0 if it begins later.
     """
 
     rows: Rows
@@ -158,6 +159,7 @@ class Case:
     pendulum: Pendulum
     frequency: float
     allowed_m: float
+    intervals: int = 0
 
     @property
     def error(self) -> float:

@@ -77,11 +77,9 @@ def causes_of(case: Case, kind: str) -> Iterator[Cause]:
     if cord is not None:
         text = f"has a cord of {cord:.10g} m on average: a spring for a cord, or an integrator that leaves the sphere"
         yield Cause("stretched_cord", "pendulum.length", text, _set(length=cord), NAMED)
-    intervals = round(float(case.rows.times[-1] / case.rows.times[1])) if case.rows.times[0] == 0 else 0
-    for pace, way in (
-        ((intervals / (intervals + 1), "slow"), ((intervals + 1) / intervals, "fast")) if intervals else ()
-    ):
-        text = f"has a clock too {way} by one part in its {intervals + 1} rows (a linspace that counts its ends)"
+    rows = case.intervals + 1
+    for pace, way in ((1 - 1 / rows, "slow"), (rows / case.intervals, "fast")) if case.intervals else ():
+        text = f"has a clock too {way} by one part in its {rows} rows (a linspace that counts its ends)"
         yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
     if not released:
         yield _fitted("late", "clock", "writes its rows {value} late", "late", stage="clock")

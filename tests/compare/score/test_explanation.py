@@ -211,6 +211,7 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
         (61126, 153, {"pendulum.length", "solar_day"}),
         (61126, 193, {"integrator_rk4"}),  # on a wide swing, beside a model
+        (83003, 50, {"linspace_clock", "integrator_explicit_euler"}),  # of whose rows the steps are run for a third
         (81001, 43, {"integrator_rk4", "pendulum.length"}),  # a step a row, on a swing of half a cord
     ],
 )
