@@ -221,7 +221,9 @@ class Case:
             model: as in `Explanation`.
             slip: as in `Explanation`.
         """
-        explained, score = 1 - rest / self.error, self.score_of(rest) + price
+        # what is within the tolerance speaks against no explanation
+        score = self.score_of(rest if corrected_m > self.enough else 0.0) + price
+        explained = 1 - rest / self.error if self.error else 0.0
         return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score, self.allowed_m)
 
     def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:

@@ -148,9 +148,7 @@ def first_good_explanation(case: Case, scene: Scene) -> Explanation:
 
 def _plain(case: Case) -> Explanation:
     """Return the explanation that has no cause."""
-    left = largest(case.rows.positions - case.truth)
-    score = case.score_of(case.error if case.error > case.floor else 0.0)
-    return Explanation(case.rows.conventions, corrected_m=left, score=score, allowed_m=case.allowed_m)
+    return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
 
 
 def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Explanation | None:

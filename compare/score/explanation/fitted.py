@@ -148,7 +148,7 @@ def polished(case: Case, reading: Reading) -> Reading:
 def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) -> Explanation:
     """Return the explanation that the best reading of a case makes up, and a step that was taken from its rows."""
     rows, reader = case.rows, reading.reader
-    kind, reading = reader.right.kind, _without_needless_step(case, reading)
+    kind, reading = reader.right.kind, _without_needless(case, reading)
     left = case.left(reading.program)
     corrected = largest(left)
     spacing, enough = float(rows.times[1] - rows.times[0]), max(case.allowed_m, 2 * rows.noise)
@@ -158,10 +158,9 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     causes = list(may_be_told(read, evidence))
     program = _with(reading, causes)
     if program != reading.program:  # what is not told is not put right
-        without = case.left(program)
-        corrected = largest(without)
+        left = case.left(program)
+        corrected = largest(left)
         causes = without_doubtful_steps(causes, corrected, enough)
-        left = left if corrected <= enough else without  # what is within the tolerance speaks against no reading
     more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
     if more and reader.drifts(case, reading.program):
         causes.append(loose(corrected))
@@ -189,16 +188,15 @@ def _with(reading: Reading, told: Sequence[Deviation]) -> Program:
     return reading.reader.without(reading, [part for part in reading.causes if part not in kept]).program
 
 
-def _without_needless_step(case: Case, reading: Reading) -> Reading:
-    """Return a reading without its integrator where what is left without it is within the tolerance."""
-    if reading.program.method is None:
-        return reading
-    bare = replace(reading.program, method=None, step=0.0)
-    left = case.left(bare)
-    if not largest(left) <= case.allowed_m:
-        return reading
-    others = tuple(cause for cause in reading.causes if cause.stage != "integrator")
-    return replace(reading, causes=others, program=bare, rest=rms(left))
+def _without_needless(case: Case, reading: Reading) -> Reading:
+    """Return a reading without the causes without which what is left is within the tolerance as well."""
+    while reading.causes:
+        fewer = [reading.reader.without(reading, [cause]) for cause in reading.causes]
+        left, least = min(((largest(case.left(one.program)), one) for one in fewer), key=lambda pair: pair[0])
+        if not left <= case.allowed_m:
+            break
+        reading = replace(least, rest=rms(case.left(least.program)))
+    return reading
 
 
 def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
