@@ -7,7 +7,6 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 from places import ROOT
 
 from compare.score.explanation import conventions
@@ -107,11 +106,11 @@ HABITS = {  # of a file: words, what is said of it, what to do
 def causes() -> dict[str, str]:
     """Return what is said of each cause, by its word; one entry for a family of words."""
     said: dict[str, str] = {}
-    rows = SimpleNamespace(cord=67.1, times=60.0 * np.arange(1441))
+    rows = SimpleNamespace(cord=67.1)
     for right in (RIGHT, replace(RIGHT, gravity_reading="effective")):
         for released in (True, False):
             for kind in ("sphere", "linear", "angle"):
-                case: Any = SimpleNamespace(right=right, released=released, rows=rows)
+                case: Any = SimpleNamespace(right=right, released=released, rows=rows, intervals=1440)
                 for cause in causes_of(case, kind):
                     family = next((one for one in FAMILIES if cause.id.startswith(one)), cause.id)
                     said.setdefault(family, cause.text.replace("{value}", "…"))
