@@ -192,10 +192,11 @@ def _without_needless(case: Case, reading: Reading) -> Reading:
     """Return a reading without the causes without which what is left is within the tolerance as well."""
     while reading.causes:
         fewer = [reading.reader.without(reading, [cause]) for cause in reading.causes]
-        left, least = min(((largest(case.left(one.program)), one) for one in fewer), key=lambda pair: pair[0])
-        if not left <= case.allowed_m:
+        left = {largest(case.left(one.program)): one for one in fewer}
+        least = min(filter(math.isfinite, left), default=math.inf)
+        if least > case.allowed_m:
             break
-        reading = replace(least, rest=rms(case.left(least.program)))
+        reading = replace(left[least], rest=rms(case.left(left[least].program)))
     return reading
 
 
