@@ -109,7 +109,18 @@ class Reader:
             if not beam:
                 break
         best.sort(key=lambda reading: reading.score)
-        return [self._exactly_named(best[0], causes), *best[1:]]
+        first = self._exchanged(best[0], causes)
+        return [self._exactly_named(first, causes), *(reading for reading in best if reading is not first)]
+
+    def _exchanged(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+        """Return the best reading that comes from one by leaving causes out, or taking others of their groups."""
+        found = [reading]
+        for part in reading.causes:
+            found.append(fewer := self.without(reading, [part]))
+            others = [cause for cause in causes if cause.group == part.group and not _clash(fewer.causes, cause)]
+            found += filter(None, (self._with(fewer, other) for other in others if other is not part))
+        best = min(found, key=lambda reading: reading.score)
+        return best if best is reading else self._exchanged(best, causes)
 
     def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
         """Put a named cause in place of a fitted number that is as good as equal to its own: that is no accident."""
