@@ -76,11 +76,16 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading 
 
 
 def _is_tied(run: Sequence[Reading]) -> bool:
-    """Return whether a reading that has nothing in common with the best one is about as likely."""
-    best, *others = (
-        (reading.score + EXTRA[reading.reader.right.kind], {cause.group for cause in reading.causes}) for reading in run
+    """Return whether a reading of another motion, with nothing in common with the best one, is about as likely."""
+    best, groups = run[0], {cause.group for cause in run[0].causes}
+    likely = best.score + EXTRA[best.reader.right.kind] + TIE
+    return any(
+        reading.score + EXTRA[reading.reader.right.kind] < likely
+        and not math.isclose(reading.rest, best.rest)  # as no rotation, and neither of its two forces, are one motion
+        and reading.causes
+        and groups.isdisjoint(cause.group for cause in reading.causes)
+        for reading in run[1:]
     )
-    return any(score < best[0] + TIE and causes and causes.isdisjoint(best[1]) for score, causes in others)
 
 
 def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> list[Reader]:

@@ -229,6 +229,7 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         (61126, 264),  # vertical alone, Ω of the other hemisphere is Ω of the other sign
         (70007, 154),  # a clock and drag, which a step and three numbers that nobody types make as well
         # x and y in each other's place, which a swapped release and Ω's sign make as well, and leave less
+        (85005, 148),  # no rotation, which is neither of its forces as well
         (81001, 94),
         (81001, 270),
         (84004, 152),  # a rate that is rounded, without which the file agrees as well
