@@ -20,6 +20,7 @@ import pytest
 import scipy.linalg
 from mistakes import Case, case, one_word_for_one_motion, words_of
 from places import MISTAKEN_C, PENDULUM_C
+from sampled import one_in
 from small_scenes import make_scene
 from typer.testing import CliRunner
 
@@ -206,13 +207,15 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
         pytest.param(17, 169, {"integrator_leapfrog"}, marks=LONG),  # in single precision
         (90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}),  # its clock seemed to be off
-        (20, 78, {"integrator_semi_implicit_euler_drift"}),  # beside a clock, which g and the rate stand for
+        # beside a clock, which g and the rate stand for
+        pytest.param(20, 78, {"integrator_semi_implicit_euler_drift"}, marks=LONG),
         (70007, 146, {"coriolis_sign", "radians"}),  # whose rate is that of the Earth, but for its sign
         (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
         (61126, 153, {"pendulum.length", "solar_day"}),
         (61126, 193, {"integrator_rk4"}),  # on a wide swing, beside a model
         (83003, 50, {"linspace_clock", "integrator_explicit_euler"}),  # of whose rows the steps are run for a third
-        (81001, 43, {"integrator_rk4", "pendulum.length"}),  # a step a row, on a swing of half a cord
+        # a step a row, on a swing of half a cord
+        pytest.param(81001, 43, {"integrator_rk4", "pendulum.length"}, marks=LONG),
     ],
 )
 def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: set[str]) -> None:
@@ -223,7 +226,8 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
 @pytest.mark.parametrize(
     ("seed", "number"),
     [
-        (90001, 198),  # three readings within the tolerance, each of them contradicted below it
+        # three readings within the tolerance, each of them contradicted below it
+        pytest.param(90001, 198, marks=LONG),
         (70007, 70),  # a g and a step's error that look like another g
         (70007, 263),  # a linear model beside the same without its gravity
         (61126, 264),  # vertical alone, Ω of the other hemisphere is Ω of the other sign
@@ -448,7 +452,7 @@ def test_an_approximation_of_the_papers_is_named(word: str) -> None:
     assert found.model is not None and found.model.id == word and found.corrected_m < 1e-9
 
 
-@pytest.mark.parametrize(("term", "value"), [pytest.param((1, 3), 1.0, marks=LONG), ((1, 3), 0.0), ((0, 0), 1.001)])
+@pytest.mark.parametrize(("term", "value"), one_in(3, [((0, 0), 1.001), ((1, 3), 1.0), ((1, 3), 0.0)]))
 def test_a_slip_in_a_formula_is_found_in_the_accelerations(term: tuple[int, int], value: float) -> None:
     """A linear program with one coefficient changed, which no combination of causes describes."""
     scene, k = load_scene("paris"), constants_in_double(load_scene("paris").exact)
