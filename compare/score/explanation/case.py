@@ -133,8 +133,11 @@ class Explanation:
             yield self.slip
         if self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions):
             these = "this" if len(self.causes) == 1 else "all this"
-            left, many = f"With {these} put right, {self.corrected_m:.2g} m are left", self.corrected_m / self.allowed_m
-            yield f"{left}, {many:.2g} tolerances: no known mistake explains them." if many > 1 else f"{left}."
+            share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
+            # a smaller rest is rounding, and not the same on every processor
+            left = f"{self.corrected_m:.2g}" if self.corrected_m > rounding else f"less than {rounding:.1g}"
+            beyond = f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
+            yield f"With {these} put right, {left} m are left{beyond}."
         elif not self.slip:
             yield "No mistake known to foucault explains the error."
 
