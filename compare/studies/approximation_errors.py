@@ -7,22 +7,19 @@ position: the direction that somebody who believes the approximation would draw 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
-from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
-from reference.errors import did_you_mean
+from reference import FoucaultError, Scene, UnreachableError, trajectory
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..approximations import Approximation, Motion, motions, quantities
+from ..approximations import Motion, quantities
 from ..observed.swing_plane import Gauge
 from .row import failure
-
-Kind = TypeVar("Kind", bound=Approximation)
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period
@@ -82,15 +79,13 @@ class ReferenceMotion:
 
     Args:
         scene: to be approximated.
-        t_end: end in s; the grid has 16 times in a period, and holds `marks` exactly.
+        t_end: end in s, above 0; the grid has 16 times in a period, and holds `marks` exactly.
         marks: further times in s.
     """
 
     def __init__(self, scene: Scene, t_end: float, marks: Iterable[float] = ()) -> None:
         self.scene, self.gauge = scene, _gauge(scene)
         period = t_end / _SWINGS if self.gauge is None else min(self.gauge.period, t_end)
-        if not 0 < t_end < np.inf:
-            raise InputError("t_end", t_end, "a time above 0 in s")
         fine = np.arange(0.0, t_end, max(period / _PER_SWING, t_end / _MOST))
         self.times: Array = np.unique(np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end])))
         self.rows = trajectory(scene, self.times)
@@ -129,36 +124,16 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
         return None
 
 
-def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
-    """Return approximations of the motion by their ids, all if None.
-
-    Raises:
-        InputError: an unknown id, or one of a single number.
-    """
-    return _chosen(motions(), ids, "an approximation of the motion; those of a number stand in quantity_table")
-
-
-def _chosen(known: Mapping[str, Kind], ids: Sequence[str] | None, expected: str) -> list[Kind]:
-    words = list(known) if ids is None else ids
-    for word in words:
-        if word not in known:
-            advice = did_you_mean(word, known, "`foucault methods` lists them.")
-            raise InputError("approximations", word, expected, advice)
-    return [known[word] for word in words]
-
-
-def error_table(
-    scene: Scene, ids: Sequence[str] | None = None, t_end: float = TIMES[-1], times: Sequence[float] = TIMES
-) -> list[TimeRow]:
+def error_table(scene: Scene, chosen: Iterable[Motion], t_end: float, times: Sequence[float] = TIMES) -> list[TimeRow]:
     """Return the errors of approximations of the motion up to each of `times` before t_end, and up to t_end.
 
     Args:
         scene: to be approximated.
-        ids: of the approximations; all of the motion if None.
+        chosen: the approximations.
         t_end: in s.
         times: in s.
     """
-    chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
+    marks = [*(t for t in times if t < t_end), t_end]
     truth = ReferenceMotion(scene, t_end, marks)
     return [
         TimeRow(motion.id, t, *errors)
@@ -167,10 +142,10 @@ def error_table(
     ]
 
 
-def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
+def quantity_table(scene: Scene) -> list[QuantityRow]:
     """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
     rows, truths = [], dict[Any, Any]()
-    for approximation in _chosen(quantities(), ids, "an approximation of a number; motions stand in error_table"):
+    for approximation in quantities().values():
         try:
             value = approximation.value(scene)
             if approximation.truth not in truths:
