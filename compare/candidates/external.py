@@ -69,12 +69,8 @@ class OutOfTimeError(InputError):
     """A program took longer than allowed, and was ended."""
 
 
-class FailedError(InputError):
-    """A program ended with an exit status other than 0, or by a signal."""
-
-    def __init__(self, status: int, words: list[str], tail: str) -> None:
-        super().__init__("--run", f"exit status {status} of {shlex.join(words)}", "exit status 0", tail)
-        self.by_signal = status < 0
+class CrashedError(InputError):
+    """A program was ended by a signal."""
 
 
 def placeholders(scene: Scene) -> dict[str, str]:
@@ -165,7 +161,8 @@ def run_program(
             kind, expected = exceeded
             raise kind("--run", shlex.join(words), expected, tail)
         if process.returncode:
-            raise FailedError(process.returncode, words, tail)
+            got = f"exit status {process.returncode} of {shlex.join(words)}"
+            raise (CrashedError if process.returncode < 0 else InputError)("--run", got, "exit status 0", tail)
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
