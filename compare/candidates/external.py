@@ -102,9 +102,10 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
         raise InputError("--run", command, "a command")
-    for word in _as_typed(command):
-        if _FOR_A_SHELL.fullmatch(word):
-            raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
+    with contextlib.suppress(ValueError):  # where quotes are escaped, it is not known which words stand in quotes
+        for word in shlex.split(command, posix=False):
+            if _FOR_A_SHELL.fullmatch(word):
+                raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
 
     def value(match: re.Match[str]) -> str:
         if match[1]:
@@ -118,17 +119,7 @@ def arguments(command: str, scene: Scene) -> list[str]:
     return [_PLACEHOLDER.sub(value, word) for word in words]
 
 
-def _as_typed(command: str) -> list[str]:
-    """Return the words with their quotes; none where escaped quotes make that impossible."""
-    try:
-        return shlex.split(command, posix=False)
-    except ValueError:
-        return []
-
-
-def run_program(
-    words: list[str], timeout_s: float = TIMEOUT_S, max_bytes: int = MAX_BYTES
-) -> tuple[BinaryIO, float, float]:
+def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryIO, float, float]:
     """Run a program once and return its stdout (an open file, at its start), CPU seconds and wall seconds.
 
     Raises:
@@ -151,7 +142,7 @@ def run_program(
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         try:
             with terminable():
-                usage, exceeded = _end_of(process, (output, errors), timeout_s, max_bytes)
+                usage, exceeded = _end_of(process, (output, errors), timeout_s)
         finally:
             wall = time.monotonic() - start
             _end_all(process.pid, mark)  # what it left running in the background
@@ -169,7 +160,7 @@ def run_program(
 
 
 def _end_of(
-    process: subprocess.Popen[bytes], streams: tuple[BinaryIO, ...], timeout_s: float, max_bytes: int
+    process: subprocess.Popen[bytes], streams: tuple[BinaryIO, ...], timeout_s: float
 ) -> tuple[Any, tuple[type[InputError], str] | None]:
     """Wait for a process, and kill it if it exceeds its time or its output; return its resources and what it exceeded.
 
@@ -185,8 +176,8 @@ def _end_of(
         waited = time.monotonic() - start
         if waited > timeout_s:
             exceeded = OutOfTimeError, f"a program that ends within {timeout_s:g} s (--timeout)"
-        elif max(os.fstat(stream.fileno()).st_size for stream in streams) > max_bytes:
-            exceeded = InputError, f"at most {max_bytes} bytes of output"
+        elif max(os.fstat(stream.fileno()).st_size for stream in streams) > MAX_BYTES:
+            exceeded = InputError, f"at most {MAX_BYTES} bytes of output"
         if exceeded is not None:
             os.kill(process.pid, signal.SIGKILL)  # Popen.kill would take the status that is waited for
         time.sleep(min(0.02, waited / 50))

@@ -77,7 +77,7 @@ class Bench:
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
         started = _spent_s()
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
-        probe = method.prepare(self._problem(base, probe_times), base.setting)
+        probe = method.prepare(Problem.of(self.scene, base.formulation, probe_times), base.setting)
         compile_s = _spent_s() - started
         probe_outcome, probe_s = timed(probe)
         base = replace(base, compile_s=compile_s)
@@ -110,16 +110,13 @@ class Bench:
         It is repeated while that is cheap, and if it came to its end.
         """
         started = _spent_s()
-        work = method.prepare(self._problem(base, times), base.setting)
+        work = method.prepare(Problem.of(self.scene, base.formulation, times), base.setting)
         base = replace(base, compile_s=(base.compile_s or 0.0) + _spent_s() - started)
         outcome, cpu_s = timed(work)
         costs_s = [cpu_s]
         while outcome.status == Status.OK and len(costs_s) < repeats and sum(costs_s) + cpu_s < REPEAT_S:
             costs_s.append(timed(work)[1])
         return base, outcome, costs_s
-
-    def _problem(self, base: Row, times: Array) -> Problem:
-        return Problem.of(self.scene, base.formulation, times)
 
     def _row_of(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
         """Return the row with what a run tells of itself, however far it came."""
@@ -157,7 +154,8 @@ class Bench:
         transits = self.truth.transits
         if not len(transits):
             return row
-        work = method.prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
+        problem = Problem.of(self.scene, row.formulation, np.concatenate([[0.0], transits]))
+        work = method.prepare(problem, row.setting)
         outcome = work()
         if outcome.status != Status.OK:
             return row

@@ -202,15 +202,7 @@ class Case:
         """Return decades by which what is left exceeds the tolerance, plus what the conventions cost."""
         return math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions)
 
-    def explanation(
-        self,
-        causes: tuple[Deviation, ...],
-        corrected_m: float,
-        rest: float,
-        price: float,
-        model: Model | None = None,
-        slip: str = "",
-    ) -> Explanation:
+    def explanation(self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float) -> Explanation:
         """Return the explanation that some causes make up.
 
         Args:
@@ -218,13 +210,11 @@ class Case:
             corrected_m: the largest error in m that they leave.
             rest: the root mean square in m that they leave.
             price: decades that they have to explain.
-            model: as in `Explanation`.
-            slip: as in `Explanation`.
         """
         # what is within the tolerance speaks against no explanation
         score = self.score_of(rest if corrected_m > self.enough else 0.0) + price
         explained = 1 - rest / self.error if self.error else 0.0
-        return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score, self.allowed_m)
+        return Explanation(self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m)
 
     def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""

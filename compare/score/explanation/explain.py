@@ -177,7 +177,7 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     cause, model, left = best
     corrected = model.exact_to_m
     exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
-    return case.explanation((cause,), corrected, rms(left), NAMED, model if exact else None)
+    return replace(case.explanation((cause,), corrected, rms(left), NAMED), model=model if exact else None)
 
 
 def _is_mirrored(cause: Deviation) -> bool:

@@ -146,7 +146,7 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
         if best is not None and rms(rows.positions - moved) <= case.floor:
             break
         seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-        best = best_of(seen, integrators=False, sure=False)
+        best = best_of(seen, stepped=True)
         if best is None or best.reader.right.kind != "sphere":
             return None
         pendulum, theta = case.pendulum_of(best.program)
