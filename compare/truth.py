@@ -63,7 +63,8 @@ def golden_of(
         if fits and not (grid and [t for t in ships.scene.exact.grid if t <= scene.exact.t_end] != scene.exact.grid):
             return ships
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
-    name = f"{scene.id}-{_hash_of_problem(problem)}"
+    parts = problem.model_dump(mode="json", include={"inputs", "pendulum", "site", "release", "run"})
+    name = f"{scene.id}-{hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]}"
     if path := cache.entry("golden", name):
         with suppress(DatasetError, InputError, OSError):
             return _loaded(path)
@@ -171,13 +172,6 @@ def _why_solved(scene: Scene) -> str:
     if scene.id in WITHOUT_FUNCTION and _same_problem(load_scene(scene.id), scene):
         return f"the golden function of {scene.id} does not ship, as it takes {WITHOUT_FUNCTION[scene.id]} MB"
     return f"no golden dataset has the problem of {scene.id}"
-
-
-def _hash_of_problem(scene: Scene) -> str:
-    """Return a hash of the problem that is solved; names, titles and flags do not count."""
-    document = scene.model_dump(mode="json")
-    problem = {key: document[key] for key in ("inputs", "pendulum", "site", "release", "run")}
-    return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 
 
 def shipping(scene: Scene) -> Golden | None:

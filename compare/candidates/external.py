@@ -31,7 +31,6 @@ from .text import MAX_BYTES
 if TYPE_CHECKING:
     from psutil import Process
 
-MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 SETTING = "{setting}"  # stands in a command for the step, tolerance or precision that is varied
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
@@ -93,8 +92,6 @@ def arguments(command: str, scene: Scene) -> list[str]:
     Raises:
         InputError: a placeholder is unknown, quotes are unbalanced, or the command is empty.
     """
-    if len(command) > MAX_COMMAND:
-        raise InputError("--run", command, f"a command of at most {MAX_COMMAND} characters")
     values = placeholders(scene)
     try:
         words = shlex.split(command)

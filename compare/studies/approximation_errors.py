@@ -53,27 +53,6 @@ class QuantityRow:
     reason: str = ""
 
 
-@dataclass(frozen=True)
-class ApproximationErrors:
-    """Errors of one approximation since the release, running maxima over a fine grid of times.
-
-    Attributes:
-        times: in s.
-        position: in m.
-        plane: in arcseconds; NaN as long as one of the two swings has no plane.
-    """
-
-    times: Array
-    position: Array
-    plane: Array
-
-    def at(self, t: float) -> tuple[float, float | None]:
-        """Return the position error in m and the plane error in arcseconds (None if it has none) up to time t."""
-        i = int(np.searchsorted(self.times, t * (1 + 1e-12), side="right")) - 1
-        plane = float(self.plane[i])
-        return float(self.position[i]), None if np.isnan(plane) else plane
-
-
 class ReferenceMotion:
     """The reference's motion of a scene on a fine grid, with which approximations are compared.
 
@@ -91,8 +70,10 @@ class ReferenceMotion:
         self.rows = trajectory(scene, self.times)
         self.plane = self._plane(self.gauge, self.rows)
 
-    def errors(self, motion: Motion) -> ApproximationErrors:
-        """Return the errors of an approximation on the grid.
+    def errors(self, motion: Motion) -> dict[str, Array]:
+        """Return the largest errors of an approximation since the release at each time of the grid, by their names.
+
+        They are `error_m`, and `plane_error_arcsec`, which is NaN as long as one of the two swings has no plane.
 
         Raises:
             FoucaultError: the approximation does not apply, or fails.
@@ -102,7 +83,7 @@ class ReferenceMotion:
         position = np.linalg.norm(rows.T[:3] - self.rows.T[:3], axis=0)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
-        return ApproximationErrors(self.times, np.maximum.accumulate(position), np.fmax.accumulate(plane))
+        return {"error_m": np.maximum.accumulate(position), "plane_error_arcsec": np.fmax.accumulate(plane)}
 
     def largest(self, motion: Motion, marks: Sequence[float]) -> list[tuple[float | None, float | None, Status, str]]:
         """Return position error, plane error, status and reason of an approximation up to each of some times."""
@@ -110,7 +91,9 @@ class ReferenceMotion:
             errors = self.errors(motion)
         except FoucaultError as error:
             return [(None, None, *failure(error))] * len(marks)
-        return [(*errors.at(t), Status.OK, "") for t in marks]
+        places = np.searchsorted(self.times, np.array(marks) * (1 + 1e-12), side="right") - 1
+        rows = zip(*(error[places].tolist() for error in errors.values()), strict=True)
+        return [(position, None if np.isnan(plane) else plane, Status.OK, "") for position, plane in rows]
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)

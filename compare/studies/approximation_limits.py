@@ -101,7 +101,7 @@ def _time_limits(scene: Scene, chosen: Iterable[Motion], t_end: float) -> list[L
             rows += [LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS]
             continue
         for name, quantity, limit in LIMITS:
-            above = np.flatnonzero(~((errors.position if quantity == "error_m" else errors.plane) <= limit))
+            above = np.flatnonzero(~(errors[quantity] <= limit))
             last = len(truth.times) - 1 if not len(above) else int(above[0]) - 1
             rows.append(LimitRow(motion.id, "time", "s", name, ((0.0, float(truth.times[last])),) if last > 0 else ()))
     return rows
