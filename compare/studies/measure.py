@@ -94,13 +94,9 @@ class Bench:
                 expected_s = costs_s[0] + max(0.0, costs_s[0] - probe_s) * float(
                     (times[-1] - part[-1]) / (part[-1] - probe_times[-1])
                 )
-                if outcome.status != Status.OK:
-                    return self._row_of(base, outcome, costs_s[0])
-                if expected_s > self.limit_s:
+                if outcome.status != Status.OK or expected_s > self.limit_s:
                     return self._finished(base, method, outcome, costs_s, part, expected_s)
         base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
-        if outcome.status != Status.OK:
-            return self._row_of(base, outcome, costs_s[0])
         share = float(times[-1] / times[rows - 1])
         return self._finished(base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share)
 
@@ -133,7 +129,12 @@ class Bench:
     def _finished(
         self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array, whole_s: float
     ) -> Row:
-        """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span."""
+        """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span.
+
+        Of one that did not come to that end, it is what the run tells of itself.
+        """
+        if outcome.status != Status.OK:
+            return self._row_of(base, outcome, costs_s[0])
         whole = len(times) == len(self.truth.times)
         errors = self.truth.position_errors(outcome)
         cpu_s = statistics.median(costs_s)

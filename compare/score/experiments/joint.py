@@ -91,7 +91,7 @@ class Part(NamedTuple):
         program, free = self.cause.change(program), self.cause.free
         if self.way == FACTOR and first.given(free):
             value *= trial.given(free) / first.given(free)
-        return program.with_input(free, value) if free else program
+        return program.changed(**{free: value}) if free else program
 
 
 @dataclass(frozen=True)

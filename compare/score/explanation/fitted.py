@@ -218,7 +218,7 @@ def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
             word, text, program = cause.id, cause.text, cause.change(program)
             if cause.free:
                 value = reading.value(cause)
-                program = program.with_input(cause.free, value)
+                program = program.changed(**{cause.free: value})
                 shift = value - float(getattr(case.right, cause.free))
                 uncertainty = reading.reader.uncertainty(reading, cause)
                 text = cause.sentence(value, case.right)

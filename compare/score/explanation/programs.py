@@ -200,10 +200,6 @@ class Program:
         """Return the program with these numbers replaced."""
         return self.changed(**dict(zip(names, values.tolist(), strict=True)))
 
-    def with_input(self, name: str, value: float) -> Self:
-        """Return the program with one number replaced."""
-        return self.changed(**{name: value})
-
 
 def phasors_of(theta: Array, square: float, start: complex) -> Phasors:
     """Return the two phasors of a linear model with the numbers of theta, but for ω² and the position at t = 0."""

@@ -132,7 +132,7 @@ class Reader:
             if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
                 sign = next(other for other in causes if other.id == "coriolis_sign")
                 together = tuple(sign if part is cause else part for part in reading.causes)
-                return self._judged(together, sign.change(reading.program.with_input("rate", self.right.rate)))
+                return self._judged(together, sign.change(reading.program.changed(rate=self.right.rate)))
             for other in causes:
                 if other.free or other.group != cause.group:
                     continue
@@ -158,7 +158,7 @@ class Reader:
             omega = math.sqrt(abs(theta[5])) or 1.0
             square, drag = self._shown(reading.program)
             guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
-            tried = [self._judged(together, program.with_input("step", step)) for step in guesses if step > 0]
+            tried = [self._judged(together, program.changed(step=step)) for step in guesses if step > 0]
             program = min(tried, key=lambda reading: reading.rest).program
         return self._fitted(together, program, free)
 
@@ -199,7 +199,7 @@ class Reader:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
         value = reading.value(cause)
         nudge = self.nudge(reading.program, cause.free)
-        moved = self._off(reading.program.with_input(cause.free, value + nudge)) - self._off(reading.program)
+        moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, 1e-15) / answer if answer else math.inf
 
@@ -219,7 +219,7 @@ class Reader:
         for part in together:
             program = part.change(program)
             if part.free:
-                program = program.with_input(part.free, reading.value(part))
+                program = program.changed(**{part.free: reading.value(part)})
         return self._judged(together, program)
 
     def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:
