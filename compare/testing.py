@@ -29,7 +29,7 @@ from .candidates.arrays import candidate_of, real_array
 from .candidates.candidate import COLUMNS, checked_transits
 from .candidates.external import placeholders
 from .score.judge import judge
-from .score.verdict import Score, percent
+from .score.verdict import Score, lines
 
 
 def assert_agrees(
@@ -116,30 +116,15 @@ class SceneCase:
 
 
 def message(result: Score) -> str:
-    """Return the message of a failed assertion."""
-    errors, transits = result.errors, result.transits
-    worst = result.worst
-    lines = [
-        f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0]}):",
-        f"  expected   {worst.expected!r}",
-        f"  got        {worst.got!r}",
-        f"  difference {worst.difference:+.3e} m",
-        f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
-    ]
-    if result.since is not None:
-        lines.insert(1, f"  {result.since.text}.")
-    each = ", ".join(f"{name} {abs(worst.difference):.2g}" for name, worst in result.worst_of_each.items())
-    lines.append(f"  worst of each: {each}")
-    if result.falls_short:
-        demanded = f"{percent(result.covers)} demanded" if result.covers else "no row after t = 0"
-        lines.append(f"  covers {percent(result.covered)} of the scene's {result.scene.run.t_end} s: {demanded}")
-    if transits is not None and (transits.missed or transits.extra or transits.max_conditioned_m > result.allowed_m):
-        lines.append(
-            f"  transits: {transits.matched} matched, missed at {transits.missed[:3]}, extra at {transits.extra[:3]},"
-        )
-        lines.append(
-            f"  largest error {transits.max_error_s:.3e} s, weighted by |ax| {transits.max_conditioned_m:.3e} m"
-        )
-    if result.explanation is not None:
-        lines += [f"  {line}" for line in result.explanation.lines()]
-    return "\n".join(lines)
+    """Return the message of a failed assertion: the worst number, and all that `foucault score` says."""
+    errors, worst = result.errors, result.worst
+    return "\n".join(
+        [
+            f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0]}):",
+            f"  expected   {worst.expected!r}",
+            f"  got        {worst.got!r}",
+            f"  difference {worst.difference:+.3e} m",
+            f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
+            *lines(result),
+        ]
+    )

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
+from functools import cache as once
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -29,8 +30,6 @@ DENSE_FORMAT = (
     b"dense 6"  # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
 )
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
-
-_here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
 
 Report = Callable[[float], None]
 
@@ -64,15 +63,21 @@ def golden_of(
         if fits and not (grid and [t for t in ships.scene.exact.grid if t <= scene.exact.t_end] != scene.exact.grid):
             return ships
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
-    name = f"{scene.id}-{_hash_of_problem(problem)}"
-    path = _here.get(name) or cache.entry("golden", name)
-    if path is not None:
+    parts = problem.model_dump(mode="json", include={"inputs", "pendulum", "site", "release", "run"})
+    name = f"{scene.id}-{hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]}"
+    if path := cache.entry("golden", name):
         with suppress(DatasetError, InputError, OSError):
-            golden = _loaded(path)
-            if _is_of(golden, problem):
-                return golden
-        cache.discard(path)  # damaged, or another problem's under this name: it is solved again
-    return _loaded(_solved(problem, name, announce, report))
+            return _loaded(path)
+        cache.discard(path)  # damaged: it is solved again
+    from reference import solve, write
+
+    @once  # the first place where it is written may have no room
+    def solution() -> Solution:
+        if announce is not None:
+            announce(f"{_why_solved(problem)}: solving it to {problem.run.digits} digits")
+        return solve(problem, report=report)
+
+    return _loaded(cache.kept("golden", name, lambda path: write(solution(), path)))
 
 
 def with_function(scene: Scene) -> Golden | None:
@@ -138,13 +143,6 @@ def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | 
     return (solution, Dense.of(times, solution.grid, [row[t] for t in exact])) if solution else None
 
 
-def _is_of(golden: Golden, problem: Scene) -> bool:
-    """Return True if a dataset is what `solve` gives for a problem: inputs, span, grid, transits, digits and level."""
-    manifest = golden.manifest
-    reached = manifest.digits == problem.run.digits and manifest.level == problem.run.level
-    return reached and _hash_of_problem(golden.scene) == _hash_of_problem(problem)
-
-
 def _loaded(folder: Path) -> Golden:
     """Load a dataset; it is checked and read again only if a file has been touched since this process read it."""
     stats = (path.stat() for path in [folder, *sorted(folder.iterdir())]) if folder.is_dir() else ()
@@ -165,18 +163,6 @@ def _shortened(scene: Scene, until: float | None) -> Scene:
     return scene.with_values([f"run.t_end={end}"]) if end < Decimal(scene.run.t_end) else scene
 
 
-def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, report: Report | None) -> Path:
-    from reference import solve, write
-
-    if announce is not None:
-        announce(f"{_why_solved(scene)}: solving it to {scene.run.digits} digits")
-    solution = solve(scene, report=report)
-    path = cache.store("golden", name, lambda path: write(solution, path))
-    if path is None:
-        path = _here[name] = write(solution, cache.temporary() / name)
-    return path
-
-
 def _why_solved(scene: Scene) -> str:
     """Return why no dataset that ships serves."""
     if scene.run.sections:
@@ -186,13 +172,6 @@ def _why_solved(scene: Scene) -> str:
     if scene.id in WITHOUT_FUNCTION and _same_problem(load_scene(scene.id), scene):
         return f"the golden function of {scene.id} does not ship, as it takes {WITHOUT_FUNCTION[scene.id]} MB"
     return f"no golden dataset has the problem of {scene.id}"
-
-
-def _hash_of_problem(scene: Scene) -> str:
-    """Return a hash of the problem that is solved; names, titles and flags do not count."""
-    document = scene.model_dump(mode="json")
-    problem = {key: document[key] for key in ("inputs", "pendulum", "site", "release", "run")}
-    return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 
 
 def shipping(scene: Scene) -> Golden | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -21,24 +20,33 @@ MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two milli
 MOST_ARRAYS = 1000
 TRANSITS = "transits"
 TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
+AS_NAMED = Layout({}, {}, ())  # arrays by their columns' names, in SI units
 _EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
 
 
-def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None = None) -> Candidate:
+def candidate_of(
+    name: str, arrays: Mapping[str, Array], transits: Array | None = None, made: Layout = AS_NAMED
+) -> Candidate:
     """Make a candidate of named arrays of real numbers, t among them; long doubles keep their digits in `low`.
+
+    Args:
+        name: of the candidate.
+        arrays: in SI units, or as a layout says.
+        transits: times in s, or None.
+        made: the layout of a file.
 
     Raises:
         InputError: as in `Candidate.of`.
     """
-    near = {key: np.asarray(array, dtype=np.float64) for key, array in arrays.items()}
+    columns = {key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays}
     low = {}
-    for key, array in arrays.items():
-        if array.dtype.itemsize > 8 and np.isfinite(near[key]).all():
-            remainder = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
+    for key, near in columns.items():
+        if arrays[key].dtype.itemsize > 8 and np.isfinite(near).all():
+            remainder = np.asarray(arrays[key] - near.astype(arrays[key].dtype), dtype=np.float64)
             if remainder.any():
                 low[key] = remainder
-    columns = {key: near[key] for key in COLUMNS if key in near}
-    return Candidate.of(name, near["t"], columns, low=low, transits=transits)
+    columns, low = made.converted(columns, low)
+    return Candidate.of(name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions)
 
 
 def candidate_from(columns: Any) -> Candidate:
@@ -66,7 +74,7 @@ def real_array(values: Any, name: str) -> Array:
     except ValueError:
         raise InputError(name, "rows of different lengths", "an array of real numbers") from None
     if array.size and array.dtype.kind not in "fiu":
-        raise InputError(name, f"dtype {array.dtype}", "real numbers")
+        raise InputError(name, f"dtype {array.dtype}", "an array of real numbers")
     return array
 
 
@@ -86,7 +94,7 @@ def read_archive(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Ca
     if naming.columns:
         raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
     times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
-    transits = None if times is None else checked_transits(np.asarray(_real(times, field), dtype=np.float64), field)
+    transits = None if times is None else checked_transits(real_array(times, field), field)
     made = layout([*arrays], NEEDED, naming.units, name)
     return _candidate(name, [*arrays.values()], made, transits)
 
@@ -111,7 +119,7 @@ def read_array(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Cand
 
 def _of_table(array: object, name: str, naming: Naming) -> Candidate:
     """Make a candidate of a table, shape (rows, columns); the user names its columns, or their number does."""
-    table, made = _real(array, name), None
+    table, made = real_array(array, name), None
     count = table.shape[1] if table.ndim == 2 else 0
     if not naming.columns:
         made = by_number(count, NEEDED, naming.units, "--columns")
@@ -125,11 +133,9 @@ def _of_table(array: object, name: str, naming: Naming) -> Candidate:
 
 
 def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Array | None = None) -> Candidate:
-    """Make a candidate of arrays of which each column is the one at its place, in SI units."""
-    columns = {column: _real(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
-    candidate = candidate_of(name, columns, transits)
-    scaled, low = made.converted({"t": candidate.t, **candidate.columns}, candidate.low)
-    return replace(candidate, t=scaled.pop("t"), columns=scaled, low=low, conventions=made.conventions)
+    """Make a candidate of arrays of which each column is the one at its place."""
+    columns = {column: real_array(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
+    return candidate_of(name, columns, transits, made)
 
 
 def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str, most: int = MAX_BYTES) -> None:
@@ -154,19 +160,12 @@ def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
         chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
         chosen = chosen or [word for word in members if word == TABLE]
         size = sum(members[word].file_size for word in chosen)
-        if size <= MAX_UNPACKED:
-            data.seek(0)
-            with np.load(data, allow_pickle=False) as arrays:
-                return {word: arrays[word] for word in chosen}
+        if size > MAX_UNPACKED:
+            raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
+        data.seek(0)
+        with np.load(data, allow_pickle=False) as arrays:
+            return {word: arrays[word] for word in chosen}
     except InputError:
         raise
     except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
-    raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
-
-
-def _real(array: object, name: str) -> Array:
-    if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu":
-        kind = f"dtype {array.dtype}" if isinstance(array, np.ndarray) else "no NumPy array"
-        raise InputError(name, kind, "an array of real numbers")
-    return array

@@ -137,6 +137,7 @@ def checked_transits(times: Array, name: str) -> Array:
         InputError: they are not one-dimensional, not finite, negative, or decrease; a time that stands there twice
             is an extra transit.
     """
+    times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1:
         raise InputError(name, f"shape {times.shape}", "one-dimensional times in s")
     if not np.isfinite(times).all():
@@ -152,7 +153,7 @@ def checked_transits(times: Array, name: str) -> Array:
             f"{times[row + 1]:.17g} as transit {row + 2} after {times[row]:.17g}",
             "times in s that increase",
         )
-    return np.asarray(times, dtype=np.float64)
+    return times
 
 
 def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:

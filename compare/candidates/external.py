@@ -31,7 +31,6 @@ from .text import MAX_BYTES
 if TYPE_CHECKING:
     from psutil import Process
 
-MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 SETTING = "{setting}"  # stands in a command for the step, tolerance or precision that is varied
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
@@ -69,12 +68,8 @@ class OutOfTimeError(InputError):
     """A program took longer than allowed, and was ended."""
 
 
-class FailedError(InputError):
-    """A program ended with an exit status other than 0, or by a signal."""
-
-    def __init__(self, status: int, words: list[str], tail: str) -> None:
-        super().__init__("--run", f"exit status {status} of {shlex.join(words)}", "exit status 0", tail)
-        self.by_signal = status < 0
+class CrashedError(InputError):
+    """A program was ended by a signal."""
 
 
 def placeholders(scene: Scene) -> dict[str, str]:
@@ -97,8 +92,6 @@ def arguments(command: str, scene: Scene) -> list[str]:
     Raises:
         InputError: a placeholder is unknown, quotes are unbalanced, or the command is empty.
     """
-    if len(command) > MAX_COMMAND:
-        raise InputError("--run", command, f"a command of at most {MAX_COMMAND} characters")
     values = placeholders(scene)
     try:
         words = shlex.split(command)
@@ -106,9 +99,10 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
         raise InputError("--run", command, "a command")
-    for word in _as_typed(command):
-        if _FOR_A_SHELL.fullmatch(word):
-            raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
+    with contextlib.suppress(ValueError):  # where quotes are escaped, it is not known which words stand in quotes
+        for word in shlex.split(command, posix=False):
+            if _FOR_A_SHELL.fullmatch(word):
+                raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
 
     def value(match: re.Match[str]) -> str:
         if match[1]:
@@ -122,17 +116,7 @@ def arguments(command: str, scene: Scene) -> list[str]:
     return [_PLACEHOLDER.sub(value, word) for word in words]
 
 
-def _as_typed(command: str) -> list[str]:
-    """Return the words with their quotes; none where escaped quotes make that impossible."""
-    try:
-        return shlex.split(command, posix=False)
-    except ValueError:
-        return []
-
-
-def run_program(
-    words: list[str], timeout_s: float = TIMEOUT_S, max_bytes: int = MAX_BYTES
-) -> tuple[BinaryIO, float, float]:
+def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryIO, float, float]:
     """Run a program once and return its stdout (an open file, at its start), CPU seconds and wall seconds.
 
     Raises:
@@ -155,7 +139,7 @@ def run_program(
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         try:
             with terminable():
-                usage, exceeded = _end_of(process, (output, errors), timeout_s, max_bytes)
+                usage, exceeded = _end_of(process, (output, errors), timeout_s)
         finally:
             wall = time.monotonic() - start
             _end_all(process.pid, mark)  # what it left running in the background
@@ -165,14 +149,15 @@ def run_program(
             kind, expected = exceeded
             raise kind("--run", shlex.join(words), expected, tail)
         if process.returncode:
-            raise FailedError(process.returncode, words, tail)
+            got = f"exit status {process.returncode} of {shlex.join(words)}"
+            raise (CrashedError if process.returncode < 0 else InputError)("--run", got, "exit status 0", tail)
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
 
 
 def _end_of(
-    process: subprocess.Popen[bytes], streams: tuple[BinaryIO, ...], timeout_s: float, max_bytes: int
+    process: subprocess.Popen[bytes], streams: tuple[BinaryIO, ...], timeout_s: float
 ) -> tuple[Any, tuple[type[InputError], str] | None]:
     """Wait for a process, and kill it if it exceeds its time or its output; return its resources and what it exceeded.
 
@@ -188,8 +173,8 @@ def _end_of(
         waited = time.monotonic() - start
         if waited > timeout_s:
             exceeded = OutOfTimeError, f"a program that ends within {timeout_s:g} s (--timeout)"
-        elif max(os.fstat(stream.fileno()).st_size for stream in streams) > max_bytes:
-            exceeded = InputError, f"at most {max_bytes} bytes of output"
+        elif max(os.fstat(stream.fileno()).st_size for stream in streams) > MAX_BYTES:
+            exceeded = InputError, f"at most {MAX_BYTES} bytes of output"
         if exceeded is not None:
             os.kill(process.pid, signal.SIGKILL)  # Popen.kill would take the status that is waited for
         time.sleep(min(0.02, waited / 50))

@@ -28,16 +28,6 @@ class Snippet:
     comment: str = "//"
     also: Sequence[str] = ()
 
-    def text(self) -> str:
-        """Return the lines with what each is for."""
-        width = max(len(self.once), len(self.each)) + 2
-        mark = self.comment
-        return (
-            f"{self.once:{width}}{mark} once, before the loop over time\n"
-            f"{self.each:{width}}{mark} at every output time, at t = 0 too\n"
-            f"{self.shell}\n"
-        )
-
 
 SNIPPETS = {language: Snippet(**lines) for language, lines in texts_of(__file__).items()}
 
@@ -52,8 +42,11 @@ def how(language: str) -> str:
     snippet = next((lines for name, lines in SNIPPETS.items() if word in (name, *lines.also)), None)
     if snippet is None:
         raise InputError("--how", language, in_words([*SNIPPETS]), did_you_mean(word, [*SNIPPETS], "Any text will do."))
-    about = (
+    width = max(len(snippet.once), len(snippet.each)) + 2
+    return (
+        f"{snippet.once:{width}}{snippet.comment} once, before the loop over time\n"
+        f"{snippet.each:{width}}{snippet.comment} at every output time, at t = 0 too\n"
+        f"{snippet.shell}\n\n"
         "t in s; x east and y north of the suspension, in m; z, vx, vy, vz too if there: z up, so that it is negative\n"
         "below. Any times will do. Then: foucault score paris mine.csv, or have it run by --run 'COMMAND'."
     )
-    return f"{snippet.text()}\n{about}"

@@ -33,7 +33,7 @@ from reference.system.documents import open_at_once
 from .arrays import read_archive, read_array
 from .candidate import Candidate, Deviation, checked_transits
 from .names import NEEDED, Layout, Naming
-from .text import MARKS, Header, Spelling, chunks, comment, is_number, spelling
+from .text import COMMENT, Header, Spelling, chunks, is_number, spelling
 
 _TELLING = 6  # bytes that tell an archive from text
 MAX_ROWS = 2_000_000
@@ -177,12 +177,11 @@ class ColumnReader:
             text = line.strip().removeprefix("\ufeff")
             if not text:
                 continue
-            remark = comment(text) if text[0] in MARKS else None
-            if remark is not None:
+            if remark := COMMENT.match(text):
                 if self.layout is None:
-                    self.header.add(number, remark, True)
-                if remark.split()[:1] == ["P"] and not self.alone:
-                    self._take_transit(remark, number)
+                    self.header.add(number, remark[1], True)
+                if remark[1].split()[:1] == ["P"] and not self.alone:
+                    self._take_transit(remark[1], number)
             elif self.layout is not None or self._begins(text, number):
                 rows.append(text)
                 numbers.append(number)
@@ -213,7 +212,7 @@ class ColumnReader:
 
     def _parse(self, lines: list[str], numbers: list[int]) -> None:
         separator, indices = self.spelled.separator, [*self.places.values()]
-        lines = lines if self.spelled.is_plain else [self.spelled.plain(line) for line in lines]
+        lines = [self.spelled.plain(line) for line in lines]
         try:
             uniform = {line.count(separator) if separator else len(line.split()) - 1 for line in lines}
             if uniform != {self.fields - 1}:

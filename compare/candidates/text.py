@@ -17,8 +17,7 @@ MAX_LINE = 1 << 16
 MAX_LINES = 4_000_000  # comments and empty lines included
 CHUNK = 1 << 22
 _BINARY = "Binary data is read from .npz only."
-COMMENTS = ("#", "%", "!", "//")  # a line that begins with one of these is a comment
-MARKS = {mark[0] for mark in COMMENTS}
+COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
 FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
 APART = re.compile(r"\s{2,}|\t")
@@ -92,11 +91,6 @@ class Spelling:
     fortran: bool = False
     quoted: bool = False
 
-    @property
-    def is_plain(self) -> bool:
-        """True if rows are as `plain` returns them already."""
-        return not (self.decimal_comma or self.fortran or self.quoted)
-
     def plain(self, line: str) -> str:
         """Return a row with a point, an E and no quotes."""
         if self.decimal_comma:
@@ -132,12 +126,6 @@ def words(line: str) -> list[list[str]]:
     ways = [line.split(separator) for separator in (",", ";", "\t") if separator in line]
     ways += [APART.split(line.strip()), BEFORE_BRACKET.sub("", line).split(), line.split()]
     return [way[:-1] if len(way) > 1 and not way[-1].strip() else way for way in ways]
-
-
-def comment(line: str) -> str | None:
-    """Return a comment without its mark; None if the line is none."""
-    mark = next((mark for mark in COMMENTS if line.startswith(mark)), None)
-    return None if mark is None else line[len(mark) :].strip()
 
 
 @dataclass

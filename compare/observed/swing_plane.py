@@ -36,13 +36,11 @@ class Gauge:
 
     Attributes:
         rest: unit vector from the suspension to the rest position.
-        length: l in m.
         omega: ω in rad/s.
         turn: Ω_n in rad/s.
     """
 
     rest: tuple[float, float, float]
-    length: float
     omega: float
     turn: float
 
@@ -62,8 +60,7 @@ class Gauge:
         if not square > 0:
             raise UnreachableError("nothing pulls the bob back to its rest position: there is no swing to measure.")
         east, north, up = hanging if rest is None else scaled(rest, start.k.length)
-        length, omega = float(start.k.length), float(start.ctx.sqrt(square))
-        return cls((float(east), float(north), float(up)), length, omega, float(turn))
+        return cls((float(east), float(north), float(up)), float(start.ctx.sqrt(square)), float(turn))
 
     @cached_property
     def period(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from reference import InputError, Scene
 from reference.status import Status
 
-from ..approximations import APPROXIMATIONS
+from ..approximations import APPROXIMATIONS, motions
 from ..studies.approximation_errors import TimeRow, error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, UNITS, SweepRow, sweep
 from ..studies.approximation_limits import limits as limits_of
@@ -37,11 +37,11 @@ def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) 
         scene: the scene to approximate.
         report: called with the number of tables that are measured, and of all.
     """
-    t_end = float(scene.exact.t_end)
+    t_end, chosen = float(scene.exact.t_end), [*motions().values()]
     within = min(SWEEP_S, t_end)
     tables: list[Callable[[], Iterable[Any]]] = [
-        *(partial(limits_of, scene, over=over, t_end=t_end if over == "time" else within) for over in OVERS),
-        partial(error_table, scene, t_end=t_end),
+        *(partial(limits_of, scene, chosen, over, t_end if over == "time" else within) for over in OVERS),
+        partial(error_table, scene, chosen, t_end),
         partial(quantity_table, scene),
     ]
     measured = []
@@ -97,13 +97,13 @@ def report_of(scene: Scene) -> Report:
 
 def page_text(scene: Scene, report: dict[str, Any]) -> str:
     """Return the page as HTML."""
-    t_end = report["t_end"]
+    t_end, chosen = report["t_end"], [*motions().values()]
     within = min(SWEEP_S, t_end)
-    over_time = error_table(scene, t_end=t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
+    over_time = error_table(scene, chosen, t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
     same_line = "Approximations with nearly equal errors share a line."
     sweeps = [
         figure(
-            chart(sweep(scene, over=over, t=within)),
+            chart(sweep(scene, chosen, over, within)),
             f"Largest position error within {within:g} s, as a function of {over}.",
         )
         for over in OVERS[1:]

@@ -21,6 +21,7 @@ def document(score: Score) -> dict[str, Any]:
     """Return a score as a JSON document."""
     errors, transits = score.errors, score.transits
     turn = score.swing.largest_turn
+    readings = [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions]
     fields: dict[str, Any] = {
         "scene": score.scene.id,
         "candidate": score.candidate.name,
@@ -51,12 +52,7 @@ def document(score: Score) -> dict[str, Any]:
         "transits": None if transits is None else transits.document(score.allowed_m),
         "reference": {"level": score.golden.level, "bound_m": errors.bound_m},
         "grade": score.grade,
-        "conventions": [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions],
-        "model": None,
-        "causes": [],
-        "corrected": None,
-        "slip": None,
-        "diagnosis": None,
+        **explained(score.explanation or Explanation(), readings),
         "baseline": None if score.since is None else vars(score.since) | {"text": score.since.text},
         "problem": score.problem,
         "notes": list(score.notes),
@@ -65,8 +61,6 @@ def document(score: Score) -> dict[str, Any]:
         fields["timing"] = vars(score.timing)
     if score.experiments is not None:
         fields["experiments"] = score.experiments.document()
-    if score.explanation is not None:
-        fields |= explained(score.explanation, fields["conventions"])
     return fields
 
 

@@ -158,11 +158,6 @@ class TrajectoryErrors:
         return row, max(names, key=lambda name: abs(float(self.components[name][row])))
 
     @property
-    def worst_rows(self) -> dict[str, int]:
-        """Row of the largest error of each column."""
-        return {name: int(np.argmax(np.abs(column))) for name, column in self.components.items()}
-
-    @property
     def growth_exponent(self) -> float | None:
         """Exponent p of error ∝ t^p, fitted to the errors above the truth's bound; None if there are too few rows."""
         above = (self.t > 0) & (self.position > self.bound_m)

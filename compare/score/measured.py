@@ -127,10 +127,8 @@ def measured(
     if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or not seen)):
         inputs, last = ranges.scene.exact, max([*kept, *seen])
         # a swing beyond the last one, so that a transit is not cut off
-        later = (
-            last + Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else 2 * last
-        )
-        wanted = sorted({Fraction(0), *kept, *([min(later, end)] if seen or not last else [])})
+        swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
+        wanted = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not last else [])})
         sought = {"run.transits": str(bool(seen and not section)).lower(), "run.sections": section or ""}
         scene = ranges.scene.with_values(sought)
         box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
@@ -192,18 +190,17 @@ def _zeros(
     times: Sequence[Fraction], free: list[tuple[tuple[Fraction, Fraction], bool]], word: str
 ) -> Iterator[Outside]:
     """Yield transits or passages in no proven interval, or in one whose only one is another."""
-    every = [ends for ends, _ in free]
+    every = [*free]
 
     def gap(t: Fraction, ends: tuple[Fraction, Fraction]) -> Fraction:
         return max(ends[0] - t, t - ends[1], Fraction(0))
 
     for t in times:
-        nearest = min(free, key=lambda interval: gap(t, interval[0]), default=None)
-        if nearest is None or gap(t, nearest[0]):
-            ends = nearest[0] if nearest else min(every, key=lambda ends: gap(t, ends))
+        ends, one = min(free or every, key=lambda interval: gap(t, interval[0]))
+        if not free or gap(t, ends):
             yield Outside(word, *map(float, (t, t, *ends, gap(t, ends))))
-        elif nearest[1]:
-            free.remove(nearest)
+        elif one:
+            free.remove((ends, one))
 
 
 def _counted(count: int, word: str) -> str:

@@ -9,6 +9,8 @@ from functools import cached_property
 from html import escape
 from typing import Any
 
+import numpy as np
+
 from reference import FoucaultError, Golden, Scene, Solution
 from reference.status import Status
 
@@ -88,7 +90,7 @@ class Score:
     @property
     def worst_of_each(self) -> dict[str, Worst]:
         """The largest error of each column."""
-        return {name: self._at(row, name) for name, row in self.errors.worst_rows.items()}
+        return {name: self._at(int(np.abs(off).argmax()), name) for name, off in self.errors.components.items()}
 
     def _at(self, row: int, name: str) -> Worst:
         expected, got = self.errors.truth.states[row, COLUMNS.index(name)], self.candidate.columns[name][row]

@@ -7,22 +7,19 @@ position: the direction that somebody who believes the approximation would draw 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
-from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
-from reference.errors import did_you_mean
+from reference import FoucaultError, Scene, UnreachableError, trajectory
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..approximations import Approximation, Motion, motions, quantities
+from ..approximations import Motion, quantities
 from ..observed.swing_plane import Gauge
 from .row import failure
-
-Kind = TypeVar("Kind", bound=Approximation)
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period
@@ -56,48 +53,27 @@ class QuantityRow:
     reason: str = ""
 
 
-@dataclass(frozen=True)
-class ApproximationErrors:
-    """Errors of one approximation since the release, running maxima over a fine grid of times.
-
-    Attributes:
-        times: in s.
-        position: in m.
-        plane: in arcseconds; NaN as long as one of the two swings has no plane.
-    """
-
-    times: Array
-    position: Array
-    plane: Array
-
-    def at(self, t: float) -> tuple[float, float | None]:
-        """Return the position error in m and the plane error in arcseconds (None if it has none) up to time t."""
-        i = int(np.searchsorted(self.times, t * (1 + 1e-12), side="right")) - 1
-        plane = float(self.plane[i])
-        return float(self.position[i]), None if np.isnan(plane) else plane
-
-
 class ReferenceMotion:
     """The reference's motion of a scene on a fine grid, with which approximations are compared.
 
     Args:
         scene: to be approximated.
-        t_end: end in s; the grid has 16 times in a period, and holds `marks` exactly.
+        t_end: end in s, above 0; the grid has 16 times in a period, and holds `marks` exactly.
         marks: further times in s.
     """
 
     def __init__(self, scene: Scene, t_end: float, marks: Iterable[float] = ()) -> None:
         self.scene, self.gauge = scene, _gauge(scene)
         period = t_end / _SWINGS if self.gauge is None else min(self.gauge.period, t_end)
-        if not 0 < t_end < np.inf:
-            raise InputError("t_end", t_end, "a time above 0 in s")
         fine = np.arange(0.0, t_end, max(period / _PER_SWING, t_end / _MOST))
         self.times: Array = np.unique(np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end])))
         self.rows = trajectory(scene, self.times)
         self.plane = self._plane(self.gauge, self.rows)
 
-    def errors(self, motion: Motion) -> ApproximationErrors:
-        """Return the errors of an approximation on the grid.
+    def errors(self, motion: Motion) -> dict[str, Array]:
+        """Return the largest errors of an approximation since the release at each time of the grid, by their names.
+
+        They are `error_m`, and `plane_error_arcsec`, which is NaN as long as one of the two swings has no plane.
 
         Raises:
             FoucaultError: the approximation does not apply, or fails.
@@ -107,7 +83,7 @@ class ReferenceMotion:
         position = np.linalg.norm(rows.T[:3] - self.rows.T[:3], axis=0)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
-        return ApproximationErrors(self.times, np.maximum.accumulate(position), np.fmax.accumulate(plane))
+        return {"error_m": np.maximum.accumulate(position), "plane_error_arcsec": np.fmax.accumulate(plane)}
 
     def largest(self, motion: Motion, marks: Sequence[float]) -> list[tuple[float | None, float | None, Status, str]]:
         """Return position error, plane error, status and reason of an approximation up to each of some times."""
@@ -115,7 +91,9 @@ class ReferenceMotion:
             errors = self.errors(motion)
         except FoucaultError as error:
             return [(None, None, *failure(error))] * len(marks)
-        return [(*errors.at(t), Status.OK, "") for t in marks]
+        places = np.searchsorted(self.times, np.array(marks) * (1 + 1e-12), side="right") - 1
+        rows = zip(*(error[places].tolist() for error in errors.values()), strict=True)
+        return [(position, None if np.isnan(plane) else plane, Status.OK, "") for position, plane in rows]
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
@@ -129,36 +107,16 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
         return None
 
 
-def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
-    """Return approximations of the motion by their ids, all if None.
-
-    Raises:
-        InputError: an unknown id, or one of a single number.
-    """
-    return _chosen(motions(), ids, "an approximation of the motion; those of a number stand in quantity_table")
-
-
-def _chosen(known: Mapping[str, Kind], ids: Sequence[str] | None, expected: str) -> list[Kind]:
-    words = list(known) if ids is None else ids
-    for word in words:
-        if word not in known:
-            advice = did_you_mean(word, known, "`foucault methods` lists them.")
-            raise InputError("approximations", word, expected, advice)
-    return [known[word] for word in words]
-
-
-def error_table(
-    scene: Scene, ids: Sequence[str] | None = None, t_end: float = TIMES[-1], times: Sequence[float] = TIMES
-) -> list[TimeRow]:
+def error_table(scene: Scene, chosen: Iterable[Motion], t_end: float, times: Sequence[float] = TIMES) -> list[TimeRow]:
     """Return the errors of approximations of the motion up to each of `times` before t_end, and up to t_end.
 
     Args:
         scene: to be approximated.
-        ids: of the approximations; all of the motion if None.
+        chosen: the approximations.
         t_end: in s.
         times: in s.
     """
-    chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
+    marks = [*(t for t in times if t < t_end), t_end]
     truth = ReferenceMotion(scene, t_end, marks)
     return [
         TimeRow(motion.id, t, *errors)
@@ -167,10 +125,10 @@ def error_table(
     ]
 
 
-def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
+def quantity_table(scene: Scene) -> list[QuantityRow]:
     """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
     rows, truths = [], dict[Any, Any]()
-    for approximation in _chosen(quantities(), ids, "an approximation of a number; motions stand in error_table"):
+    for approximation in quantities().values():
         try:
             value = approximation.value(scene)
             if approximation.truth not in truths:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Any
@@ -14,11 +14,12 @@ from reference.status import Status
 
 from ..approximations.approximation import Motion
 from ..approximations.case import Case
-from .approximation_errors import TIMES, ReferenceMotion, TimeRow, chosen_motions
+from .approximation_errors import ReferenceMotion, TimeRow
 from .row import failure
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
 SWEEP_S = 3600.0
+LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
 UNITS: dict[str, str] = {"amplitude": "m", "latitude": "degrees", "length": "m", "rotation_rate": "rad/s"}
 _DIGITS = 40  # of a release as it is written into a scene
 _FIELDS = {"latitude": "site.latitude", "rotation_rate": "site.rotation_rate"}
@@ -51,61 +52,47 @@ class LimitRow:
     reason: str = ""
 
 
-def sweep_values(scene: Scene, over: str) -> tuple[float, ...]:
-    """Return a sweep's default values: amplitudes of 1e-5 to 0.1 l, latitudes every 15°, lengths of 1 to 200 m."""
+def sweep_values(scene: Scene, over: str) -> Sequence[float]:
+    """Return a sweep's values: amplitudes of 1e-5 to 0.1 l, latitudes every 15°, or lengths of 1 to 200 m."""
     if over == "amplitude":
-        return tuple(float(v) for v in np.geomspace(1e-5, 0.1, 9) * float(scene.exact.length))
-    if over == "latitude":
-        return tuple(float(v) for v in range(-90, 91, 15))
-    if over == "length":
-        return (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
-    raise InputError("over", over, "amplitude, latitude or length")
+        return [float(v) for v in np.geomspace(1e-5, 0.1, 9) * float(scene.exact.length)]
+    return [float(v) for v in range(-90, 91, 15)] if over == "latitude" else LENGTHS
 
 
-def sweep(
-    scene: Scene,
-    ids: Sequence[str] | None = None,
-    over: str = "amplitude",
-    values: Sequence[float] | None = None,
-    t: float = SWEEP_S,
-) -> list[SweepRow]:
-    """Return errors up to t in s as the amplitude, latitude, length or rotation rate of the scene is `varied`."""
-    chosen, rows = chosen_motions(ids), []
-    for value in sweep_values(scene, over) if values is None else values:
-        changed = varied(scene, over, value)
-        truth = ReferenceMotion(changed, t)
+def sweep(scene: Scene, chosen: Iterable[Motion], over: str, t: float) -> list[SweepRow]:
+    """Return the errors of approximations up to t in s as amplitude, latitude or length of the scene is `varied`."""
+    rows = []
+    for value in sweep_values(scene, over):
+        truth = ReferenceMotion(varied(scene, over, value), t)
         rows += [SweepRow(motion.id, t, *truth.largest(motion, [t])[0], over=over, value=value) for motion in chosen]
     return rows
 
 
-def limits(
-    scene: Scene, ids: Sequence[str] | None = None, over: str = "time", t_end: float | None = None
-) -> list[LimitRow]:
+def limits(scene: Scene, chosen: Sequence[Motion], over: str, t_end: float) -> list[LimitRow]:
     """Find where each approximation is good to 1 mm, 1 µm and 1 arcsecond of swing plane.
 
     Args:
         scene: to be approximated.
-        ids: of the approximations; all of the motion if None.
-        over: `time` up to t_end (a day), or `amplitude`, `latitude`, `length` up to t_end (an hour). Between the
-            values of a sweep the logarithm of the error is interpolated.
+        chosen: the approximations.
+        over: `time` up to t_end, or `amplitude`, `latitude`, `length` with all errors up to t_end. Between the values
+            of a sweep the logarithm of the error is interpolated.
         t_end: in s.
     """
     if over == "time":
-        return _time_limits(scene, chosen_motions(ids), TIMES[-1] if t_end is None else t_end)
-    rows = sweep(scene, ids, over, t=SWEEP_S if t_end is None else t_end)
-    limit_rows = []
-    for word in dict.fromkeys(row.approximation for row in rows):
-        of_one = sorted((row for row in rows if row.approximation == word), key=lambda row: row.value)
+        return _time_limits(scene, chosen, t_end)
+    rows, limit_rows = sweep(scene, chosen, over, t_end), []
+    for motion in chosen:
+        of_one = sorted((row for row in rows if row.approximation == motion.id), key=lambda row: row.value)
         nowhere = all(row.error_m is None for row in of_one)
         outcome = (of_one[0].status, of_one[0].reason) if nowhere else (Status.OK, "")
         for name, quantity, limit in LIMITS:
             errors = [getattr(row, quantity) for row in of_one]
             good = _below(over, [row.value for row in of_one], errors, limit)
-            limit_rows.append(LimitRow(word, over, UNITS[over], name, good, *outcome))
+            limit_rows.append(LimitRow(motion.id, over, UNITS[over], name, good, *outcome))
     return limit_rows
 
 
-def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[LimitRow]:
+def _time_limits(scene: Scene, chosen: Iterable[Motion], t_end: float) -> list[LimitRow]:
     truth, rows = ReferenceMotion(scene, t_end, np.geomspace(_FIRST_S, t_end, _EXTRA_TIMES)), []
     for motion in chosen:
         try:
@@ -114,7 +101,7 @@ def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[L
             rows += [LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS]
             continue
         for name, quantity, limit in LIMITS:
-            above = np.flatnonzero(~((errors.position if quantity == "error_m" else errors.plane) <= limit))
+            above = np.flatnonzero(~(errors[quantity] <= limit))
             last = len(truth.times) - 1 if not len(above) else int(above[0]) - 1
             rows.append(LimitRow(motion.id, "time", "s", name, ((0.0, float(truth.times[last])),) if last > 0 else ()))
     return rows
@@ -146,7 +133,7 @@ def _below(
     return tuple(good)
 
 
-def varied(scene: Scene, over: str, value: float | str) -> Scene:
+def varied(scene: Scene, over: str, value: float) -> Scene:
     """Return the scene with one quantity changed.
 
     Args:
@@ -157,16 +144,12 @@ def varied(scene: Scene, over: str, value: float | str) -> Scene:
         value: its new value.
 
     Raises:
-        InputError: `over` is unknown, or no scene can have the value.
+        InputError: no scene can have the value.
     """
-    text = value if isinstance(value, str) else repr(float(value))
-    if over in _FIELDS:
-        return scene.with_values([f"{_FIELDS[over]}={text}"])
+    text = repr(float(value))
     if over == "length":
         return _lengthened(scene, text)
-    if over == "amplitude":
-        return _displaced(scene, text)
-    raise InputError("over", over, f"one of {', '.join(UNITS)}")
+    return _displaced(scene, text) if over == "amplitude" else scene.with_values([f"{_FIELDS[over]}={text}"])
 
 
 def _lengthened(scene: Scene, text: str) -> Scene:

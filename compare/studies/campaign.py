@@ -129,9 +129,7 @@ def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tup
     types = TypeAdapter(kind)
     for record in json_lines(path, "--out"):
         with suppress(KeyError, TypeError, ValueError):
-            key = record["recipe"], tuple(record["item"])
-            hash(key)
-            yield key, types.validate_python(record["result"])
+            yield (record["recipe"], tuple(record["item"])), types.validate_python(record["result"])
 
 
 def _store(path: Path | None, record: dict[str, Any]) -> None:

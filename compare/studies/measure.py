@@ -77,7 +77,7 @@ class Bench:
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
         started = _spent_s()
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
-        probe = method.prepare(self._problem(base, probe_times), base.setting)
+        probe = method.prepare(Problem.of(self.scene, base.formulation, probe_times), base.setting)
         compile_s = _spent_s() - started
         probe_outcome, probe_s = timed(probe)
         base = replace(base, compile_s=compile_s)
@@ -94,13 +94,9 @@ class Bench:
                 expected_s = costs_s[0] + max(0.0, costs_s[0] - probe_s) * float(
                     (times[-1] - part[-1]) / (part[-1] - probe_times[-1])
                 )
-                if outcome.status != Status.OK:
-                    return self._row_of(base, outcome, costs_s[0])
-                if expected_s > self.limit_s:
+                if outcome.status != Status.OK or expected_s > self.limit_s:
                     return self._finished(base, method, outcome, costs_s, part, expected_s)
         base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
-        if outcome.status != Status.OK:
-            return self._row_of(base, outcome, costs_s[0])
         share = float(times[-1] / times[rows - 1])
         return self._finished(base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share)
 
@@ -110,16 +106,13 @@ class Bench:
         It is repeated while that is cheap, and if it came to its end.
         """
         started = _spent_s()
-        work = method.prepare(self._problem(base, times), base.setting)
+        work = method.prepare(Problem.of(self.scene, base.formulation, times), base.setting)
         base = replace(base, compile_s=(base.compile_s or 0.0) + _spent_s() - started)
         outcome, cpu_s = timed(work)
         costs_s = [cpu_s]
         while outcome.status == Status.OK and len(costs_s) < repeats and sum(costs_s) + cpu_s < REPEAT_S:
             costs_s.append(timed(work)[1])
         return base, outcome, costs_s
-
-    def _problem(self, base: Row, times: Array) -> Problem:
-        return Problem.of(self.scene, base.formulation, times)
 
     def _row_of(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
         """Return the row with what a run tells of itself, however far it came."""
@@ -136,7 +129,12 @@ class Bench:
     def _finished(
         self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array, whole_s: float
     ) -> Row:
-        """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span."""
+        """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span.
+
+        Of one that did not come to that end, it is what the run tells of itself.
+        """
+        if outcome.status != Status.OK:
+            return self._row_of(base, outcome, costs_s[0])
         whole = len(times) == len(self.truth.times)
         errors = self.truth.position_errors(outcome)
         cpu_s = statistics.median(costs_s)
@@ -157,7 +155,8 @@ class Bench:
         transits = self.truth.transits
         if not len(transits):
             return row
-        work = method.prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
+        problem = Problem.of(self.scene, row.formulation, np.concatenate([[0.0], transits]))
+        work = method.prepare(problem, row.setting)
         outcome = work()
         if outcome.status != Status.OK:
             return row

@@ -154,10 +154,5 @@ def on_doubles(scene: Scene) -> Scene:
         return scene
     mantissa, exponent = math.frexp(float(inputs.grid_step))
     step = Fraction(round(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
-    return scene.with_values([f"run.grid_step={_decimal(step)}", f"run.t_end={_decimal(inputs.t_end)}"])
-
-
-def _decimal(value: Fraction) -> str:
-    """Write a dyadic number in decimal, with all its digits."""
-    places = max(0, value.denominator.bit_length() - 1)
-    return f"{Decimal(value.numerator * 5**places).scaleb(-places):f}"
+    exact = (f"{Decimal(float(value)):f}" for value in (step, inputs.t_end))
+    return scene.with_values(dict(zip(("run.grid_step", "run.t_end"), exact, strict=True)))

@@ -18,7 +18,7 @@ from reference.errors import plain, shortened
 from reference.status import Status
 
 from ..candidates.candidate import Candidate, NotFiniteError
-from ..candidates.external import SETTING, FailedError, OutOfTimeError, arguments, run_program
+from ..candidates.external import SETTING, CrashedError, OutOfTimeError, arguments, run_program
 from ..candidates.read import read, read_stream
 from ..methods import METHODS
 from ..methods.method import LONGEST_NAME
@@ -30,6 +30,7 @@ DIGITS = 6.0  # that a program is asked for: the millionth of the amplitude that
 PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
 NUMBER = "program"  # what stands for a program's number type
 FILE = "file"  # kind of the row of a file, which has no setting; in place of its formulation
+STATUSES = {OutOfTimeError: Status.OUT_OF_TIME, NotFiniteError: Status.NOT_FINITE, CrashedError: Status.CRASHED}
 STATED = "the CPU seconds are those that were stated"
 
 
@@ -50,24 +51,15 @@ def measured(
         wrong_m: position error in m above which it is wrong.
     """
     base = Row(name, NUMBER, setting, "step", scene.inputs, Status.OK, load=load_per_core())
-
-    def failed(status: Status, reason: object) -> tuple[Row, None]:
-        return replace(base, status=status, reason=str(reason)), None
-
     try:
         words = arguments(command.replace(SETTING, repr(setting)), scene)
         output, cpu_s, _ = run_program(words, PATIENCE * limit_s)
         with output:
             candidate = read_stream(output, "its output")
         return _against(base, candidate, cpu_s, scene, golden, wrong_m)
-    except OutOfTimeError as error:
-        return failed(Status.OUT_OF_TIME, error)
-    except NotFiniteError as error:
-        return failed(Status.NOT_FINITE, f"{error.field}: {error.got}")
-    except FailedError as error:
-        return failed(Status.CRASHED if error.by_signal else Status.GAVE_UP, error)
     except InputError as error:
-        return failed(Status.GAVE_UP, error)
+        reason = f"{error.field}: {error.got}" if isinstance(error, NotFiniteError) else str(error)
+        return replace(base, status=STATUSES.get(type(error), Status.GAVE_UP), reason=reason), None
 
 
 def files_of(

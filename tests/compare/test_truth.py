@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from small_scenes import make_scene
 from compare import judge
 from compare.score.input_floor import floor_of_what_ships
 from compare.truth import _why_solved, by_function, golden_of, shipping, solves, truth_at
-from reference import load, load_scene, solve, write
+from reference import load, load_scene
 from reference.solver.sensitivity import sensitivity
 from reference.system import cache
 
@@ -41,12 +40,6 @@ def solved(tmp_path_factory):
 def kept(solved, own_cache):
     """Have the solution in this test's own cache."""
     shutil.copytree(solved, own_cache)
-
-
-def swap(a: Path, b: Path) -> None:
-    a.rename(a.with_name("other"))
-    b.rename(a)
-    a.with_name("other").rename(b)
 
 
 @pytest.mark.parametrize(("inputs", "folder"), [("decimal", "paris"), ("binary64", "paris.binary64")])
@@ -110,31 +103,6 @@ def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched():
     transits.write_bytes(transits.read_bytes()[:-1])
     assert golden_of(scene, announce=said.append).manifest == golden.manifest
     assert len(said) == 1  # damaged, so it was solved again
-
-
-@pytest.mark.usefixtures("kept")
-def test_two_entries_that_were_swapped_are_solved_again():
-    scenes = [make_scene("mine", pendulum={"length": length}, run=RUN) for length in ("5", "6")]
-    first, second = (golden_of(scene).path for scene in scenes)
-    swap(first, second)
-    said: list[str] = []
-    for scene in scenes:
-        assert solves(golden_of(scene, announce=said.append), scene)
-    assert len(said) == 2
-
-
-@pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize(
-    "change", ["run.digits=21", "run.level=computed", "run.transits=false", "run.t_end=10", "run.grid_step=2"]
-)
-def test_an_entry_that_holds_less_or_other_rows_than_its_name_says_is_solved_again(change):
-    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
-    path = golden_of(scene).path
-    write(solve(scene.with_values([change])), path)
-    said: list[str] = []
-    golden = golden_of(scene, announce=said.append)
-    assert len(said) == 1
-    assert (golden.path, golden.scene.run) == (path, scene.run)
 
 
 @pytest.mark.usefixtures("kept")

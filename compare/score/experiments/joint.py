@@ -26,7 +26,7 @@ from ..explanation.families import Fit, fits_of
 from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
 from ..explanation.gate import Evidence, may_be_told
 from ..explanation.programs import Program
-from ..explanation.readings import Reader, Reading
+from ..explanation.readings import Reading
 from ..explanation.stepped import LONGEST, Steps, step_cause
 
 RULE, TYPED, FACTOR = (
@@ -91,7 +91,7 @@ class Part(NamedTuple):
         program, free = self.cause.change(program), self.cause.free
         if self.way == FACTOR and first.given(free):
             value *= trial.given(free) / first.given(free)
-        return program.with_input(free, value) if free else program
+        return program.changed(**{free: value}) if free else program
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,7 @@ class JointCase(Case):
     def readings(self, most: float = 1.0) -> list[Reading]:
         """Return the readings of all runs that leave of each no more than may be left, `most` times; the best first."""
         fits = [fit for fit in self.fits() if np.isfinite(fit.slopes).all()]
-        readers = [_JointReader(**vars(reader)) for reader in readers_of(self, fits)]
+        readers = [replace(reader, joint=True) for reader in readers_of(self, fits)]
         run = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
         return sorted((reading for reading in run if self.off(reading) <= most), key=lambda reading: reading.score)
 
@@ -230,15 +230,6 @@ class JointCase(Case):
         evidence = Evidence(left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known)
         causes = tuple(may_be_told(read, evidence))
         return Explanation(causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m)
-
-
-class _JointReader(Reader):
-    """A reader that puts no name in place of a number that follows the scene."""
-
-    strays = True
-
-    def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
-        return reading
 
 
 def _following(part: Part, told: bool) -> Cause:

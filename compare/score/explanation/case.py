@@ -201,33 +201,20 @@ class Case:
         rows = replace(self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count])
         return replace(self, rows=rows, truth=self.truth[:count])
 
-    def score_of(self, left: float) -> float:
-        """Return decades by which what is left exceeds the tolerance, plus what the conventions cost."""
-        return math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions)
-
-    def explanation(
-        self,
-        causes: tuple[Deviation, ...],
-        corrected_m: float,
-        rest: float,
-        price: float,
-        model: Model | None = None,
-        slip: str = "",
-    ) -> Explanation:
+    def explanation(self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float) -> Explanation:
         """Return the explanation that some causes make up.
 
         Args:
             causes: as in `Explanation`.
             corrected_m: the largest error in m that they leave.
             rest: the root mean square in m that they leave.
-            price: decades that they have to explain.
-            model: as in `Explanation`.
-            slip: as in `Explanation`.
+            price: decades that they have to explain, as conventions have.
         """
         # what is within the tolerance speaks against no explanation
-        score = self.score_of(rest if corrected_m > self.enough else 0.0) + price
+        left = rest if corrected_m > self.enough else 0.0
+        score = math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions) + price
         explained = 1 - rest / self.error if self.error else 0.0
-        return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score, self.allowed_m)
+        return Explanation(self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m)
 
     def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""

@@ -118,9 +118,8 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     if clock and not best.known and clock[0] < SHARE * best.corrected_m:  # what is left may look like it
         rows = problem.rows(times, columns, late=False)
         best = first_good_explanation(problem.case(rows, allowed_m), scene)
-    unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
-        allowed_m, 1.5 * rows.noise
-    )
+    simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
+    unknown = simple and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
     if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
         wrong_term = slip(rows, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
@@ -177,7 +176,7 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     cause, model, left = best
     corrected = model.exact_to_m
     exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
-    return case.explanation((cause,), corrected, rms(left), NAMED, model if exact else None)
+    return replace(case.explanation((cause,), corrected, rms(left), NAMED), model=model if exact else None)
 
 
 def _is_mirrored(cause: Deviation) -> bool:

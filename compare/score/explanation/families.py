@@ -90,7 +90,7 @@ def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
             apart = case.pendulum.rows(linear, rows.times, 2) - rows.plane
             if not rms(apart) < 30 * floor:
                 return None
-    return fit_pendulum(case.pendulum, rows.times, rows.positions, guesses, case.scales, max(rows.noise, floor / 100))
+    return fit_pendulum(case, case.pendulum, guesses)
 
 
 def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
@@ -138,47 +138,38 @@ def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:
     return sorted(set(ends))
 
 
-def fit_pendulum(
-    pendulum: Pendulum, times: Array, rows: Array, guesses: Sequence[Array], scales: Array, noise: float
-) -> Fit | None:
+def fit_pendulum(case: Case, pendulum: Pendulum, guesses: Sequence[Array]) -> Fit | None:
     """Fit theta by Gauss-Newton from the best of some guesses, the span growing; None if nothing fits all rows.
 
     A number that the rows do not determine stays near its guess: it is held there as loosely as `WIDTHS` says.
     """
-    first, *longer = windows(times, WINDOWS, 16, 24)
+    first, *longer = (case.part(count) for count in windows(case.rows.times, WINDOWS, 16, 24))
     small = np.full(len(NAMES), 1e-6)
-    fits = [_in_window(pendulum, times[:first], rows[:first], guess, guess, scales, noise, small) for guess in guesses]
+    fits = [_in_window(first, pendulum, guess, guess, small) for guess in guesses]
     best, guess = min(zip(fits, guesses, strict=True), key=lambda pair: pair[0].rest)
-    size = float(np.abs(rows[:, :2]).max())
-    for count in longer:
-        if not best.rest <= HOPELESS * float(np.abs(rows[:count, :2]).max()):
+    size = float(np.abs(case.rows.plane).max())
+    for part in longer:
+        if not best.rest <= HOPELESS * float(np.abs(part.rows.plane).max()):
             return None
-        answers = np.linalg.norm(best.slopes * scales, axis=0) * WINDOWS
+        answers = np.linalg.norm(best.slopes * case.scales, axis=0) * WINDOWS
         nudges = np.clip(SEEN * size / np.maximum(answers, 1e-300), 1e-13, 1e-2)
         # what a short window hardly tells may have been led astray: a guess may be nearer
-        start = min((best.theta, *guesses), key=partial(_left, pendulum, times[:count], rows[:count]))
-        best = _in_window(pendulum, times[:count], rows[:count], start, guess, scales, noise, nudges)
-    return best if best.rest <= HOPELESS * float(np.abs(rows[:, :2]).max()) else None
+        start = min((best.theta, *guesses), key=partial(_left, part, pendulum))
+        best = _in_window(part, pendulum, start, guess, nudges)
+    return best if best.rest <= HOPELESS * size else None
 
 
-def _left(pendulum: Pendulum, times: Array, rows: Array, theta: Array) -> float:
+def _left(case: Case, pendulum: Pendulum, theta: Array) -> float:
     """Return the root mean square in m that a pendulum leaves of rows, infinity where it makes none."""
-    left = rms(rows - pendulum.rows(theta, times, rows.shape[1]))
+    rows = case.rows
+    left = rms(rows.positions - pendulum.rows(theta, rows.times, rows.positions.shape[1]))
     return left if math.isfinite(left) else math.inf
 
 
-def _in_window(
-    pendulum: Pendulum,
-    times: Array,
-    rows: Array,
-    theta: Array,
-    guess: Array,
-    scales: Array,
-    noise: float,
-    nudges: Array,
-) -> Fit:
+def _in_window(case: Case, pendulum: Pendulum, theta: Array, guess: Array, nudges: Array) -> Fit:
     """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped."""
-    columns, root = rows.shape[1], math.sqrt(len(times))
+    times, rows, scales = case.rows.times, case.rows.positions, case.scales
+    columns, root, noise = rows.shape[1], math.sqrt(len(times)), max(case.rows.noise, case.floor / 100)
     slopes, fresh, damping = None, False, list(DAMPING)
     best, least = theta, math.inf
     residual = np.zeros(rows.size)

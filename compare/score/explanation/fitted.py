@@ -45,30 +45,30 @@ TITLES = {
 }  # fmt: skip
 
 
-def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading | None:
+def best_of(case: Case, stepped: bool = False) -> Reading | None:
     """Return the best reading of all families; None if it leaves too much for anything to be named.
 
     Args:
         case: the file.
-        integrators: whether an integrator may be among the causes.
-        sure: whether it has to leave little enough for its causes to be named.
+        stepped: whether what steps do was taken from its rows: then no integrator is among the causes, and of what is
+            left the steps decide.
     """
     fits = list(fits_of(case))
     noise = 1.5 * case.rows.noise
     least = min((fit.rest for fit in fits), default=math.inf)
-    if sure and least > max(NAMED_SHARE * case.error, noise):
+    if not stepped and least > max(NAMED_SHARE * case.error, noise):
         return None
 
     def causes(kind: str) -> list[Cause]:
-        return [cause for cause in causes_of(case, kind) if integrators or cause.stage != "integrator"]
+        return [cause for cause in causes_of(case, kind) if not stepped or cause.stage != "integrator"]
 
     run = ranked(case, readers_of(case, fits), causes)
     finest = max(case.rows.noise, 1.2 * least, FINEST * case.floor)
-    if sure and run and _is_tied(run):
+    if not stepped and run and _is_tied(run):
         exact = ranked(case, readers_of(case, fits, finest), causes)
         run = next((one for one in (exact, run) if one[0].rest <= EXACT * finest), [])
     best = polished(case, run[0]) if run else None
-    if best is None or not sure:
+    if best is None or stepped:
         return best
     one_of_many = any(cause.free or cause.group == "g" for cause in best.causes)  # 9.81, 9.80665 and so on
     share = FITTED_SHARE if one_of_many else NAMED_SHARE
@@ -174,7 +174,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     if simple and corrected <= case.allowed_m and all(convention.id in HARMLESS for convention in rows.conventions):
         model = _model_of(kind, case.right, causes, corrected, largest(rows.positions - case.truth))
     price = sum(cause.cost for cause in reading.causes)
-    return case.explanation(tuple(causes), corrected, rms(left), price, model)
+    return replace(case.explanation(tuple(causes), corrected, rms(left), price), model=model)
 
 
 def clean_share(case: Case, kind: str) -> float:
@@ -218,7 +218,7 @@ def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
             word, text, program = cause.id, cause.text, cause.change(program)
             if cause.free:
                 value = reading.value(cause)
-                program = program.with_input(cause.free, value)
+                program = program.changed(**{cause.free: value})
                 shift = value - float(getattr(case.right, cause.free))
                 uncertainty = reading.reader.uncertainty(reading, cause)
                 text = cause.sentence(value, case.right)

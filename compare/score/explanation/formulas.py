@@ -122,7 +122,7 @@ def of_formula(case: Case) -> Explanation | None:
     if best is None:
         return None
     price, reading, text = best
-    return case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price, slip=text)
+    return replace(case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price), slip=text)
 
 
 def fit_formula(rows: Rows, right: Program) -> Formula | None:

@@ -149,10 +149,9 @@ def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[comple
                 continue
             gammas = np.log(roots.astype(complex)) / (1j * step * skip)
             turn = 2 * math.pi / (step * skip)
-            for gamma_first in (0, 1):
-                first, second = gammas[gamma_first], gammas[1 - gamma_first]
-                first += turn * round((near - first.real) / turn)
-                second += turn * round((-near - second.real) / turn)
+            for one, other in (gammas, gammas[::-1]):
+                first = one + turn * round((near - one.real) / turn)
+                second = other + turn * round((-near - other.real) / turn)
                 guesses.insert(0, (complex(first), complex(second)))
     return guesses
 
@@ -272,8 +271,8 @@ class Method:
         parts = np.linalg.solve(vectors, np.array([start, speed]))
         rates = [cmath.log(value) / (1j * step) for value in values]
         amplitudes = [complex(vectors[0, i] * parts[i]) for i in range(2)]
-        order = sorted(range(2), key=lambda i: -rates[i].real)
-        return Phasors((rates[order[0]], rates[order[1]]), (amplitudes[order[0]], amplitudes[order[1]]), phasors.centre)
+        (first, a), (second, b) = sorted(zip(rates, amplitudes, strict=True), key=lambda mode: -mode[0].real)
+        return Phasors((first, second), (a, b), phasors.centre)
 
 
 def _taylor(order: int) -> tuple[float, ...]:

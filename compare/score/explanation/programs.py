@@ -162,13 +162,6 @@ class Program:
             theta[NAMES.index("gradient")] *= self.pace**2
         return theta
 
-    def _as_computed(self, theta: Array) -> Array:
-        """Return theta as the integrator, the clock and a linear model make of it."""
-        computed = theta_of(self._computed(theta), theta)
-        if self.kind == "sphere" and not self.late and self.method is None:
-            computed[7:11] = theta[7:11]
-        return computed
-
     def _computed(self, theta: Array) -> Phasors:
         square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
         if self.kind != "sphere" and theta[12]:  # the mean of x and y: what it does to each is no matter of phasors
@@ -189,10 +182,13 @@ class Program:
 
     def theta(self) -> Array:
         """Return the numbers that the motion depends on, in the order of `NAMES`."""
-        theta = self._exact()
-        if self.method is not None or self.late or self.turned_plane or self.kind != "sphere":
-            theta = self._as_computed(theta)
-        return theta
+        theta, stepped = self._exact(), self.method is not None or self.late
+        if not stepped and not self.turned_plane and self.kind == "sphere":
+            return theta
+        computed = theta_of(self._computed(theta), theta)
+        if not stepped and self.kind == "sphere":
+            computed[7:11] = theta[7:11]
+        return computed
 
     def changed(self, **fields: object) -> Self:
         """Return the program with some fields replaced: as `replace` does it, in a tenth of the time."""
@@ -203,10 +199,6 @@ class Program:
     def with_inputs(self, names: Sequence[str], values: Array) -> Self:
         """Return the program with these numbers replaced."""
         return self.changed(**dict(zip(names, values.tolist(), strict=True)))
-
-    def with_input(self, name: str, value: float) -> Self:
-        """Return the program with one number replaced."""
-        return self.changed(**{name: value})
 
 
 def phasors_of(theta: Array, square: float, start: complex) -> Phasors:

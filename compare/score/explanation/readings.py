@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 
@@ -68,14 +67,15 @@ class Reader:
         fit: the free fit of that family.
         floor: root mean square in m below which nothing more is asked.
         least: root mean square in m that the best fit of any family leaves.
-        strays: whether fits follow bent valleys, as several runs have; of one run it finds numbers that are not there.
+        joint: whether it is of several runs: then fits follow bent valleys, which in one run lead to numbers that are
+            not there, and no name is put in place of a number, which may follow the scene.
     """
 
-    strays: ClassVar[bool] = False
     right: Program
     fit: Fit
     floor: float
     least: float
+    joint: bool = False
 
     def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[Reading]:
         """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
@@ -110,7 +110,8 @@ class Reader:
                 break
         best.sort(key=lambda reading: reading.score)
         first = self._exchanged(best[0], causes)
-        return [self._exactly_named(first, causes), *(reading for reading in best if reading is not first)]
+        named = first if self.joint else self._exactly_named(first, causes)
+        return [named, *(reading for reading in best if reading is not first)]
 
     def _exchanged(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
         """Return the best reading that comes from one by leaving causes out, or taking others of their groups."""
@@ -131,7 +132,7 @@ class Reader:
             if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
                 sign = next(other for other in causes if other.id == "coriolis_sign")
                 together = tuple(sign if part is cause else part for part in reading.causes)
-                return self._judged(together, sign.change(reading.program.with_input("rate", self.right.rate)))
+                return self._judged(together, sign.change(reading.program.changed(rate=self.right.rate)))
             for other in causes:
                 if other.free or other.group != cause.group:
                     continue
@@ -157,7 +158,7 @@ class Reader:
             omega = math.sqrt(abs(theta[5])) or 1.0
             square, drag = self._shown(reading.program)
             guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
-            tried = [self._judged(together, program.with_input("step", step)) for step in guesses if step > 0]
+            tried = [self._judged(together, program.changed(step=step)) for step in guesses if step > 0]
             program = min(tried, key=lambda reading: reading.rest).program
         return self._fitted(together, program, free)
 
@@ -179,7 +180,7 @@ class Reader:
         start = np.array([float(getattr(program, name)) for name in free])
         nudges = np.array([self.nudge(program, name) for name in free])
         model = by_differences(off_of, np.zeros(len(self._triangle)), nudges)
-        values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN, strays=self.strays)
+        values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN, strays=self.joint)
         return self._judged(together, program.with_inputs(free, values))
 
     def drifts(self, case: Case, program: Program) -> bool:
@@ -198,7 +199,7 @@ class Reader:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
         value = reading.value(cause)
         nudge = self.nudge(reading.program, cause.free)
-        moved = self._off(reading.program.with_input(cause.free, value + nudge)) - self._off(reading.program)
+        moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, 1e-15) / answer if answer else math.inf
 
@@ -218,7 +219,7 @@ class Reader:
         for part in together:
             program = part.change(program)
             if part.free:
-                program = program.with_input(part.free, reading.value(part))
+                program = program.changed(**{part.free: reading.value(part)})
         return self._judged(together, program)
 
     def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:

@@ -134,8 +134,7 @@ def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
 def _of_steps(case: Case, steps: Steps) -> Explanation | None:
     """Return what is known of rows that some steps made; None if others did."""
     rows, (pendulum, theta) = case.rows, case.pendulum_of(case.right)
-    noise = max(rows.noise, case.floor / 100)
-    fit = fit_pendulum(steps, rows.times, rows.positions, [np.array(steps.near)], case.scales, noise)
+    fit = fit_pendulum(case, steps, [np.array(steps.near)])
     if fit is None:
         return None
     theta, best = fit.theta, None
@@ -147,7 +146,7 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
         if best is not None and rms(rows.positions - moved) <= case.floor:
             break
         seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-        best = best_of(seen, integrators=False, sure=False)
+        best = best_of(seen, stepped=True)
         if best is None or best.reader.right.kind != "sphere":
             return None
         pendulum, theta = case.pendulum_of(best.program)

@@ -202,10 +202,11 @@ def test_a_program_within_a_program_has_the_marks_of_both(monkeypatch):
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_too_much_output_ends_the_program(stream):
+def test_too_much_output_ends_the_program(stream, monkeypatch):
+    monkeypatch.setattr("compare.candidates.external.MAX_BYTES", 1_000_000)
     flood = f"import sys\nwhile True: sys.{stream}.write('0,0,0\\n' * 100000)"
     with pytest.raises(InputError, match="at most 1000000 bytes of output"):
-        run_program(python(flood), max_bytes=1_000_000)
+        run_program(python(flood))
 
 
 def test_a_program_may_end_just_before_it_is_killed(monkeypatch):
@@ -217,8 +218,9 @@ def test_a_program_may_end_just_before_it_is_killed(monkeypatch):
         return seen
 
     monkeypatch.setattr("compare.candidates.external.os.wait4", wait4)
+    monkeypatch.setattr("compare.candidates.external.MAX_BYTES", 10)
     with pytest.raises(InputError, match="at most 10 bytes of output"):
-        run_program(python("import time; time.sleep(0.2); print('0,0,0' * 100)"), max_bytes=10)
+        run_program(python("import time; time.sleep(0.2); print('0,0,0' * 100)"))
 
 
 def test_repeats_are_timed_after_a_warm_up(tmp_path):

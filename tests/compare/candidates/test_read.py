@@ -258,7 +258,7 @@ def test_a_zip_file_of_something_else_is_refused():
     with zipfile.ZipFile(stream, "w") as made:
         for name in "txy":
             made.writestr(name, "0 1 2")
-    refused(io.BytesIO(stream.getvalue()), "no NumPy array")
+    refused(io.BytesIO(stream.getvalue()), "an array of real numbers")
 
 
 def test_an_archive_that_unpacks_to_more_than_is_read_is_refused_unopened():

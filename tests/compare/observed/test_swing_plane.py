@@ -34,7 +34,7 @@ def rows_of(z, rate):
 @pytest.mark.parametrize("direction", [0.1, 1.4, -1.2])
 def test_the_plane_of_a_turntable_ellipse_is_its_major_axis_at_every_phase(turn, direction):
     omega, t = 2.0, np.linspace(0.0, 9.0, 50)
-    gauge = Gauge((0.0, 0.0, -1.0), 1.0, omega, turn)
+    gauge = Gauge((0.0, 0.0, -1.0), omega, turn)
     ellipse = np.exp(1j * direction) * (np.cos(omega * t) + 0.2j * np.sin(omega * t))
     speed = np.exp(1j * direction) * omega * (0.2j * np.cos(omega * t) - np.sin(omega * t))
     frame = np.exp(-1j * turn * t)
@@ -49,7 +49,7 @@ def test_the_rest_position_in_metres_is_that_of_the_golden_page():
 def test_a_circle_has_no_plane():
     t = np.linspace(0.0, 3.0, 7)
     circle = np.exp(2j * t)
-    assert np.isnan(Gauge((0.0, 0.0, -1.0), 1.0, 2.0, 0.0).swing_plane(rows_of(circle, 2j * circle))).all()
+    assert np.isnan(Gauge((0.0, 0.0, -1.0), 2.0, 0.0).swing_plane(rows_of(circle, 2j * circle))).all()
 
 
 def test_the_plane_of_the_reference_turns_evenly_by_the_sine_of_the_apparent_latitude():
@@ -64,7 +64,7 @@ def test_the_plane_of_the_reference_turns_evenly_by_the_sine_of_the_apparent_lat
 
 def test_apsides_of_an_ellipse_are_found_to_rounding():
     omega, minor, start = 0.7, 0.1, 0.4
-    gauge = Gauge((0.0, 0.0, -1.0), 1.0, omega, 0.0)
+    gauge = Gauge((0.0, 0.0, -1.0), omega, 0.0)
     t = np.arange(600) * (gauge.period / PER_SWING)
     phase = omega * t - start
     rows = rows_of(np.cos(phase) + 1j * minor * np.sin(phase), omega * (1j * minor * np.cos(phase) - np.sin(phase)))

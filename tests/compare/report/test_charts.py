@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from compare.approximations import motions
 from compare.methods import METHODS
 from compare.methods.method import Family
 from compare.report import approximations, study_charts
@@ -83,7 +84,8 @@ ROWS = study_rows()
 OWN = [one.label for one in curves(ROWS) if one.own and one.measured]
 RUNS = [long_run("double", 1.5, 1e-16), long_run("quadruple", 1.0, 1e-33), long_run("single", 1.0, 1e-7)]
 CELLS = [cell("paris", "rk4", "ok", 7.99), cell("hard", "rk4", "silently_wrong"), cell("hard", "other", "not_finite")]
-PARIS = error_table(load_scene("paris"), ["linear_g", "method_1", "linear_3d"], 600.0, times=(1.0, 10.0, 60.0))
+CHOSEN = [motions()[word] for word in ("linear_g", "method_1", "linear_3d")]
+PARIS = error_table(load_scene("paris"), CHOSEN, 600.0, times=(1.0, 10.0, 60.0))
 LATITUDES = [
     SweepRow("planar", 60.0, 1e-3 * (1 + value), 1.0, over="latitude", value=value) for value in (0.0, 45.0, 90.0)
 ]

@@ -19,18 +19,22 @@ PARIS = load_scene("paris")
 FEW = ("linear_anharmonic", "gastebois_general", "conical")
 
 
+def chosen(*words):
+    return [APPROXIMATIONS[word] for word in words]
+
+
 def test_a_row_for_every_approximation_and_time():
-    rows = error_table(PARIS, FEW, 20000.0)
+    rows = error_table(PARIS, chosen(*FEW), 20000.0)
     assert [(row.approximation, row.t) for row in rows] == [
         (word, t) for word in FEW for t in (20.0, 3600.0, 12000.0, 20000.0)
     ]
-    assert error_table(PARIS, FEW[:1], 20.0)[-1].t == 20.0
+    assert error_table(PARIS, chosen(FEW[0]), 20.0)[-1].t == 20.0
     assert TIMES == (20.0, 3600.0, 12000.0, 86400.0)
     json.dumps([vars(row) for row in rows])
 
 
 def test_errors_are_those_of_the_motions_and_never_shrink():
-    rows = error_table(PARIS, ["linear_anharmonic"], 3600.0, times=(20.0, 1000.0))
+    rows = error_table(PARIS, chosen("linear_anharmonic"), 3600.0, times=(20.0, 1000.0))
     fine = np.linspace(0.0, 3600.0, 36001)
     gap = APPROXIMATIONS["linear_anharmonic"].trajectory(PARIS, fine)[:, :3] - trajectory(PARIS, fine)[:, :3]
     for row in rows:
@@ -41,7 +45,7 @@ def test_errors_are_those_of_the_motions_and_never_shrink():
 
 
 def test_the_uniform_field_is_the_best_of_all_after_a_day_and_good_to_a_fifth_of_a_millimetre():
-    at_end = {row.approximation: row for row in error_table(PARIS) if row.t == 86400.0}
+    at_end = {row.approximation: row for row in error_table(PARIS, motions().values(), 86400.0) if row.t == 86400.0}
     assert set(at_end) == set(motions())
     best = min((row for row in at_end.values() if row.error_m is not None), key=lambda row: row.error_m)
     assert best.approximation == "gastebois_general"
@@ -66,7 +70,7 @@ def test_the_run_that_approximations_are_held_against_is_the_golden_dataset():
 
 
 def test_what_does_not_apply_says_why_and_gives_no_numbers():
-    rows = error_table(PARIS, ["conical"], 20.0)
+    rows = error_table(PARIS, chosen("conical"), 20.0)
     assert all(row.error_m is None and row.plane_error_arcsec is None for row in rows)
     assert rows[0].status == Status.REFUSED
     assert "circle" in rows[0].reason
@@ -74,7 +78,7 @@ def test_what_does_not_apply_says_why_and_gives_no_numbers():
 
 def test_a_scene_without_a_swing_still_has_errors_of_position():
     drifting = PARIS.with_values(["site.gravity=0", "site.rotation_rate=0", "release.vx=0.1"])
-    row = error_table(drifting, ["mathar_item_4"], 20.0)[-1]
+    row = error_table(drifting, chosen("mathar_item_4"), 20.0)[-1]
     assert row.error_m < 1e-12
     assert row.plane_error_arcsec is None
 
@@ -93,17 +97,17 @@ def test_numbers_stand_beside_the_reference():
 # Limits --------------------------------------------------------------------------------------------------------------
 def test_limits_over_time_are_where_the_error_passes_them():
     ids = ["linear_3d", "gastebois_6_1", "mathar_item_4"]
-    rows = limits(PARIS, ids, t_end=7200.0)
+    rows = limits(PARIS, chosen(*ids), "time", 7200.0)
     assert [(row.approximation, row.limit) for row in rows] == [(word, name) for word in ids for name, _, _ in LIMITS]
     truth = ReferenceMotion(PARIS, 7200.0)
     for row in rows:
         _, quantity, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
         (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(quantity)
-        errors = truth.errors(APPROXIMATIONS[row.approximation])
+        at_end, later = truth.largest(APPROXIMATIONS[row.approximation], [end, min(end + 17.0, 7200.0)])
         assert start == 0.0
-        assert errors.at(end)[index] <= limit
+        assert at_end[index] <= limit
         if end < 7200.0:
-            assert errors.at(min(end + 17.0, 7200.0))[index] > limit * 0.999
+            assert later[index] > limit * 0.999
 
 
 def test_intervals_end_where_the_logarithm_of_the_error_meets_the_limit():
@@ -123,42 +127,23 @@ def test_intervals_end_where_the_logarithm_of_the_error_meets_the_limit():
 
 def test_the_amplitude_at_which_the_harmonic_swing_loses_a_millimetre_in_an_hour():
     # ω t A³/(16 l²) = 1 mm at 3600 s.
-    (good,) = (row.good for row in limits(PARIS, ["linear_3d"], "amplitude") if row.limit == "1 mm")
+    (good,) = (row.good for row in limits(PARIS, chosen("linear_3d"), "amplitude", 3600.0) if row.limit == "1 mm")
     expected = (1e-3 * 16 * 67**2 / (0.3826 * 3600)) ** (1 / 3)
     assert good[0][1] == pytest.approx(expected, rel=0.05)
 
 
 def test_without_rotation_of_the_plane_the_vertical_approximations_are_good_at_the_pole_and_not_between():
-    rows = sweep(PARIS, ["mathar_item_1"], "latitude", (45.0, 90.0), 600.0)
-    assert rows[0].error_m > 0.1
-    assert rows[1].error_m < 1e-5
-    assert (rows[0].over, rows[0].value, rows[0].t) == ("latitude", 45.0, 600.0)
+    rows = {row.value: row for row in sweep(PARIS, chosen("mathar_item_1"), "latitude", 600.0)}
+    assert rows[45.0].error_m > 0.1
+    assert rows[90.0].error_m < 1e-5
+    assert (rows[45.0].over, rows[45.0].t) == ("latitude", 600.0)
 
 
 def test_limits_of_what_does_not_apply_say_why():
     for over in ("time", "length"):
-        rows = limits(PARIS, ["conical"], over, 20.0)
+        rows = limits(PARIS, chosen("conical"), over, 20.0)
         assert len(rows) == len(LIMITS)
         assert all(row.good == () and "circle" in row.reason for row in rows)
-
-
-@pytest.mark.parametrize("call", [error_table, sweep, limits])
-def test_a_number_is_no_motion_and_an_unknown_word_is_named(call):
-    with pytest.raises(InputError, match="rest_equation"):
-        call(PARIS, ["rest_equation"])
-    with pytest.raises(InputError, match="`foucault methods` lists them"):
-        call(PARIS, ["nothing"])
-
-
-def test_a_motion_is_no_number():
-    with pytest.raises(InputError, match="linear_g"):
-        quantity_table(PARIS, ["linear_g"])
-
-
-@pytest.mark.parametrize("t_end", [0.0, -5.0, float("inf"), float("nan")])
-def test_a_table_ends_at_a_time_after_the_release(t_end):
-    with pytest.raises(InputError, match="t_end"):
-        error_table(PARIS, ["linear_g"], t_end)
 
 
 # Varied scenes -------------------------------------------------------------------------------------------------------
@@ -187,7 +172,7 @@ def test_a_latitude_or_a_rotation_rate_changes_nothing_else():
         assert varied(PARIS, over, 0.5) == PARIS.with_values([f"{field}=0.5"])
 
 
-@pytest.mark.parametrize(("over", "value"), [("size", 1.0), ("latitude", 91.0), ("length", -1.0), ("amplitude", 70.0)])
+@pytest.mark.parametrize(("over", "value"), [("latitude", 91.0), ("length", -1.0), ("amplitude", 70.0)])
 def test_impossible_variations_are_refused(over, value):
     with pytest.raises(InputError):
         varied(PARIS, over, value)
@@ -198,9 +183,7 @@ def test_a_bob_at_rest_has_no_direction_to_vary():
         varied(PARIS.with_values(["site.rotation_rate=0", "release.x=0", "release.y=0"]), "amplitude", 1.0)
 
 
-def test_a_sweep_chooses_its_values_unless_told():
+def test_a_sweep_chooses_its_values():
     assert sweep_values(PARIS, "latitude")[0] == -90.0
     assert sweep_values(PARIS, "amplitude")[-1] == pytest.approx(6.7)
-    assert sweep_values(PARIS, "length")
-    with pytest.raises(InputError):
-        sweep_values(PARIS, "time")
+    assert sweep_values(PARIS, "length")[-1] == 200.0

@@ -23,7 +23,7 @@ from compare.studies.row import GridTruth, Row
 from compare.studies.study import plan, study
 from compare.studies.study_plan import bits_of, precision_items, precision_scene
 from compare.truth import golden_of
-from reference import InputError, Scene, load_scene, trajectory
+from reference import Scene, load_scene, trajectory
 from reference.engines.registry import engines
 
 T_END = "600"
@@ -90,12 +90,6 @@ def test_the_grid_that_is_asked_for_is_the_one_that_is_measured_on() -> None:
     result = study("paris", items=[("rk4", "plane", 0.1)], t_end=60.0)
     finer = study(load_scene("paris", ["run.grid_step=20"]), items=[("rk4", "plane", 0.1)], t_end=60.0)
     assert (len(result.golden.t[result.golden.t <= 60]), len(finer.golden.t)) == (2, 4)
-
-
-def test_a_truth_without_the_end_of_the_span_is_refused(bench: Bench) -> None:
-    for t_end in (0.0, 10.0, 90.0, 1e9):
-        with pytest.raises(InputError, match="expected a dataset whose grid has t = 0 and t ="):
-            GridTruth(bench.truth.golden, t_end)
 
 
 def test_transits_finer_than_two_doubles_are_not_resolved_and_coarser_ones_are(bench: Bench) -> None:
