@@ -13,7 +13,6 @@ import hashlib
 import subprocess
 import tempfile
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -97,19 +96,10 @@ def source(problem: Problem, parts: Sequence[str]) -> str:
 def _function(name: str, program: StraightLine, variables: int, parameters: int, before: str = "") -> str:
     """Return straight-line code as a function of a state that fills an array."""
     lines = [f"x{i} = x[{i}]" for i in range(variables)] + [f"k{i} = k[{i}]" for i in range(parameters)]
-    for line in program.lines:
-        lines.append(f"{line.name} = {replace(line, operands=tuple(map(_number, line.operands))).expression}")
+    lines += [f"{line.name} = {line.expression}" for line in program.lines]
     body = before + "".join(f"    const double {line};\n" for line in lines)
-    body += "".join(f"    to[{i}] = {_number(word)};\n" for i, word in enumerate(program.outputs))
+    body += "".join(f"    to[{i}] = {word};\n" for i, word in enumerate(program.outputs))
     return f"static void {name}(const double *x, double *to) {{\n    using namespace std;\n{body}}}\n"
-
-
-def _number(operand: str) -> str:
-    """Return an operand in C++: a literal as a double, which a whole number would not be."""
-    try:
-        return repr(float(operand))
-    except ValueError:
-        return operand
 
 
 def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequence[str]) -> Path:
