@@ -8,14 +8,12 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
-from pathlib import Path
 from string import Template
 from types import ModuleType
 
-from reference.system.cache import discard, entry, kept
+from reference.system.cache import kept
 from reference.system.workspace import replace_file
 
 FUNCTIONS = ("atan2", "cos", "sin", "sqrt")
@@ -94,22 +92,12 @@ def elements(array: str, count: int, row: str = "") -> str:
 def compiled(body: str) -> ModuleType:
     """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    Machine code is read from the cache if it belongs to the very same text.
+    What runs is this text, whatever its file holds: that is there for numba's cache, which goes by its name and times.
     """
     text = (HEADER + body).encode()
     name = f"f{hashlib.sha256(text).hexdigest()[:32]}"
-    stored = entry("generated", f"{name}.py")
-    if stored is not None and not _holds(stored, text):
-        discard(stored)
     path = kept("generated", f"{name}.py", lambda path: replace_file(path, lambda stream: stream.write(text)))
     module = ModuleType(name)
     sys.modules[name] = module  # numba's cache unpickles its functions by the module's name
     exec(compile(text, str(path), "exec"), module.__dict__)
     return module
-
-
-def _holds(path: Path, text: bytes) -> bool:
-    """Return whether a file has just this text: else it was damaged, or cannot be read."""
-    with suppress(OSError):
-        return path.read_bytes() == text
-    return False
