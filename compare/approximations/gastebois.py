@@ -85,7 +85,7 @@ def oscillation(place: Pair, speed: Pair, omega: Any, turn: Any, times: Array) -
 
 def small_angles(case: Case) -> tuple[Any, Any]:
     """Return ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a, in rad/s."""
-    turn = case.rate * case.ctx.sin(case.apparent_latitude)
+    turn = case.k.rate * case.ctx.sin(case.apparent_latitude)
     return turntable_frequency(case, case.apparent_gravity, turn), turn
 
 

@@ -137,12 +137,11 @@ def _harmonic(case: Case, times: Array, apparent: bool = True, about_rest: bool 
         about_rest: swing about the rest position.
         slowed: divide ω by `slow_down`.
     """
-    turn = case.rate * case.sin
-    omega = turntable_frequency(case, case.apparent_gravity if apparent else case.gravity, turn)
+    omega = turntable_frequency(case, case.apparent_gravity if apparent else case.gravity, case.turn)
     omega = omega / slow_down(case) if slowed else omega
     centre = case.ctx.mpf(case.rest[1]) * case.length if about_rest else case.ctx.zero
     place = (case.position[0], case.position[1] - centre)
-    z, rate = oscillation(place, case.velocity[:2], omega, turn, times)
+    z, rate = oscillation(place, case.velocity[:2], omega, case.turn, times)
     return hung(z.real, z.imag + float(centre), rate.real, rate.imag, case.length)
 
 
