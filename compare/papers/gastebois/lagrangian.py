@@ -36,7 +36,7 @@ def kinetic(p: Point, square: Any) -> Any:
 
 def _lagrangian(p: Point, q: Vector, v: Vector) -> Any:
     """Return m v²/2 - m g_a z of angles q that change at the rates v, from the motion itself."""
-    return p.mass * lagrangian(p, by_angles, q, v, MP.zero)
+    return p.mass * lagrangian(p.but(rate=MP.zero), by_angles, q, v)
 
 
 def coriolis(p: Point) -> Vector:
@@ -87,7 +87,7 @@ def _half(p: Point) -> Any:
 
 def left_side(p: Point, i: int) -> Any:
     """Return d(∂L/∂q')/dt - ∂L/∂q of the Lagrangian, along a path with the point's accelerations."""
-    return p.mass * euler_lagrange(p, by_angles, *angle_state(p), i, 0)
+    return p.mass * euler_lagrange(p.but(rate=MP.zero), by_angles, *angle_state(p), i)
 
 
 def _without_prime(p: Point, i: int) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from reference.model.constants import axis_distance
 
 from ..checks import Answer, Check, Identity, Statement, section
-from ..digits import MP, Vector, cos, cross, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
+from ..digits import MP, Vector, cos, cross, degrees, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
 from ..first_principles import (
     angle_state,
     by_angles,
@@ -51,7 +51,7 @@ def north(p: Point, t: Any) -> Vector:
 
 def _along_meridian(p: Point) -> Vector:
     """Return dX_s/dϕ from the ellipsoid's geometry."""
-    return derivative(lambda phi: suspension(p, p.rate * p.t, phi=phi), p.phi)
+    return derivative(lambda phi: suspension(p.but(latitude=degrees(phi)), p.rate * p.t), p.phi)
 
 
 def _meridian_radius(p: Point) -> Any:
@@ -142,7 +142,7 @@ def _velocity_of_place(p: Point) -> Vector:
 
 def _alpha(power: int) -> Callable[[Point], Any]:
     """Return the coefficient of Ω**power in the squared velocity."""
-    return lambda p: in_rate(lambda rate: square_speed(p, by_angles, *angle_state(p)[:2], rate), power)
+    return lambda p: in_rate(lambda rate: square_speed(p.but(rate=rate), by_angles, *angle_state(p)[:2]), power)
 
 
 def alpha_0(p: Point) -> Any:
@@ -181,7 +181,7 @@ def checks() -> list[Check]:
         Identity("4", "(4)", "e_E = (-sinΩt, cosΩt, 0), e_E² = 1", _at_its_time(east), _at_its_time(_site_axis(0))),
         Identity("5", "(5)", "e_U = (cosϕ cosΩt, cosϕ sinΩt, sinϕ)", _at_its_time(up), _at_its_time(_site_axis(2))),
         Identity("5_h", ", before (5)", "e_U by differentiating (1) with respect to h", _at_its_time(up),
-            lambda p: derivative(lambda h: suspension(p, p.rate * p.t, h), p.altitude)),
+            lambda p: derivative(lambda h: suspension(p.but(altitude=h), p.rate * p.t), p.altitude)),
         Identity("6", "(6)", "e_N = e_U × e_E", _up_cross_east, _at_its_time(_site_axis(1))),
         Identity("6_b", "(6)", "e_N = (-sinϕ cosΩt, -sinϕ sinΩt, cosϕ)",
             _at_its_time(north), lambda p: unit(_up_cross_east(p))),
