@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import typer
@@ -39,16 +39,6 @@ from .options import announce
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
 TRANSITS = ".transits"
 DOCUMENT = ".json"  # of a baseline that is no trajectory
-
-
-class ToJudge(NamedTuple):
-    """A candidate to judge, with its transits or transits alone, how long its program took, and its baseline."""
-
-    scene: Scene
-    candidate: Candidate | None
-    transits: Array | None = None
-    timing: Timing | None = None
-    baseline: Candidate | Score | dict[str, Any] | str | None = None
 
 
 @dataclass(frozen=True)
@@ -112,24 +102,26 @@ class Judging:
     options: dict[str, Any]
     baseline: str | None = None
 
-    def outcome(self, name: str, scene_id: str, trial: Callable[[], ToJudge]) -> Outcome:
-        """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
+    def outcome(self, name: str, scene_id: str, trial: Callable[[], Score]) -> Outcome:
+        """Make a score; an error in it becomes the outcome and does not stop others, an interruption ends all."""
         try:
-            scene, candidate, times, timing, baseline = trial()
-            options = self.options | {"baseline": baseline}
-            with stoppable("nothing was written"), progress() as show:
-                report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-                score = judge(candidate, scene, transits=times, announce=announce, report=report, **options)
+            score = trial()
         except Stopped:
             raise
         except FoucaultError as error:
             return Outcome(plain(name), plain(scene_id), error=error)
-        score = score if timing is None else replace(score, timing=timing)
         return Outcome(score.candidate.name, score.scene.id, score)
+
+    def score(self, scene: Scene, candidate: Candidate | None, times: Array | None, baseline: Any = None) -> Score:
+        """Judge a candidate, with its transits or transits alone, beside a baseline if there is one."""
+        with stoppable("nothing was written"), progress() as show:
+            options = self.options | {"baseline": baseline, "announce": announce}
+            report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
+            return judge(candidate, scene, transits=times, report=report, **options)
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(name, scene.id, lambda: ToJudge(scene, self._read(name), times, None, self._earlier()))
+        return self.outcome(name, scene.id, lambda: self.score(scene, self._read(name), times, self._earlier()))
 
     def _earlier(self) -> Candidate | str | None:
         """Read the baseline, if there is one, unless it is a document."""
@@ -138,18 +130,18 @@ class Judging:
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
-        return self.outcome(name, scene.id, lambda: ToJudge(scene, None, self.times(name)))
+        return self.outcome(name, scene.id, lambda: self.score(scene, None, self.times(name)))
 
     def program(self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
         """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
         scene = program.scene
 
-        def trial() -> ToJudge:
+        def trial() -> Score:
             times = self.times(transits)
             candidate, timing = printed(program.command, name, repeats)
-            if self.baseline is not None and not Path(self.baseline).is_file():
-                return ToJudge(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
-            return ToJudge(scene, candidate, times, timing, self._earlier())
+            command = self.baseline is not None and not Path(self.baseline).is_file()
+            earlier = printed(str(self.baseline), str(self.baseline), 0)[0] if command else self._earlier()
+            return replace(self.score(scene, candidate, times, earlier), timing=timing)
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
             output, timing = timed(program.words(scene, command), program.timeout, repeats)
@@ -172,10 +164,10 @@ class Judging:
             expected = "an approximation of the motion"
             raise InputError("--approximation", word, expected, "This one gives a number, not a motion.")
 
-        def trial() -> ToJudge:
+        def trial() -> Score:
             times = [float(t) for t in scene.exact.grid]
             columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-            return ToJudge(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
+            return self.score(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
 
         return self.outcome(word, scene.id, trial)
 
@@ -205,9 +197,9 @@ class Judging:
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
-    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> ToJudge:
+    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> Score:
         scene, times = load_scene(files.scene), self.times(files.transits)
-        return ToJudge(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
+        return self.score(scene, None if files.candidate is None else self._read(files.candidate), times, earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
