@@ -15,7 +15,7 @@ import numpy as np
 
 from compare.methods.library import captured
 
-from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
+from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, leading, outcome
 from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
@@ -54,8 +54,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         calls = int(data[-1])
         if success == 1:
             return outcome(problem, states, rhs_evaluations=calls, reason=output.words())
-        finite = np.isfinite(states).all(axis=1)
-        reached = rows if finite.all() else int(np.argmin(finite))
+        reached = leading(np.isfinite(states).all(axis=1))
         reason = output.words() or f"numbalsoda's {code} stopped without a message"
         return outcome(problem, states[:reached], rhs_evaluations=calls, reason=reason)
 
