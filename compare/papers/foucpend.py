@@ -87,15 +87,11 @@ def _texts(rows: Array) -> Iterator[str]:
 
 
 def _comments(options: Options) -> Iterator[str]:
-    mode = "--exact" if options.exact else f"-R {_order(options.method)} -a {options.bits}"
+    mode = "--exact" if options.exact else f"-R {options.order} -a {options.bits}"
     yield f"# foucault pend {options.printed}"
     yield f"# {mode}"
     yield f"# columns: {COLUMNS}"
     yield "# transits of xdot = 0: # P count t/s frequency/Hz"
-
-
-def _order(method: str) -> str:
-    return next(order for order, name in METHOD_OF.items() if name == method)
 
 
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
@@ -217,10 +213,10 @@ def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
         InputError: numba is not installed.
         IntegrationError: the bob reaches the height of the suspension, or the run fails otherwise.
     """
-    method = METHODS[options.method]
+    method = METHODS[METHOD_OF[options.order]]
     missing = available(method)
     if missing is not None:
-        raise InputError("-R", options.method, "a method that is installed", f"It is {missing}.")
+        raise InputError("-R", method.id, "a method that is installed", f"It is {missing}.")
     step = float(options.step)
     problem = _problem(options, step)
     first = 0

@@ -68,10 +68,6 @@ def _is_the_north_direction() -> bool:
     return all(vanishes(_along_meridian(p) - (_meridian_radius(p) + p.altitude) * north(p, p.t)) for p in points())
 
 
-def _distance_of_suspension(p: Point) -> Any:
-    return norm(suspension(p, MP.one)[:2])
-
-
 def _east_from_latitude() -> Answer:
     p = points()[0]
     along, e_east = unit(_along_meridian(p)), east(p, p.t)
@@ -171,7 +167,7 @@ def checks() -> list[Check]:
             lambda p: printed_suspension(p, p.t), lambda p: suspension(p, p.rate * p.t),
             remark="truth: h along the normal of the ellipsoid"),
         Identity("2", "(2)", "N = ρ_e / sqrt(1 - e² sin²ϕ)", lambda p: p.radius / sqrt(1 - p.e2 * sin(p.phi) ** 2),
-            lambda p: _distance_of_suspension(p.but(altitude=MP.zero)) / cos(p.phi),
+            lambda p: norm(suspension(p.but(altitude=MP.zero), MP.one)[:2]) / cos(p.phi),
             remark="truth: length of the normal from the ellipsoid to the axis"),
         Identity("3", "(3)", "R = (N+h) cosϕ", lambda p: (p.N + p.altitude) * cos(p.phi),
             lambda p: axis_distance(p.radius, p.flattening, p.altitude, sin(p.phi), cos(p.phi), MP.sqrt),

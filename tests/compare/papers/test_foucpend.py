@@ -49,7 +49,7 @@ def test_the_defaults_are_the_paper_s() -> None:
     for name in ("length", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening"):
         assert getattr(inputs, name) == getattr(exact, name)
     assert inputs.position == (0, 0, 0, 0)
-    assert (options.method, options.bits, options.skip, options.steps) == ("rk4", 0, 1, 864000)
+    assert (options.order, options.bits, options.skip, options.steps) == ("4", 0, 1, 864000)
 
 
 @pytest.mark.parametrize(
