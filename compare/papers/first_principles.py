@@ -33,6 +33,12 @@ def rotated(a: Vector, axis: Vector, angle: Any) -> Vector:
     return cos(angle) * a + sin(angle) * cross(axis, a) + along
 
 
+def turned_in_plane(xy: Vector, angle: Any) -> Vector:
+    """Return x, y turned by an angle, from x to y."""
+    x, y, c, s = *xy, cos(angle), sin(angle)
+    return vector(x * c - y * s, x * s + y * c)
+
+
 def suspension(p: Point, longitude: Any) -> Vector:
     """Return the point at p's altitude along the ellipsoid's normal from where the normal has p's latitude."""
     polar = p.radius * (1 - p.flattening)

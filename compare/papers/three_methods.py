@@ -33,6 +33,7 @@ from .first_principles import (
     plane_state,
     rate_up,
     swing_rate,
+    turned_in_plane,
     turning,
     uniform_acceleration,
 )
@@ -52,13 +53,7 @@ def _axes_turn(p: Point) -> Vector:
 
 def primed(path: Path, rate: Any) -> Path:
     """Return x' = x cosω_p t - y sinω_p t, y' = x sinω_p t + y cosω_p t along a path."""
-
-    def turned(t: Any) -> Vector:
-        x, y = path(t)
-        c, s = cos(rate * t), sin(rate * t)
-        return vector(x * c - y * s, x * s + y * c)
-
-    return turned
+    return lambda t: turned_in_plane(path(t), rate * t)
 
 
 def generic_path(p: Point) -> Path:
@@ -112,7 +107,7 @@ def _any_rate(p: Point) -> Any:
 
 def _turned(p: Point, xy: Vector) -> Vector:
     """Return x cosω_p t - y sinω_p t and x sinω_p t + y cosω_p t."""
-    return primed(lambda t: xy, _any_rate(p))(p.t)
+    return turned_in_plane(xy, _any_rate(p) * p.t)
 
 
 def _first(p: Point) -> Vector:
