@@ -103,6 +103,13 @@ def component(function: Callable[[Point], Value], i: int) -> Callable[[Point], A
     return lambda p: function(p)[i]
 
 
+def over(
+    family: Callable[[Any], Point], formula: Callable[[Point], Value], truth: Callable[[Point], Value]
+) -> Callable[[Any], tuple[Value, Value]]:
+    """Return the `pair` of an `Approximate` from formulas at points that the small parameter gives."""
+    return lambda s: (formula(family(s)), truth(family(s)))
+
+
 @dataclass(frozen=True)
 class Identity(Check):
     """Printed with an equals sign: `formula` as printed, `truth` derived, `corrected` where the print fails."""

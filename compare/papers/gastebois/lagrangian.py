@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import Approximate, Check, Identity, component, section
+from ..checks import Approximate, Check, Identity, component, over, section
 from ..digits import MP, Vector, cos, cross, derivative, dot, sin, vector
 from ..first_principles import (
     acceleration_of,
@@ -244,10 +244,10 @@ def checks() -> list[Check]:
         Identity("7_2_phi2", "7.2", "φ'' = (-2 cosθ θ'φ' - 2 (cosθ sinλ_a - sinθ sinφ cosλ_a) Ω θ') / sinθ",
             lambda p: printed_accelerations(p)[1], lambda p: angle_accelerations(p)[1]),
         Approximate("7_3_theta", "7.3", "θ'' = -g_a/L0 θ + θ φ'² + 2 θ sinλ_a Ω φ'",
-            lambda s: (small_accelerations(_narrow(s))[0], angle_accelerations(_narrow(s))[0]), 1, "θ",
+            over(_narrow, component(small_accelerations, 0), component(angle_accelerations, 0)), 1, "θ",
             remark="at a random point"),
         Approximate("7_3_phi", "7.3", "φ'' = (-2 θ'φ' - 2 sinλ_a Ω θ') / θ",
-            lambda s: (small_accelerations(_narrow(s))[1], angle_accelerations(_narrow(s))[1]), 1, "θ",
+            over(_narrow, component(small_accelerations, 1), component(angle_accelerations, 1)), 1, "θ",
             remark="at a random point"),
         Identity("7_3_first", "7.3", "x'' = L0 θ'' cosφ - …, y'' = L0 θ'' sinφ + … (of x = L0 θ cosφ, y = L0 θ sinφ)",
             _flat_printed, lambda p: derivative(lambda s: _flat(p, s), 0, 2)),

@@ -9,7 +9,7 @@ from reference import load_scene
 from reference.model.constants import axis_distance
 
 from ...approximations.case import Case
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
 from ..digits import (
     MP,
     Vector,
@@ -227,7 +227,7 @@ def checks() -> list[Check]:
             "1908", lambda: 24 * 60 / sin(radians(49)), remark="minutes"),
         PrintedNumber("4_1_hour", "4.1", "(11,3° in 1 hour)", "11.3", lambda: 360 * sin(radians(49)) / 24),
         Approximate("4_1_ga", "4.1", "g_a = g",
-            lambda s: (pantheon_on_sphere(s).gravity, norm(apparent(pantheon_on_sphere(s)))), 1, "Ω²", "m/s²",
+            over(pantheon_on_sphere, lambda p: p.gravity, lambda p: norm(apparent(p))), 1, "Ω²", "m/s²",
             remark="at 48.87°"),
         Identity("4_1_omega", "4.1", "Ω = Ω cosλ j + Ω sinλ k",
             turning, lambda p: p.k.turn, remark="truth: reference.model.constants"),

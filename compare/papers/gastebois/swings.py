@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate, turned_in_plane
 from ..points import Point, points
@@ -120,9 +120,9 @@ def checks() -> list[Check]:
         Identity("6_2_start", "6.2", "x0 = r0, y0 = 0, v_x0 = 0, v_y0 = -r0 Ω_z", _start_simple,
             lambda p: (*simple(p, MP.zero)[:2], *derivative(lambda t: simple(p, t)[:2], MP.zero))),
         Approximate("6_2_omega", "6.2", "ω = ω0 (1 + Ω_z² / 2ω0²)",
-            lambda s: (_expanded(pantheon(s)), swing_rate(pantheon(s))), 4, "Ω"),
+            over(pantheon, _expanded, swing_rate), 4, "Ω"),
         Approximate("6_2_period", "6.2", "T = T0 (1 - Ω_z² / 2ω0²)",
-            lambda s: (_expanded_period(pantheon(s)), 2 * pi / swing_rate(pantheon(s))), 4, "Ω"),
+            over(pantheon, _expanded_period, lambda p: 2 * pi / swing_rate(p)), 4, "Ω"),
         Identity("6_3_c", "6.3", "c1 = (ω-Ω_z) r0 / 2ω, c2 = (ω+Ω_z) r0 / 2ω",
             lambda p: tuple((swing_rate(p) + sign * rate_up(p)) * p.x / (2 * swing_rate(p)) for sign in (-1, 1)),
             lambda p: fitted_constants(p.but(y=MP.zero, vx=MP.zero, vy=MP.zero))[::2]),
