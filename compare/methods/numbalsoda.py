@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.methods.library import captured
-
+from .library import captured, quoted
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, leading, outcome
 from .rhs.problem import Problem
 
@@ -53,9 +52,9 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             )  # fmt: skip
         calls = int(data[-1])
         if success == 1:
-            return outcome(problem, states, rhs_evaluations=calls, reason=output.words())
+            return outcome(problem, states, rhs_evaluations=calls, reason=quoted(output))
         reached = leading(np.isfinite(states).all(axis=1))
-        reason = output.words() or f"numbalsoda's {code} stopped without a message"
+        reason = quoted(output) or f"numbalsoda's {code} stopped without a message"
         return outcome(problem, states[:reached], rhs_evaluations=calls, reason=reason)
 
     return work

@@ -11,9 +11,9 @@ from functools import partial
 
 import numpy as np
 
-from compare.methods.library import captured
 from reference.numbers.precision import Array
 
+from .library import captured
 from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
 from .rhs.problem import Problem
 
