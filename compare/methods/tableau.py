@@ -49,11 +49,6 @@ class Tableau:
     a: Matrix
     b: Vector
 
-    @property
-    def stages(self) -> int:
-        """Evaluations of the right-hand side in a step."""
-        return len(self.b)
-
     def __post_init__(self) -> None:
         check_order(self.name, conditions(self.order, [], [(self.a, self.b)]))
 
@@ -84,11 +79,6 @@ class NystromTableau:
     velocity_weights: Vector
     position_weights: Vector
     tolerance: Fraction = EXACT
-
-    @property
-    def stages(self) -> int:
-        """Evaluations of the right-hand side in a step."""
-        return len(self.c)
 
     def __post_init__(self) -> None:
         for node, velocity, position in zip(self.c, self.velocity, self.position, strict=True):
