@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from string import Template
 from types import ModuleType
 from typing import Any, cast
 
@@ -22,7 +23,7 @@ from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
 
-from .straight_line import StraightLine, elements, generated
+from .straight_line import StraightLine, compiled, elements
 from .tracing import differentiated, record
 
 SMALLEST_SIZE = 1e-12  # least swing of a variable, so that tolerances for a bob at rest are not zero
@@ -197,8 +198,21 @@ class Problem:
         return cast(Filling, self.compiled(self.system.jacobian, _SLOPES, j=targets).slopes)
 
     def compiled(self, program: StraightLine, template: str, **texts: object) -> ModuleType:
-        """Return straight-line code of the system and a template that calls it, as `straight_line.generated` does."""
-        return generated(program, template, len(self.start), len(self.system.parameters), **texts)
+        """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
+
+        Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of
+        these names, as many as variables (`${size}`); `${k}` are those of the parameters. `${x}` and `${c}` are numbers
+        with names of their own, which `${unpack_y}` and `${unpack_k}` take from y and k. `${counter}` is the place
+        behind the parameters, of which libraries are given one at least.
+        """
+        variables, parameters = len(self.start), len(self.system.parameters)
+        for array in ("y", "z", "f", "p", "dy"):
+            texts[array] = elements(array, variables)
+        texts |= {"k": elements("k", parameters), "size": variables, "counter": max(parameters, 1)}
+        for letter, array, count in (("x", "y", variables), ("c", "k", parameters)):
+            texts[letter] = "".join(f"{letter}{i}, " for i in range(count))
+            texts[f"unpack_{array}"] = f"{texts[letter]}= {texts[array]}" if count else "pass"
+        return compiled(f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}")
 
     def cartesian(self, states: Array) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""

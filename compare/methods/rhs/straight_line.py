@@ -10,7 +10,6 @@ import hashlib
 import sys
 from dataclasses import dataclass, field
 from functools import cache
-from string import Template
 from types import ModuleType
 
 from reference.system.cache import kept
@@ -64,23 +63,6 @@ class StraightLine:
         body = [f"{line.name} = {line.expression}" for line in self.lines]
         ending = ", ".join(self.outputs) + ("," if len(self.outputs) == 1 else "")
         return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
-
-
-def generated(program: StraightLine, template: str, variables: int, parameters: int, **texts: object) -> ModuleType:
-    """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
-
-    Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of these
-    names, as many as variables (`${size}`); `${k}` are those of the parameters. `${x}` and `${c}` are numbers with
-    names of their own, which `${unpack_y}` and `${unpack_k}` take from y and k. `${counter}` is the place behind the
-    parameters, of which libraries are given one at least.
-    """
-    for array in ("y", "z", "f", "p", "dy"):
-        texts[array] = elements(array, variables)
-    texts |= {"k": elements("k", parameters), "size": variables, "counter": max(parameters, 1)}
-    for letter, array, count in (("x", "y", variables), ("c", "k", parameters)):
-        texts[letter] = "".join(f"{letter}{i}, " for i in range(count))
-        texts[f"unpack_{array}"] = f"{texts[letter]}= {texts[array]}" if count else "pass"
-    return compiled(f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}")
 
 
 def elements(array: str, count: int, row: str = "") -> str:
