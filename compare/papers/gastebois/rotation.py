@@ -211,7 +211,7 @@ def checks() -> list[Check]:
             lambda p: -p.rate * vector(cos(p.rate * p.t), sin(p.rate * p.t)),
             lambda p: derivative(lambda t: vector(-sin(p.rate * t), cos(p.rate * t)), p.t)),
         PrintedNumber("1", "1", "in one hour the pendulum had turned by 11,3°",
-            "11.3", lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111"))),
+            "11.3", lambda: 360 / SIDEREAL_DAY * sin(paris().phi)),
         PrintedNumber("2_radius", "2", "R_p = 6370 km",
             "6370e3", lambda: MEAN_RADIUS, about=lambda: MEAN_RADIUS, remark="m; mean radius of the ellipsoid"),
         Identity("2_distance", "2", "R = R_p cosλ", lambda p: p.radius * cos(p.phi),
