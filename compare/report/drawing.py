@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
+from reference.system.imports import missing
 
 # Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its darkest colour
 INKS = {
@@ -63,11 +64,8 @@ def check_matplotlib(field: str) -> None:
     Raises:
         InputError: matplotlib is not installed.
     """
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        advice = "pip install 'foucault-reference[plot]'."
-        raise InputError(field, "no matplotlib", "the extra plot", advice) from None
+    if missing(["matplotlib"]):
+        raise InputError(field, "no matplotlib", "the extra plot", "pip install 'foucault-reference[plot]'.")
 
 
 def check_target(path: Path, field: str = "--plot") -> None:
