@@ -41,28 +41,12 @@ TRANSITS = ".transits"
 DOCUMENT = ".json"  # of a baseline that is no trajectory
 
 
-@dataclass(frozen=True)
-class SuiteFiles:
-    """The files of a suite for one scene, such as paris.csv, with paris.transits.csv beside it.
+def suite_files(folder: Path, option: str = "--suite") -> dict[str, tuple[Path | None, Path | None]]:
+    """Return the candidates of a folder by their scenes, sorted, such as paris.csv, with paris.transits.csv beside it.
 
-    Attributes:
-        scene: id of a scene that ships, or the path of a TOML file of the same name beside the candidate.
-        candidate: its file; None if there are transits alone.
-        transits: the file of its transits, or None.
-    """
-
-    scene: str
-    candidate: Path | None
-    transits: Path | None
-
-    @property
-    def name(self) -> str:
-        """The candidate's file, or that of its transits."""
-        return str(self.candidate or self.transits)
-
-
-def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
-    """List the candidates of a folder by their scenes, sorted.
+    Returns:
+        The candidate's file and that of its transits, one of which may be None; by the id of a scene that ships, or by
+        the path of a TOML file of the same name beside them.
 
     Raises:
         InputError: it is no folder, holds no candidates, or two for one scene.
@@ -81,10 +65,10 @@ def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
     if not by_scene:
         expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
         raise InputError(option, str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
-    suite = []
+    suite = {}
     for scene, paths in sorted(by_scene.items()):
         described = folder / f"{scene}.toml"
-        suite.append(SuiteFiles(str(described) if described.is_file() else scene, paths.get(False), paths.get(True)))
+        suite[str(described) if described.is_file() else scene] = paths.get(False), paths.get(True)
     return suite
 
 
@@ -176,10 +160,10 @@ class Judging:
         if out is not None:
             suite.check(out)
         outcomes, earlier = [], self._earlier_suite()
-        for files in suite_files(folder, option):
-            name = Path(files.scene).stem
-            trial = partial(self._trial, files, earlier.pop(name, None if self.baseline is None else {"rows": []}))
-            outcomes.append(self.outcome(files.name, name, trial))
+        for scene, files in suite_files(folder, option).items():
+            name = Path(scene).stem
+            before: object = earlier.pop(name, None if self.baseline is None else {"rows": []})
+            outcomes.append(self.outcome(str(files[0] or files[1]), name, partial(self._trial, scene, *files, before)))
         for name in earlier:
             error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
             outcomes.append(Outcome(name, name, error=error))
@@ -197,9 +181,9 @@ class Judging:
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
-    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> Score:
-        scene, times = load_scene(files.scene), self.times(files.transits)
-        return self.score(scene, None if files.candidate is None else self._read(files.candidate), times, earlier)
+    def _trial(self, word: str, candidate: Path | None, transits: Path | None, earlier: object) -> Score:
+        scene, times = load_scene(word), self.times(transits)
+        return self.score(scene, None if candidate is None else self._read(candidate), times, earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""

@@ -111,7 +111,7 @@ SUNDIALS = Library(
 )
 
 
-def quoted(output: bytes, longest: int = 300) -> str:
+def quoted(output: bytes | bytearray, longest: int = 300) -> str:
     """Return what a library printed on one line, cut to `longest` characters, to be quoted in a message."""
     return " ".join(output.decode(errors="replace").split())[:longest]
 
