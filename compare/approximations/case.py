@@ -169,12 +169,16 @@ def without_drag(scene: Scene) -> str | None:
     return "The approximation has no drag: set pendulum.drag=0" if scene.exact.drag else None
 
 
+def underneath(scene: Scene, law: str = "The formula") -> str | None:
+    """Return a reason to refuse a release that is not below the suspension, or None."""
+    angles = scene.exact.angles
+    high = angles is not None and angles[0] >= 90
+    return f"{law} holds below the suspension only: give release.angle below 90" if high else None
+
+
 def below(scene: Scene) -> str | None:
     """Return a reason to refuse a scene with drag or a release that is not below the suspension, or None."""
-    angles = scene.exact.angles
-    if angles is not None and angles[0] >= 90:
-        return "The formula holds below the suspension only: give release.angle below 90"
-    return without_drag(scene)
+    return underneath(scene) or without_drag(scene)
 
 
 def at_rest(scene: Scene) -> str | None:

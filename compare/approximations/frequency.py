@@ -49,11 +49,6 @@ def anharmonic(case: Case) -> Any:
     return turntable(case, case.apparent_gravity) / slow_down(case)
 
 
-def _over_sine(case: Case) -> Any:
-    """Return T_p/sin λ."""
-    return abs(2 * case.ctx.pi / case.turn)
-
-
 def _over_tilted_sine(case: Case) -> Any:
     """Return T_p/sin λ_a, λ_a = λ + α."""
     return abs(2 * case.ctx.pi / (case.k.rate * case.ctx.sin(case.apparent_latitude)))
@@ -138,7 +133,7 @@ _SWING = (
         where="Gastebois 4.1",
         drops="the centrifugal force, the amplitude",
         orders=(Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), _SQUARE_AT_POLE),
-        formula=_over_sine,
+        formula=lambda case: abs(2 * case.ctx.pi / case.turn),
     ),
     _precession(
         id="precession_tilted",
