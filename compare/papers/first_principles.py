@@ -21,7 +21,6 @@ from .digits import MP, Vector, cos, cross, derivative, dot, j, mpf, sin, sqrt, 
 from .points import Point
 
 Coordinates = Callable[[Point, Any, Any], Vector]
-Path = Callable[[Any], Vector]
 
 AXIS = vector(0, 0, MP.one)  # the Earth's axis
 MIDDLE = vector(0, MP.one, 0)  # east at the meridian of longitude 0
@@ -35,7 +34,7 @@ def rotated(a: Vector, axis: Vector, angle: Any) -> Vector:
 
 def turned_in_plane(xy: Vector, angle: Any) -> Vector:
     """Return x, y turned by an angle, from x to y."""
-    x, y, c, s = *xy, cos(angle), sin(angle)
+    (x, y), c, s = xy, cos(angle), sin(angle)
     return vector(x * c - y * s, x * s + y * c)
 
 

@@ -46,11 +46,7 @@ def coriolis(p: Point) -> Vector:
 
 def along(i: int) -> Callable[[Point], Vector]:
     """Return ∂r/∂θ or ∂r/∂φ."""
-
-    def moved(p: Point, s: Any) -> Vector:
-        return by_angles(p, p.cord + s, p.azimuth) if i == 0 else by_angles(p, p.cord, p.azimuth + s)
-
-    return lambda p: derivative(lambda s: moved(p, s))
+    return lambda p: derivative(lambda s: by_angles(p, *(angle_state(p)[0] + s * vector(1 - i, i))))
 
 
 def _by_theta(p: Point) -> Vector:

@@ -132,10 +132,6 @@ def _by_chain_rule(p: Point) -> Vector:
     return sum(terms)
 
 
-def _velocity_of_place(p: Point) -> Vector:
-    return derivative(lambda s: place(p, p.position + s * p.velocity, p.t + s))
-
-
 def _alpha(power: int) -> Callable[[Point], Any]:
     """Return the coefficient of Ω**power in the squared velocity."""
     return lambda p: in_rate(lambda rate: square_speed(p.but(rate=rate), by_angles, *angle_state(p)[:2]), power)
@@ -202,7 +198,7 @@ def checks() -> list[Check]:
             lambda p: (p.N + p.altitude) * p.rate * cos(p.phi) * vector(-sin(p.rate * p.t), cos(p.rate * p.t), 0),
             lambda p: derivative(lambda t: suspension(p, p.rate * t), p.t)),
         Identity("14", "(14)", "Xdot = Xdot_s + e_E' x + e_E x' + e_N' y + e_N y' + e_U' z + e_U z'",
-            _by_chain_rule, _velocity_of_place),
+            _by_chain_rule, lambda p: derivative(lambda s: place(p, p.position + s * p.velocity, p.t + s))),
         Identity("15_e", "(15)", "e_E' = Ω (-cosΩt, -sinΩt, 0)",
             lambda p: p.rate * vector(-cos(p.rate * p.t), -sin(p.rate * p.t), 0),
             _rates_of(_site_axis(0))),

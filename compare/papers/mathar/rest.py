@@ -8,7 +8,7 @@ from typing import Any
 
 from ...approximations.frequency import line_of_46, series, triangle
 from ...approximations.mathar import derivatives, truncated
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, component, over, section
 from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import coupled_at, horizontal_acceleration, in_rate, linearised, rest, uniform_acceleration
 from ..points import Point, paris, points
@@ -115,11 +115,6 @@ def _derived_series(p: Point) -> Vector:
     return vector(*(derivative(angle, order=power) / MP.factorial(power) for power in (2, 4, 6)))
 
 
-def series_term(i: int) -> tuple[Callable[[Point], Any], Callable[[Point], Any]]:
-    """Return a coefficient as printed, and as derived."""
-    return lambda p: series(p.case)[i], lambda p: _derived_series(p)[i]
-
-
 def _shorter(s: Any) -> Point:
     """Return Paris with a cord s times as long."""
     return paris().but(length=paris().length * s)
@@ -170,7 +165,8 @@ def _section_v() -> list[Check]:
         Identity("46_root", "(46)", "its root is the rest position",
             lambda p: line_of_46(p.case, p.case.rest_angle), lambda p: 0,
             remark="root: reference.model.force.rest_position"),
-        *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}", *series_term(i),
+        *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}",
+            component(lambda p: series(p.case), i), component(_derived_series, i),
             remark="truth: Taylor series of the rest position") for i, (power, mark, printed) in enumerate(SERIES)),
         Statement("47_text", ", after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
         Approximate("48", "(48)", "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
@@ -208,11 +204,6 @@ def without(item: int) -> Callable[[Point], Vector]:
         return p.length * vector(*derivatives((x, y, vx, vy), truncated(p.k, items), MP, items)[2:])
 
     return accelerations
-
-
-def _depth_is_length(p: Point) -> Vector:
-    """Return x'', y'' of item 5, in the term with g: z replaced by l."""
-    return -p.gravity / p.length * p.position[:2]
 
 
 def _cosine(s: Any) -> tuple[Vector, Vector]:
@@ -253,7 +244,7 @@ def _section_vi() -> list[Check]:
         Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
             _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
         Approximate("vi_5", "item 5", "z replaced by l",
-            over(_swinging, _depth_is_length, _pulled), 2, "amplitude", remark=place),
+            over(_swinging, lambda p: -p.gravity / p.length * p.position[:2], _pulled), 2, "amplitude", remark=place),
         Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
             lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
             lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
