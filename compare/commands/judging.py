@@ -109,8 +109,7 @@ class Judging:
 
     def _earlier(self) -> Candidate | str | None:
         """Read the baseline, if there is one, unless it is a document."""
-        is_file = self.baseline is not None and not self.baseline.endswith(DOCUMENT)
-        return self._read(str(self.baseline)) if is_file else self.baseline
+        return self.baseline if str(self.baseline).endswith(DOCUMENT) else self._read(self.baseline)
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
@@ -182,15 +181,14 @@ class Judging:
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
     def _trial(self, word: str, candidate: Path | None, transits: Path | None, earlier: object) -> Score:
-        scene, times = load_scene(word), self.times(transits)
-        return self.score(scene, None if candidate is None else self._read(candidate), times, earlier)
+        return self.score(load_scene(word), self._read(candidate), self.times(transits), earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
         return None if name is None else read_transits(name, self.naming.units)
 
-    def _read(self, name: str | Path) -> Candidate:
-        return read(name, columns=self.naming.columns, units=self.naming.units)
+    def _read(self, name: str | Path | None) -> Candidate | None:
+        return None if name is None else read(name, columns=self.naming.columns, units=self.naming.units)
 
 
 def ranges_named(word: str | None) -> Ranges | None:
