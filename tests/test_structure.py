@@ -157,7 +157,7 @@ PUBLIC = {
     "reference.sweeps.store": "Store",
     "reference.sweeps.sweep": "asked_for run",
     "reference.system": "cache",
-    "reference.system.cache": "arrays discard entry kept",
+    "reference.system.cache": "arrays kept",
     "reference.system.documents": "json_document json_lines open_at_once texts_of",
     "reference.system.imports": "Registry lazy missing switched_off",
     "reference.system.interruption": "terminable",

@@ -44,48 +44,38 @@ class Case(Start):
     @cached_property
     def gravity(self) -> Any:
         """Gravity g, down along the ellipsoid's normal."""
-        return self.ctx.mpf(self.k.gravity) * self.length
+        return self.k.gravity * self.length
 
     @cached_property
-    def rate(self) -> Any:
-        """Rotation rate Ω."""
-        return self.ctx.mpf(self.k.rate)
-
-    @cached_property
-    def sin(self) -> Any:
-        """Sine of the geodetic latitude."""
-        return self.ctx.mpf(self.k.sin)
-
-    @cached_property
-    def cos(self) -> Any:
-        """Cosine of the geodetic latitude."""
-        return self.ctx.mpf(self.k.cos)
+    def turn(self) -> Any:
+        """Ω sin φ: how fast the ground turns about its vertical (Gastebois Ω_z, with the geodetic latitude)."""
+        return self.k.rate * self.k.sin
 
     @cached_property
     def latitude(self) -> Any:
         """Geodetic latitude in rad."""
-        return self.ctx.atan2(self.sin, self.cos)
+        return self.ctx.atan2(self.k.sin, self.k.cos)
 
     @cached_property
     def axis_distance(self) -> Any:
         """R = (N + h) cos φ of the suspension, Mathar (3)."""
-        return self.ctx.mpf(self.k.axis_distance) * self.length
+        return self.k.axis_distance * self.length
 
     @cached_property
     def outward(self) -> Any:
         """Centrifugal acceleration R Ω² at the suspension (Gastebois a_e)."""
-        return self.axis_distance * self.rate**2
+        return self.axis_distance * self.k.rate**2
 
     @cached_property
     def apparent_gravity(self) -> Any:
         """Apparent gravity g' by the law of cosines: Mathar (48); g_a of Gastebois 4.2, misprint corrected."""
         g, a = self.gravity, self.outward
-        return self.ctx.sqrt(g**2 + a**2 - 2 * g * a * self.cos)
+        return self.ctx.sqrt(g**2 + a**2 - 2 * g * a * self.k.cos)
 
     @cached_property
     def tilt(self) -> Any:
         """Angle α from the vertical to the plumb line, positive to the south, Gastebois 4.2."""
-        return self.ctx.atan2(self.outward * self.sin, self.gravity - self.outward * self.cos)
+        return self.ctx.atan2(self.outward * self.k.sin, self.gravity - self.outward * self.k.cos)
 
     @cached_property
     def apparent_latitude(self) -> Any:
@@ -179,12 +169,16 @@ def without_drag(scene: Scene) -> str | None:
     return "The approximation has no drag: set pendulum.drag=0" if scene.exact.drag else None
 
 
+def underneath(scene: Scene, law: str = "The formula") -> str | None:
+    """Return a reason to refuse a release that is not below the suspension, or None."""
+    angles = scene.exact.angles
+    high = angles is not None and angles[0] >= 90
+    return f"{law} holds below the suspension only: give release.angle below 90" if high else None
+
+
 def below(scene: Scene) -> str | None:
     """Return a reason to refuse a scene with drag or a release that is not below the suspension, or None."""
-    angles = scene.exact.angles
-    if angles is not None and angles[0] >= 90:
-        return "The formula holds below the suspension only: give release.angle below 90"
-    return without_drag(scene)
+    return underneath(scene) or without_drag(scene)
 
 
 def at_rest(scene: Scene) -> str | None:

@@ -41,8 +41,7 @@ def planar(case: Case) -> Any:
 
 def turntable(case: Case, gravity: Any) -> Any:
     """Return sqrt(gravity/l + (Ω sin φ)²)/2π, the frequency of Mathar (51)-(52)."""
-    turn = case.rate * case.sin
-    return case.ctx.sqrt(gravity / case.length + turn**2) / (2 * case.ctx.pi)
+    return case.ctx.sqrt(gravity / case.length + case.turn**2) / (2 * case.ctx.pi)
 
 
 def anharmonic(case: Case) -> Any:
@@ -50,14 +49,9 @@ def anharmonic(case: Case) -> Any:
     return turntable(case, case.apparent_gravity) / slow_down(case)
 
 
-def _over_sine(case: Case) -> Any:
-    """Return T_p/sin λ."""
-    return abs(2 * case.ctx.pi / (case.rate * case.sin))
-
-
 def _over_tilted_sine(case: Case) -> Any:
     """Return T_p/sin λ_a, λ_a = λ + α."""
-    return abs(2 * case.ctx.pi / (case.rate * case.ctx.sin(case.apparent_latitude)))
+    return abs(2 * case.ctx.pi / (case.k.rate * case.ctx.sin(case.apparent_latitude)))
 
 
 def _spherical(case: Case) -> Any:
@@ -139,7 +133,7 @@ _SWING = (
         where="Gastebois 4.1",
         drops="the centrifugal force, the amplitude",
         orders=(Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), _SQUARE_AT_POLE),
-        formula=_over_sine,
+        formula=lambda case: abs(2 * case.ctx.pi / case.turn),
     ),
     _precession(
         id="precession_tilted",
@@ -169,7 +163,7 @@ def line_of_46(case: Case, angle: Any, sign: int = -1) -> Any:
 
     The upper sign, 1, is that of a cord that leans to the north.
     """
-    ctx, square = case.ctx, case.rate**2
+    ctx, square = case.ctx, case.k.rate**2
     tilted = case.latitude - sign * angle
     far = sign * case.axis_distance / case.length * square * ctx.sin(tilted)
     return far - sign * square * ctx.cos(tilted) * ctx.sin(tilted) + case.k.gravity * ctx.sin(angle)
@@ -183,7 +177,7 @@ def _equation(case: Case) -> Any:
 def series(case: Case) -> Vector:
     """Return the coefficients of Ω², Ω⁴ and Ω⁶ in (47), for the lower sign: positive to the south."""
     ctx, cord, g, latitude = case.ctx, case.length, case.gravity, case.latitude
-    n = case.axis_distance / case.cos  # N + h
+    n = case.axis_distance / case.k.cos  # N + h
     two, four = ctx.cos(2 * latitude), ctx.cos(4 * latitude)
     bracket = n**2 * (four + 3 * two + 2)
     bracket -= n * cord * (ctx.mpf(37) / 8 * four + ctx.mpf(11) / 8 + 6 * two)
@@ -194,12 +188,12 @@ def series(case: Case) -> Vector:
 
 def _series(case: Case, terms: int) -> Any:
     """Return the series (47) up to Ω^(2 terms)."""
-    return sum(c * case.rate ** (2 * i + 2) for i, c in enumerate(series(case)[:terms]))
+    return sum(c * case.k.rate ** (2 * i + 2) for i, c in enumerate(series(case)[:terms]))
 
 
 def triangle(case: Case) -> Any:
     """Return the angle of (50): the sine rule in the triangle of g, RΩ² and g'."""
-    return case.ctx.asin(case.outward * case.sin / case.apparent_gravity)
+    return case.ctx.asin(case.outward * case.k.sin / case.apparent_gravity)
 
 
 def _pulled(scene: Scene) -> str | None:

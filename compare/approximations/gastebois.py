@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError
-from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
 
@@ -28,11 +27,6 @@ from .case import Case, hung, integrated, released_at_rest, swinging
 Pair = Sequence[Any]
 
 
-def uniform(k: Constants) -> Constants:
-    """Return the model's constants with the apparent gravity at the suspension everywhere."""
-    return replace(k, centrifugal=(0, 0, 0, 0))
-
-
 def hanging(scene: Scene) -> Any:
     """Return his rest position in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
     case = Case.of_scene(scene)
@@ -40,8 +34,8 @@ def hanging(scene: Scene) -> Any:
 
 
 def _any_amplitude(case: Case, times: Array) -> Array:
-    """Return rows of 7.2."""
-    model, case = FORMULATIONS["spin"], replace(case, k=uniform(case.k))
+    """Return rows of 7.2: the model, with the apparent gravity at the suspension everywhere."""
+    model, case = FORMULATIONS["spin"], replace(case, k=replace(case.k, centrifugal=(0, 0, 0, 0)))
     states = integrated(model.variables, model.derivatives, case.state(model), case.k, times)
     place, speed = model.cartesian(tuple(states.T), case.k, np)
     return np.column_stack((*place, *speed)) * float(case.length)
@@ -85,7 +79,7 @@ def oscillation(place: Pair, speed: Pair, omega: Any, turn: Any, times: Array) -
 
 def small_angles(case: Case) -> tuple[Any, Any]:
     """Return ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a, in rad/s."""
-    turn = case.rate * case.ctx.sin(case.apparent_latitude)
+    turn = case.k.rate * case.ctx.sin(case.apparent_latitude)
     return turntable_frequency(case, case.apparent_gravity, turn), turn
 
 

@@ -17,13 +17,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from reference import IntegrationError, Scene
+from reference import IntegrationError
 from reference.model.algebra import Functions, State, dot, minus, plus, product
 from reference.model.constants import Constants
 from reference.numbers.precision import Array
 
 from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Order
-from .case import Case, hung, integrated, lowest_point, released_at_rest, swinging
+from .case import Case, hung, integrated, lowest_point, released_at_rest, swinging, underneath
 from .gastebois import oscillation, turntable_frequency
 
 VARIABLES = ("x", "y", "vx", "vy")
@@ -97,18 +97,12 @@ def _path(case: Case, times: Array, items: frozenset[Item]) -> Array:
     return hung(x, y, vx, vy, case.length)
 
 
-def _above(scene: Scene) -> str | None:
-    angles = scene.exact.angles
-    high = angles is not None and angles[0] >= 90
-    return "(43) holds below the suspension only: give release.angle below 90" if high else None
-
-
 def _without(*items: Item, **fields: Any) -> Motion:
     """Declare (43) without `items`; where item 1 or its variant is among them, it swings about the vertical."""
     names = ", ".join(str(item) for item in items)
     return Motion(
         where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
-        refuses=_above,
+        refuses=partial(underneath, law="(43)"),
         path=partial(_path, items=frozenset(items)),
         rest=lowest_point if 1 in items or VARIANT in items else None,
         **fields,
@@ -137,12 +131,11 @@ def _harmonic(case: Case, times: Array, apparent: bool = True, about_rest: bool 
         about_rest: swing about the rest position.
         slowed: divide ω by `slow_down`.
     """
-    turn = case.rate * case.sin
-    omega = turntable_frequency(case, case.apparent_gravity if apparent else case.gravity, turn)
+    omega = turntable_frequency(case, case.apparent_gravity if apparent else case.gravity, case.turn)
     omega = omega / slow_down(case) if slowed else omega
     centre = case.ctx.mpf(case.rest[1]) * case.length if about_rest else case.ctx.zero
     place = (case.position[0], case.position[1] - centre)
-    z, rate = oscillation(place, case.velocity[:2], omega, turn, times)
+    z, rate = oscillation(place, case.velocity[:2], omega, case.turn, times)
     return hung(z.real, z.imag + float(centre), rate.real, rate.imag, case.length)
 
 

@@ -18,8 +18,7 @@ from .case import Case, hung, lowest_point, swinging
 
 def _rates(case: Case) -> tuple[float, float]:
     """Return ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
-    turn = case.rate * case.sin
-    return float(case.ctx.sqrt(case.gravity / case.length + turn**2)), float(turn)
+    return float(case.ctx.sqrt(case.gravity / case.length + case.turn**2)), float(case.turn)
 
 
 def _rotating_frame(case: Case, times: Array) -> Array:

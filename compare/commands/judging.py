@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import typer
@@ -41,38 +41,12 @@ TRANSITS = ".transits"
 DOCUMENT = ".json"  # of a baseline that is no trajectory
 
 
-class ToJudge(NamedTuple):
-    """A candidate to judge, with its transits or transits alone, how long its program took, and its baseline."""
+def suite_files(folder: Path, option: str = "--suite") -> dict[str, tuple[Path | None, Path | None]]:
+    """Return the candidates of a folder by their scenes, sorted, such as paris.csv, with paris.transits.csv beside it.
 
-    scene: Scene
-    candidate: Candidate | None
-    transits: Array | None = None
-    timing: Timing | None = None
-    baseline: Candidate | Score | dict[str, Any] | str | None = None
-
-
-@dataclass(frozen=True)
-class SuiteFiles:
-    """The files of a suite for one scene, such as paris.csv, with paris.transits.csv beside it.
-
-    Attributes:
-        scene: id of a scene that ships, or the path of a TOML file of the same name beside the candidate.
-        candidate: its file; None if there are transits alone.
-        transits: the file of its transits, or None.
-    """
-
-    scene: str
-    candidate: Path | None
-    transits: Path | None
-
-    @property
-    def name(self) -> str:
-        """The candidate's file, or that of its transits."""
-        return str(self.candidate or self.transits)
-
-
-def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
-    """List the candidates of a folder by their scenes, sorted.
+    Returns:
+        The candidate's file and that of its transits, one of which may be None; by the id of a scene that ships, or by
+        the path of a TOML file of the same name beside them.
 
     Raises:
         InputError: it is no folder, holds no candidates, or two for one scene.
@@ -91,10 +65,10 @@ def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
     if not by_scene:
         expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
         raise InputError(option, str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
-    suite = []
+    suite = {}
     for scene, paths in sorted(by_scene.items()):
         described = folder / f"{scene}.toml"
-        suite.append(SuiteFiles(str(described) if described.is_file() else scene, paths.get(False), paths.get(True)))
+        suite[str(described) if described.is_file() else scene] = paths.get(False), paths.get(True)
     return suite
 
 
@@ -112,44 +86,45 @@ class Judging:
     options: dict[str, Any]
     baseline: str | None = None
 
-    def outcome(self, name: str, scene_id: str, trial: Callable[[], ToJudge]) -> Outcome:
-        """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
+    def outcome(self, name: str, scene_id: str, trial: Callable[[], Score]) -> Outcome:
+        """Make a score; an error in it becomes the outcome and does not stop others, an interruption ends all."""
         try:
-            scene, candidate, times, timing, baseline = trial()
-            options = self.options | {"baseline": baseline}
-            with stoppable("nothing was written"), progress() as show:
-                report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-                score = judge(candidate, scene, transits=times, announce=announce, report=report, **options)
+            score = trial()
         except Stopped:
             raise
         except FoucaultError as error:
             return Outcome(plain(name), plain(scene_id), error=error)
-        score = score if timing is None else replace(score, timing=timing)
         return Outcome(score.candidate.name, score.scene.id, score)
+
+    def score(self, scene: Scene, candidate: Candidate | None, times: Array | None, baseline: Any = None) -> Score:
+        """Judge a candidate, with its transits or transits alone, beside a baseline if there is one."""
+        with stoppable("nothing was written"), progress() as show:
+            options = self.options | {"baseline": baseline, "announce": announce}
+            report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
+            return judge(candidate, scene, transits=times, report=report, **options)
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(name, scene.id, lambda: ToJudge(scene, self._read(name), times, None, self._earlier()))
+        return self.outcome(name, scene.id, lambda: self.score(scene, self._read(name), times, self._earlier()))
 
     def _earlier(self) -> Candidate | str | None:
         """Read the baseline, if there is one, unless it is a document."""
-        is_file = self.baseline is not None and not self.baseline.endswith(DOCUMENT)
-        return self._read(str(self.baseline)) if is_file else self.baseline
+        return self.baseline if str(self.baseline).endswith(DOCUMENT) else self._read(self.baseline)
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
-        return self.outcome(name, scene.id, lambda: ToJudge(scene, None, self.times(name)))
+        return self.outcome(name, scene.id, lambda: self.score(scene, None, self.times(name)))
 
     def program(self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
         """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
         scene = program.scene
 
-        def trial() -> ToJudge:
+        def trial() -> Score:
             times = self.times(transits)
             candidate, timing = printed(program.command, name, repeats)
-            if self.baseline is not None and not Path(self.baseline).is_file():
-                return ToJudge(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
-            return ToJudge(scene, candidate, times, timing, self._earlier())
+            command = self.baseline is not None and not Path(self.baseline).is_file()
+            earlier = printed(str(self.baseline), str(self.baseline), 0)[0] if command else self._earlier()
+            return replace(self.score(scene, candidate, times, earlier), timing=timing)
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
             output, timing = timed(program.words(scene, command), program.timeout, repeats)
@@ -172,10 +147,10 @@ class Judging:
             expected = "an approximation of the motion"
             raise InputError("--approximation", word, expected, "This one gives a number, not a motion.")
 
-        def trial() -> ToJudge:
+        def trial() -> Score:
             times = [float(t) for t in scene.exact.grid]
             columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-            return ToJudge(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
+            return self.score(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
 
         return self.outcome(word, scene.id, trial)
 
@@ -184,10 +159,10 @@ class Judging:
         if out is not None:
             suite.check(out)
         outcomes, earlier = [], self._earlier_suite()
-        for files in suite_files(folder, option):
-            name = Path(files.scene).stem
-            trial = partial(self._trial, files, earlier.pop(name, None if self.baseline is None else {"rows": []}))
-            outcomes.append(self.outcome(files.name, name, trial))
+        for scene, files in suite_files(folder, option).items():
+            name = Path(scene).stem
+            before: object = earlier.pop(name, None if self.baseline is None else {"rows": []})
+            outcomes.append(self.outcome(str(files[0] or files[1]), name, partial(self._trial, scene, *files, before)))
         for name in earlier:
             error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
             outcomes.append(Outcome(name, name, error=error))
@@ -205,16 +180,15 @@ class Judging:
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
-    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> ToJudge:
-        scene, times = load_scene(files.scene), self.times(files.transits)
-        return ToJudge(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
+    def _trial(self, word: str, candidate: Path | None, transits: Path | None, earlier: object) -> Score:
+        return self.score(load_scene(word), self._read(candidate), self.times(transits), earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
         return None if name is None else read_transits(name, self.naming.units)
 
-    def _read(self, name: str | Path) -> Candidate:
-        return read(name, columns=self.naming.columns, units=self.naming.units)
+    def _read(self, name: str | Path | None) -> Candidate | None:
+        return None if name is None else read(name, columns=self.naming.columns, units=self.naming.units)
 
 
 def ranges_named(word: str | None) -> Ranges | None:

@@ -33,11 +33,7 @@ def paper(
     from ..report.folder import PAGE
 
     with stoppable("nothing half was written"), progress() as show:
-        judging = show("judging", unit="rows and figures")
-
-        def report(place: str, completed: int, total: int) -> None:
-            judging(completed, total, place)
-
+        report = show("judging", unit="rows and figures")
         judged = rows(report) if out is None else build(out, report)
     result = {"out": None if out is None else str(out), "rows": list(map(asdict, judged))}
     finish(result, _text, None if out is None else out / PAGE, as_json)

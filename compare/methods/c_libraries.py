@@ -13,9 +13,9 @@ import hashlib
 import subprocess
 import tempfile
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -97,19 +97,10 @@ def source(problem: Problem, parts: Sequence[str]) -> str:
 def _function(name: str, program: StraightLine, variables: int, parameters: int, before: str = "") -> str:
     """Return straight-line code as a function of a state that fills an array."""
     lines = [f"x{i} = x[{i}]" for i in range(variables)] + [f"k{i} = k[{i}]" for i in range(parameters)]
-    for line in program.lines:
-        lines.append(f"{line.name} = {replace(line, operands=tuple(map(_number, line.operands))).expression}")
+    lines += [f"{line.name} = {line.expression}" for line in program.lines]
     body = before + "".join(f"    const double {line};\n" for line in lines)
-    body += "".join(f"    to[{i}] = {_number(word)};\n" for i, word in enumerate(program.outputs))
+    body += "".join(f"    to[{i}] = {word};\n" for i, word in enumerate(program.outputs))
     return f"static void {name}(const double *x, double *to) {{\n    using namespace std;\n{body}}}\n"
-
-
-def _number(operand: str) -> str:
-    """Return an operand in C++: a literal as a double, which a whole number would not be."""
-    try:
-        return repr(float(operand))
-    except ValueError:
-        return operand
 
 
 def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequence[str]) -> Path:
@@ -137,69 +128,64 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
     return kept("native", name, put)
 
 
-_native = partial(Method, setting="tolerance", family=Family.COMPILED, stability=NINE_DIGITS)
+def _native(
+    library: Library, parts: Sequence[str], *, defines: Sequence[str] = (), link: Sequence[str] = (), **fields: Any
+) -> Method:
+    """Declare a method; arguments as in `prepare`, then further fields of `Method`."""
+    work = partial(prepare, library=library, parts=parts, defines=defines, link=link)
+    fields |= {"family": Family.COMPILED, "stability": NINE_DIGITS}
+    return Method(setting="tolerance", native=library, prepare=work, **fields)
+
+
 _odeint = partial(
-    _native,
-    ladder=HIGH_ORDER,
-    native=BOOST,
-    extra="methods-native",
-    licence="BSL-1.0",
-    formulations=SPACE_FIRST,
-)
+    _native, BOOST, ("odeint.cpp",),
+    ladder=HIGH_ORDER, extra="methods-native", licence="BSL-1.0", formulations=SPACE_FIRST,
+)  # fmt: skip
 _sundials = partial(
-    _native,
-    native=SUNDIALS,
-    licence="BSD-3-Clause",
-    source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
+    _native, SUNDIALS,
+    licence="BSD-3-Clause", source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
+)  # fmt: skip
+_cvode = partial(
+    _sundials, ("sundials.hpp", "cvode.cpp"), link=("sundials_cvode", *DENSE), ladder=(1e-8, 1e-10, 1e-12, 1e-14)
 )
-_cvode = partial(_sundials, ladder=(1e-8, 1e-10, 1e-12, 1e-14))
-_multistep = partial(prepare, library=SUNDIALS, parts=("sundials.hpp", "cvode.cpp"), link=("sundials_cvode", *DENSE))
 
 METHODS = (
     _odeint(
         id="odeint_rkf78",
         title="Fehlberg 8(7), Boost odeint in C++",
         source="E. Fehlberg, NASA TR R-287 (1968); K. Ahnert and M. Mulansky, AIP Conf. Proc. 1389 (2011) 1586",
-        prepare=partial(prepare, library=BOOST, parts=("odeint.cpp",)),
         order=8,
     ),
     _odeint(
         id="odeint_bulirsch_stoer",
         title="Bulirsch-Stoer extrapolation, Boost odeint in C++",
         source="R. Bulirsch and J. Stoer, Numer. Math. 8 (1966) 1; K. Ahnert and M. Mulansky (2011)",
-        prepare=partial(prepare, library=BOOST, parts=("odeint.cpp",), defines=("BULIRSCH_STOER",)),
+        defines=("BULIRSCH_STOER",),
     ),
     _native(
+        GSL,
+        ("gsl.cpp",),
+        link=("gsl", "gslcblas"),
         id="gsl_rk8pd",
         title="Prince-Dormand 8(9), GSL in C",
         ladder=HIGH_ORDER,
         source="P. J. Prince and J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; GSL odeiv2",
         licence="GPL-3.0-or-later",
-        native=GSL,
-        prepare=partial(prepare, library=GSL, parts=("gsl.cpp",), link=("gsl", "gslcblas")),
         formulations=SPACE_FIRST,
         order=8,
     ),
-    _cvode(
-        id="cvode_c_adams",
-        title="Adams, orders 1 to 12, CVODE in C",
-        prepare=partial(_multistep, defines=("MULTISTEP=CV_ADAMS",)),
-    ),
+    _cvode(id="cvode_c_adams", title="Adams, orders 1 to 12, CVODE in C", defines=("MULTISTEP=CV_ADAMS",)),
     _cvode(
         id="cvode_c_bdf",
         title="backward differentiation, orders 1 to 5, CVODE in C",
-        prepare=partial(_multistep, defines=("MULTISTEP=CV_BDF",)),
+        defines=("MULTISTEP=CV_BDF",),
     ),
     _sundials(
+        ("sundials.hpp", "arkode.cpp"),
+        link=("sundials_arkode", "sundials_nvecserial"),
         id="arkode_erk8",
         title="Fehlberg 8(7), ARKODE in C",
         ladder=HIGH_ORDER,
-        prepare=partial(
-            prepare,
-            library=SUNDIALS,
-            parts=("sundials.hpp", "arkode.cpp"),
-            link=("sundials_arkode", "sundials_nvecserial"),
-        ),
         formulations=SPACE_FIRST,
         order=8,
     ),

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Method, Outcome, Work, outcome
+from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Method, Outcome, Work, leading, outcome
 from .rhs.problem import Problem
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
@@ -57,7 +57,7 @@ def prepare(problem: Problem, setting: float) -> Work:
         states, steps = np.array(ys), int(step_count)
         reason = "" if successful else "diffrax stopped before the end"
         if not successful:
-            states = states[: int(np.isfinite(states).all(axis=1).sum())]
+            states = states[: leading(np.isfinite(states).all(axis=1))]
         return outcome(problem, states, steps=steps, rhs_evaluations=steps * stages + 1, reason=reason)
 
     return work

@@ -8,7 +8,6 @@ are compensated (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.2, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -83,24 +82,13 @@ def march(y, k, times, counts, states, a, b, ahead, sizes):
 """
 
 
-@dataclass(frozen=True)
-class Collocation:
-    """A collocation method at the Gauss points, rounded once: a_ij, b_j, and a prediction of the next step's stages.
-
-    Attributes:
-        a: shape (stages, stages).
-        b: shape (stages,).
-        ahead: weights of a step's slopes in the first guess for the next step's, shape (stages, stages).
-    """
-
-    a: Array
-    b: Array
-    ahead: Array
-
-
 @cache
-def gauss(stages: int) -> Collocation:
-    """Return the Gauss-Legendre method of order 2 stages.
+def gauss(stages: int) -> tuple[Array, Array, Array]:
+    """Return the Gauss-Legendre method of order 2 stages, rounded once, and a prediction of the next step's stages.
+
+    Returns:
+        a_ij, shape (stages, stages); b_j, shape (stages,); and the weights of a step's slopes in the first guess for
+        the next step's, shape (stages, stages).
 
     Raises:
         TableauError: the quadrature does not have that order.
@@ -121,22 +109,21 @@ def gauss(stages: int) -> Collocation:
             raise TableauError(f"Gauss-Legendre with {stages} stages", order, residual)
     a = [weights([node ** (power + 1) / (power + 1) for power in range(stages)]) for node in nodes]
     ahead = [weights([(1 + node) ** power for power in range(stages)]) for node in nodes]
-    return Collocation(np.array(a, dtype=float), np.array(b, dtype=float), np.array(ahead, dtype=float))
+    return np.array(a, dtype=float), np.array(b, dtype=float), np.array(ahead, dtype=float)
 
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
     """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
     limits = {"stages": stages, "most": MOST_ITERATIONS, "converged": CONVERGED}
     march = problem.compiled(problem.system.program, _MARCH, **limits).march
-    method, counts = gauss(stages), steps_between(problem.times, setting)
+    coefficients, counts = gauss(stages), steps_between(problem.times, setting)
 
     def work() -> Outcome:
         states = np.empty((len(problem.times), len(problem.start)))
         states[0] = problem.start
         rows, steps, calls = march(
-            problem.start, problem.parameters, problem.times, counts, states, method.a, method.b, method.ahead,
-            problem.sizes,
-        )  # fmt: skip
+            problem.start, problem.parameters, problem.times, counts, states, *coefficients, problem.sizes
+        )
         reason = "" if rows == len(states) else "the iteration for the stages does not converge: shorten the step"
         return outcome(problem, states[:rows], steps=steps, rhs_evaluations=calls, reason=reason)
 

@@ -111,39 +111,34 @@ SUNDIALS = Library(
 )
 
 
-class Capture:
-    """The output of a library; `data` is complete when the capture has ended."""
-
-    def __init__(self) -> None:
-        self.data = b""
-
-    def words(self, longest: int = 300) -> str:
-        """Return the output on one line, cut to `longest` characters, to be quoted in a message."""
-        return " ".join(self.data.decode(errors="replace").split())[:longest]
+def quoted(output: bytes | bytearray, longest: int = 300) -> str:
+    """Return what a library printed on one line, cut to `longest` characters, to be quoted in a message."""
+    return " ".join(output.decode(errors="replace").split())[:longest]
 
 
 @contextmanager
-def captured(*descriptors: int) -> Iterator[Capture]:
+def captured(*descriptors: int) -> Iterator[bytearray]:
     """Redirect file descriptors (1 for stdout, 2 for stderr) to a file while a library runs, in one thread at a time.
 
-    What other threads print meanwhile is captured too. In a user's process nothing is.
+    What other threads print meanwhile is captured too. In a user's process nothing is. All of it is in what is yielded
+    when the context has ended.
     """
+    output = bytearray()
     if not own_process:
-        yield Capture()
+        yield output
         return
     with _turn, tempfile.TemporaryFile() as handle:
         sys.stdout.flush()
         sys.stderr.flush()
         originals = [os.dup(descriptor) for descriptor in descriptors]
-        capture = Capture()
         try:
             for descriptor in descriptors:
                 os.dup2(handle.fileno(), descriptor)
-            yield capture
+            yield output
         finally:
             ctypes.CDLL(None).fflush(None)  # empties the buffers of C's own streams
             for descriptor, original in zip(descriptors, originals, strict=True):
                 os.dup2(original, descriptor)
                 os.close(original)
             handle.seek(0)
-            capture.data = handle.read()
+            output += handle.read()

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from reference import InputError, Scene
 from reference.errors import shortened
@@ -185,8 +186,7 @@ def outcome(
         reason: the library's own, if it gave one.
         cpu_s: as in `Outcome`.
     """
-    finite = np.isfinite(states).all(axis=1)
-    rows = len(states) if finite.all() else int(np.argmin(finite))
+    rows = leading(np.isfinite(states).all(axis=1))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
     status = Status.OK
     if rows < len(states):
@@ -202,6 +202,11 @@ def outcome(
         rhs_evaluations,
         cpu_s=cpu_s,
     )
+
+
+def leading(flags: npt.ArrayLike) -> int:
+    """Return how many rows stand before the first whose flag is false."""
+    return int(np.argmin(np.append(flags, False)))
 
 
 def failed(problem: Problem, reason: str) -> Outcome:
@@ -275,5 +280,4 @@ def _at(problem: Problem, t: Array, columns: dict[str, Array]) -> Array:
     vx, vy = printed.get("vx", unknown), printed.get("vy", unknown)
     z = printed.get("z", -np.sqrt(np.maximum(problem.constants.length**2 - x * x - y * y, 0.0)))
     vz = printed.get("vz", -(x * vx + y * vy) / z)
-    rows = len(present) if present.all() else int(np.argmin(present))
-    return np.array([x, y, z, vx, vy, vz]).T[:rows].copy()
+    return np.array([x, y, z, vx, vy, vz]).T[: leading(present)].copy()

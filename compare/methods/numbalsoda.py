@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from compare.methods.library import captured
-
-from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
+from .library import captured, quoted
+from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, leading, outcome
 from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
@@ -53,10 +52,9 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             )  # fmt: skip
         calls = int(data[-1])
         if success == 1:
-            return outcome(problem, states, rhs_evaluations=calls, reason=output.words())
-        finite = np.isfinite(states).all(axis=1)
-        reached = rows if finite.all() else int(np.argmin(finite))
-        reason = output.words() or f"numbalsoda's {code} stopped without a message"
+            return outcome(problem, states, rhs_evaluations=calls, reason=quoted(output))
+        reached = leading(np.isfinite(states).all(axis=1))
+        reason = quoted(output) or f"numbalsoda's {code} stopped without a message"
         return outcome(problem, states[:reached], rhs_evaluations=calls, reason=reason)
 
     return work

@@ -92,7 +92,7 @@ METHODS = (
         title="Runge-Kutta-Nyström-Fehlberg RKN-G 5(6), order 5",
         ladder=(1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
         source=f"{_SOURCE}5",
-        prepare=explicit(nystrom(RKNG56), RKNG56.stages),
+        prepare=explicit(nystrom(RKNG56), len(RKNG56.c)),
         order=RKNG56.order,
     ),
     _method(
@@ -100,7 +100,7 @@ METHODS = (
         title="Runge-Kutta-Nyström-Fehlberg RKN-G 6(7), order 6",
         ladder=(2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
         source=f"{_SOURCE}6",
-        prepare=explicit(nystrom(RKNG67), RKNG67.stages),
+        prepare=explicit(nystrom(RKNG67), len(RKNG67.c)),
         order=RKNG67.order,
         long_runs=(("plane", 0.25),),
     ),

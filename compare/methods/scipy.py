@@ -8,16 +8,30 @@ which does not. Output is each method's own dense output, through `t_eval`.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from reference.numbers.precision import Array
+
 from .method import NINE_DIGITS, SPACE_FIRST, TRACEABLE, Family, Method, Outcome, Work, outcome
-from .rhs.problem import Problem
+from .rhs.problem import Filling, Problem
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
 IMPLICIT = ("Radau", "BDF", "LSODA")
+
+
+def returning(into: Filling, k: Array, shape: tuple[int, ...]) -> Callable[..., Array]:
+    """Return a function of t and y whose result is a new array, as `into(y, k, array)` fills it."""
+
+    def function(t: float, y: Array) -> Array:
+        array = np.empty(shape)
+        into(y, k, array)
+        return array
+
+    return function
 
 
 def prepare(problem: Problem, setting: float, code: str) -> Work:
@@ -25,9 +39,10 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     from scipy.integrate import solve_ivp
 
     keywords: dict[str, Any] = {"method": code, "rtol": setting, "atol": setting * problem.sizes}
+    size, end, k = len(problem.start), float(problem.times[-1]), problem.parameters
     if code in IMPLICIT:
-        keywords["jac"] = problem.jacobian
-    rhs, end = problem.rhs, float(problem.times[-1])
+        keywords["jac"] = returning(problem.slopes, k, (size, size))
+    rhs = returning(problem.rates, k, (size,))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         solve_ivp(rhs, (0.0, end * 1e-12), problem.start, **keywords)  # triggers the method's late imports

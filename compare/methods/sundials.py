@@ -11,9 +11,9 @@ from functools import partial
 
 import numpy as np
 
-from compare.methods.library import captured
 from reference.numbers.precision import Array
 
+from .library import captured
 from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
 from .rhs.problem import Problem
 
@@ -24,7 +24,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     """Compile the right-hand side and create the solver; the returned function calls its `solve`."""
     from sksundae.cvode import CVODE
 
-    rates, slopes, k = problem.rates.rhs_into, problem.slopes.jacobian_into, problem.parameters
+    rates, slopes, k = problem.rates, problem.slopes, problem.parameters
 
     def rhs(t: float, y: Array, dy: Array) -> None:
         rates(y, k, dy)

@@ -9,11 +9,11 @@ the exact solution does. A Runge-Kutta method for y' = f(y) has the trees whose 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
-from typing import Any
+from operator import mul
+from typing import NamedTuple
 
 from reference import FoucaultError
 
@@ -49,18 +49,8 @@ class Tableau:
     a: Matrix
     b: Vector
 
-    @property
-    def stages(self) -> int:
-        """Evaluations of the right-hand side in a step."""
-        return len(self.b)
-
     def __post_init__(self) -> None:
-        c = tuple(sum(row, EXACT) for row in self.a)
-        stages = Stages(c, _square(self.a, len(self.b)), ())
-        for order in range(1, self.order + 1):
-            residual = worst_residual(order, stages, self.b, None)
-            if residual:
-                raise TableauError(self.name, order, residual)
+        check_order(self.name, conditions(self.order, [], [(self.a, self.b)]))
 
 
 @dataclass(frozen=True)
@@ -90,22 +80,14 @@ class NystromTableau:
     position_weights: Vector
     tolerance: Fraction = EXACT
 
-    @property
-    def stages(self) -> int:
-        """Evaluations of the right-hand side in a step."""
-        return len(self.c)
-
     def __post_init__(self) -> None:
         for node, velocity, position in zip(self.c, self.velocity, self.position, strict=True):
             residual = max(abs(sum(velocity, EXACT) - node), abs(sum(position, EXACT) - node * node / 2))
             if residual > self.tolerance:
                 raise TableauError(self.name, 2, residual)
-        size = len(self.c)
-        stages = Stages(self.c, _square(self.velocity, size), _square(self.position, size))
-        for order in range(1, self.order + 1):
-            residual = worst_residual(order, stages, self.velocity_weights, self.position_weights)
-            if residual > self.tolerance:
-                raise TableauError(self.name, order, residual)
+        ways = [(self.velocity, self.velocity_weights), (self.position, self.position_weights)]
+        end = Term(1, Fraction(1), self.c)
+        check_order(self.name, conditions(self.order, [end], ways), self.tolerance)
 
 
 def fractions(row: str) -> Vector:
@@ -118,96 +100,57 @@ def triangle(*rows: str) -> Matrix:
     return tuple(map(fractions, rows))
 
 
-def _square(rows: Sequence[Sequence[Fraction]], stages: int) -> Matrix:
-    return tuple((*row, *[EXACT] * (stages - len(row))) for row in rows)
+class Term(NamedTuple):
+    """A tree, or an argument that an f has by one: its power of h, and its values in the solution and in the stages.
+
+    Attributes:
+        order: of a tree, the power of h that it has in y'; of an argument, what it adds to that.
+        exact: factor of the power of time that is its value in the exact solution.
+        stages: its value in every stage of the method, over the same power of h.
+    """
+
+    order: int
+    exact: Fraction
+    stages: Vector
 
 
-@dataclass(frozen=True, eq=False)
-class Tree:
-    """An f with its arguments: trees by way of y', trees by way of y, and the number of y that end in y'."""
+def conditions(
+    order: int, arguments: Sequence[Term], ways: Sequence[tuple[Matrix, Vector]]
+) -> Iterator[Sequence[Fraction]]:
+    """Yield the residuals of the conditions of each order from 1 to `order`, one for each tree and way.
 
-    by_velocity: tuple[Tree, ...] = ()
-    by_position: tuple[Tree, ...] = ()
-    ends: int = 0
-
-    @cached_property
-    def order(self) -> int:
-        """Power of h that its term in y' has."""
-        return 1 + self.ends + sum(t.order for t in self.by_velocity) + sum(t.order + 1 for t in self.by_position)
-
-    @cached_property
-    def exact(self) -> Fraction:
-        """Its value as a function of time is exact t^(order - 1)."""
-        value = Fraction(1)
-        for tree in self.by_velocity:
-            value *= tree.exact / tree.order
-        for tree in self.by_position:
-            value *= tree.exact / (tree.order * (tree.order + 1))
-        return value
+    Args:
+        order: the last one.
+        arguments: those that are no trees: a y that ends in y'.
+        ways: how a tree can be an argument, by y' and by y: the method's coefficients in the stages, and its weights.
+    """
+    arguments, residuals = list(arguments), [list[Fraction]() for _ in range(order + len(ways))]
+    for power in range(1, order + 1):
+        for tree in list(_products(arguments, power - 1, len(ways[0][1]))):
+            for twice, (rows, weights) in enumerate(ways):
+                exact = tree.exact / (power * (power + 1) ** twice)  # integrated once, or twice
+                residuals[power + twice].append(abs(_dot(weights, tree.stages) - exact))
+                arguments.append(Term(power + twice, exact, tuple(_dot(row, tree.stages) for row in rows)))
+        yield residuals[power]
 
 
-class Stages:
-    """Values of trees in every stage of a method, each computed once."""
-
-    def __init__(self, c: Vector, velocity: Matrix, position: Matrix) -> None:
-        self._c, self._velocity, self._position = c, velocity, position
-        self._known: dict[Tree, Vector] = {}
-
-    def of(self, tree: Tree) -> Vector:
-        """Return the value of a tree, shape (stages,)."""
-        if tree not in self._known:
-            values = [node**tree.ends for node in self._c]
-            for matrix, sons in ((self._velocity, tree.by_velocity), (self._position, tree.by_position)):
-                for son in sons:
-                    inner = self.of(son)
-                    values = [value * _dot(row, inner) for value, row in zip(values, matrix, strict=True)]
-            self._known[tree] = tuple(values)
-        return self._known[tree]
+def _products(arguments: Sequence[Term], order: int, stages: int) -> Iterator[Term]:
+    """Yield the products of all choices of arguments, the same one repeatedly too, whose orders sum to `order`."""
+    if order == 0:
+        yield Term(0, Fraction(1), (Fraction(1),) * stages)
+    for i, first in enumerate(arguments):
+        if first.order <= order:
+            for others in _products(arguments[i:], order - first.order, stages):
+                yield Term(order, first.exact * others.exact, tuple(map(mul, first.stages, others.stages)))
 
 
 def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
-    return sum((p * q for p, q in zip(a, b, strict=True) if p and q), Fraction(0))
+    """Return Σ a b; what a row of a lower triangle lacks is zero."""
+    return sum((p * q for p, q in zip(a, b, strict=False) if p and q), EXACT)
 
 
-@cache
-def trees(order: int, *, second: bool) -> tuple[Tree, ...]:
-    """Return all trees of an order; without `second` those of a first-order system."""
-    parts: list[tuple[int, str, Any]] = [(1, "end", None)] if second else []
-    for smaller in range(1, order):
-        parts += [(smaller, "velocity", tree) for tree in trees(smaller, second=second)]
-        if second and smaller + 1 < order:
-            parts += [(smaller + 1, "position", tree) for tree in trees(smaller, second=second)]
-
-    def choices(remainder: int, first: int) -> Iterator[tuple[int, ...]]:
-        if remainder == 0:
-            yield ()
-        for i in range(first, len(parts)):
-            if parts[i][0] <= remainder:
-                for others in choices(remainder - parts[i][0], i):
-                    yield (i, *others)
-
-    found_trees = []
-    for choice in choices(order - 1, 0):
-        kinds = [parts[i] for i in choice]
-        by_velocity = tuple(tree for _, kind, tree in kinds if kind == "velocity")
-        by_position = tuple(tree for _, kind, tree in kinds if kind == "position")
-        found_trees.append(Tree(by_velocity, by_position, sum(kind == "end" for _, kind, _ in kinds)))
-    return tuple(found_trees)
-
-
-def worst_residual(order: int, stages: Stages, b: Vector, b_position: Vector | None) -> Fraction:
-    """Return the largest violation of the conditions of exactly this order (lower ones are not checked).
-
-    Args:
-        order: of the method.
-        stages: of the method.
-        b: weights of the step's y'.
-        b_position: weights of the step's y, whose trees are one order lower; None for a first-order system.
-    """
-    second = b_position is not None
-    residuals = [abs(_dot(b, stages.of(tree)) - tree.exact / tree.order) for tree in trees(order, second=second)]
-    if b_position is not None and order > 1:
-        for tree in trees(order - 1, second=True):
-            expected = tree.exact / (tree.order * (tree.order + 1))
-            residuals.append(abs(_dot(b_position, stages.of(tree)) - expected))
-    return max(residuals)
+def check_order(name: str, residuals: Iterable[Sequence[Fraction]], tolerance: Fraction = EXACT) -> None:
+    """Raise TableauError if the conditions of an order, from 1 on, are not met."""
+    for order, of_order in enumerate(residuals, 1):
+        if max(of_order) > tolerance:
+            raise TableauError(name, order, max(of_order))

@@ -34,7 +34,7 @@ __all__ = ["build", "declared", "rows"]
 MATHAR = ("kinematics", "lagrangian", "rest", "paris", "appendix_a")
 GASTEBOIS = ("rotation", "small", "swings", "lagrangian")
 SECTIONS = (*(f"mathar.{name}" for name in MATHAR), *(f"gastebois.{name}" for name in GASTEBOIS), "three_methods")
-Report = Callable[[str, int, int], None]
+Report = Callable[[int, int, str], None]
 
 
 def declared() -> list[Check]:
@@ -46,7 +46,7 @@ def rows(report: Report | None = None) -> list[JudgedRow]:
     """Judge every declared row.
 
     Args:
-        report: called with a row's place, the number of rows judged so far, and of all rows.
+        report: called with the number of rows judged so far, that of all rows, and a row's place.
 
     Raises:
         UnexplainedError: a printed line does not hold, and no declared correction does.
@@ -56,7 +56,7 @@ def rows(report: Report | None = None) -> list[JudgedRow]:
     for count, line in enumerate(lines, 1):
         judged.append(line.row())
         if report is not None:
-            report(judged[-1].place, count, len(lines))
+            report(count, len(lines), judged[-1].place)
     return judged
 
 
@@ -79,6 +79,6 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     for count, number in enumerate(FIGURES, 1):
         figures[number] = svg(number)
         if report is not None:
-            report(f"figure {number}", count, len(FIGURES))
+            report(count, len(FIGURES), f"figure {number}")
     write_files(out, files_of(judged, figures))
     return judged

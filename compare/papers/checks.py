@@ -57,9 +57,6 @@ class JudgedRow:
 class UnexplainedError(ValueError):
     """Neither the print nor its declared correction agrees with the truth."""
 
-    def __init__(self, row: str, why: str) -> None:
-        super().__init__(f"{row}: {why}")
-
 
 @dataclass(frozen=True)
 class Check(ABC):
@@ -103,6 +100,13 @@ def component(function: Callable[[Point], Value], i: int) -> Callable[[Point], A
     return lambda p: function(p)[i]
 
 
+def over(
+    family: Callable[[Any], Point], formula: Callable[[Point], Value], truth: Callable[[Point], Value]
+) -> Callable[[Any], tuple[Value, Value]]:
+    """Return the `pair` of an `Approximate` from formulas at points that the small parameter gives."""
+    return lambda s: (formula(family(s)), truth(family(s)))
+
+
 @dataclass(frozen=True)
 class Identity(Check):
     """Printed with an equals sign: `formula` as printed, `truth` derived, `corrected` where the print fails."""
@@ -119,11 +123,11 @@ class Identity(Check):
         gap, recomputed = largest_gap(printed, truth), shown(truth[0])
         if gap < ZERO_BELOW:
             if self.corrected is not None:
-                raise UnexplainedError(self.id, "the print is right, yet a correction is declared")
+                raise UnexplainedError(f"{self.id}: the print is right, yet a correction is declared")
             return self.judged(recomputed, "exact")
         if self.corrected is None or largest_gap([self.corrected(p) for p in sample], truth) >= ZERO_BELOW:
             raise UnexplainedError(
-                self.id, f"the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
+                f"{self.id}: the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
             )
         note = f"as printed {shown(printed[0], 6)}"
         remark = f"{self.remark} ({note})" if self.remark else note
@@ -156,7 +160,7 @@ class Approximate(Check):
         """Judge the approximation: its error must have the declared order."""
         slope = self.measured_order()
         if abs(slope - self.order) >= ORDER_SLACK:
-            raise UnexplainedError(self.id, f"the error shrinks with order {shown(slope, 4)}, not {self.order}")
+            raise UnexplainedError(f"{self.id}: the error shrinks with order {shown(slope, 4)}, not {self.order}")
         error = f"{shown(self.error(1), 3)}{' ' + self.unit if self.unit else ' (relative)'}"
         order = f"order {shown(slope, 3)} in {self.small}"
         return self.judged(shown(self.pair(MP.one)[1]), "approximation", error=f"{error}; {order}")
@@ -251,10 +255,10 @@ class Statement(Check):
         finding = self.test()
         if finding.holds:
             if self.corrected is not None:
-                raise UnexplainedError(self.id, "the sentence holds, yet a correction is declared")
+                raise UnexplainedError(f"{self.id}: the sentence holds, yet a correction is declared")
             if finding.error:
                 return self.judged(finding.recomputed, "approximation", error=finding.error)
             return self.judged(finding.recomputed, "reproduced" if self.by_run else "exact")
         if self.corrected is None or not self.corrected():
-            raise UnexplainedError(self.id, "neither the sentence nor a declared correction holds")
+            raise UnexplainedError(f"{self.id}: neither the sentence nor a declared correction holds")
         return self.judged(finding.recomputed, "misprint", correction=self.correction)

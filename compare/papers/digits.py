@@ -23,23 +23,8 @@ Value = Any  # a number, a vector, or a tuple of numbers
 cross, dot = np.cross, np.dot
 sin, cos, tan, sqrt, asin, acos, atan2 = MP.sin, MP.cos, MP.tan, MP.sqrt, MP.asin, MP.acos, MP.atan2
 pi, j = MP.pi, MP.mpc(0, 1)
-
-
-def mpf(text: Any) -> Any:
-    """Return a decimal string, an integer or a fraction as a number of this context."""
-    if hasattr(text, "numerator"):
-        return MP.mpf(text.numerator) / text.denominator
-    return MP.mpf(text)
-
-
-def degrees(angle: Any) -> Any:
-    """Convert radians to degrees."""
-    return angle * 180 / pi
-
-
-def radians(angle: Any) -> Any:
-    """Convert degrees to radians."""
-    return mpf(angle) * pi / 180
+degrees, radians, norm = MP.degrees, MP.radians, MP.norm  # the norm is the length of a vector
+mpf = MP.mpmathify  # a decimal string, an integer or a fraction as a number of this context
 
 
 def parts(value: Value) -> tuple[Any, ...]:
@@ -80,11 +65,6 @@ def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> A
 def vector(*components: Any) -> Vector:
     """Return a vector."""
     return np.array(components, dtype=object)
-
-
-def norm(a: Vector) -> Any:
-    """Return the length of a vector."""
-    return sqrt(dot(a, a))
 
 
 def unit(a: Vector) -> Vector:

@@ -28,16 +28,8 @@ DAY: dict[str, Any] = {"xlabel": "t in h", "xlim": (0, 24), "xticks": range(0, 2
 LATE: dict[str, Any] = {"xlim": (12000, 12020), "xticks": range(12000, 12021, 10)}
 EAST_WEST: dict[str, Any] = {"xlabel": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
 WIDE = 4.8  # inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
+FAINT_DOTS = 0.35  # their opacity
 EDGE = 0.5  # inches of a figure's height that no panel has
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A figure: the panels drawn here, the caption that the paper prints, and a remark on the drawing."""
-
-    panels: Callable[[], list[Panel]]
-    printed: str
-    remark: str
 
 
 def _rest_by_latitude() -> list[Panel]:
@@ -193,21 +185,11 @@ def check_methods() -> None:
             raise InputError("--out", f"no {name}", "the methods of figure 9 (extra `methods`)", f"It is {missing}.")
 
 
-def svg(number: int) -> str:
-    """Draw a figure as SVG.
-
-    Raises:
-        InputError: matplotlib is not installed.
-    """
-    return drawn(FIGURES[number].panels())
-
-
-DRAWN = (
+FIGURES: dict[int, Callable[[], list[Panel]]] = dict(enumerate((
     _rest_by_latitude, _triangle, _three_windows, _from_above_and_south, _heights, _azimuths, _simplified,
     _frequency_by_latitude, _three_orders,
-)  # fmt: skip
-TEXTS = texts_of(__file__)
-FIGURES = {number: Figure(panels, **TEXTS[str(number)]) for number, panels in enumerate(DRAWN, 1)}
+), 1))  # fmt: skip
+CAPTIONS = texts_of(__file__)  # the title that the paper prints, and a remark on the drawing, by number
 
 
 @dataclass(frozen=True)
@@ -238,18 +220,19 @@ def line(name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float
 
 def dots(name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none") -> Line:
     """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
-    style = {**_style(colour, dashes, 0.7), "marker": mark, "markersize": size}
-    if mark != ".":
-        style["markerfacecolor"] = "none"
-    return Line(name, list(map(float, x)), list(map(float, y)), style, [mark == "."] * len(x))
+    style = _style(colour, dashes, 0.7) | {"marker": mark, "markersize": size}
+    if mark == ".":
+        return Line(name, list(map(float, x)), list(map(float, y)), style, FAINT_DOTS)
+    return Line(name, list(map(float, x)), list(map(float, y)), style | {"markerfacecolor": "none"}, 1.0)
 
 
-def drawn(panels: Sequence[Panel]) -> str:
-    """Return the panels, the first on top, as SVG.
+def svg(number: int) -> str:
+    """Draw a figure as SVG, its first panel on top.
 
     Raises:
         InputError: matplotlib is not installed.
     """
+    panels = FIGURES[number]()
     with sheet((WIDE, EDGE + sum(panel.height for panel in panels))) as figure:
         rows = figure.subplots(len(panels), 1, squeeze=False, height_ratios=[panel.height for panel in panels])[:, 0]
         for axes, panel in zip(rows, panels, strict=True):

@@ -21,7 +21,6 @@ from .digits import MP, Vector, cos, cross, derivative, dot, j, mpf, sin, sqrt, 
 from .points import Point
 
 Coordinates = Callable[[Point, Any, Any], Vector]
-Path = Callable[[Any], Vector]
 
 AXIS = vector(0, 0, MP.one)  # the Earth's axis
 MIDDLE = vector(0, MP.one, 0)  # east at the meridian of longitude 0
@@ -33,14 +32,18 @@ def rotated(a: Vector, axis: Vector, angle: Any) -> Vector:
     return cos(angle) * a + sin(angle) * cross(axis, a) + along
 
 
-def suspension(p: Point, longitude: Any, altitude: Any = None, phi: Any = None) -> Vector:
-    """Return the point `altitude` along the ellipsoid's normal from where the normal has the latitude phi (radians)."""
-    height = p.altitude if altitude is None else altitude
-    latitude = p.phi if phi is None else phi
+def turned_in_plane(xy: Vector, angle: Any) -> Vector:
+    """Return x, y turned by an angle, from x to y."""
+    (x, y), c, s = xy, cos(angle), sin(angle)
+    return vector(x * c - y * s, x * s + y * c)
+
+
+def suspension(p: Point, longitude: Any) -> Vector:
+    """Return the point at p's altitude along the ellipsoid's normal from where the normal has p's latitude."""
     polar = p.radius * (1 - p.flattening)
-    reduced = MP.atan((1 - p.flattening) * tan(latitude))
+    reduced = MP.atan((1 - p.flattening) * tan(p.phi))
     foot = vector(p.radius * cos(reduced), 0, polar * sin(reduced))
-    return rotated(foot + height * vector(cos(latitude), 0, sin(latitude)), AXIS, longitude)
+    return rotated(foot + p.altitude * vector(cos(p.phi), 0, sin(p.phi)), AXIS, longitude)
 
 
 def turned_to_site(p: Point, local: Vector, longitude: Any) -> Vector:
@@ -49,10 +52,9 @@ def turned_to_site(p: Point, local: Vector, longitude: Any) -> Vector:
     return rotated(rotated(vector(up, east, north), MIDDLE, -p.phi), AXIS, longitude)
 
 
-def place(p: Point, local: Vector, t: Any, rate: Any = None) -> Vector:
+def place(p: Point, local: Vector, t: Any) -> Vector:
     """Return the bob's place in axes that do not turn."""
-    longitude = (p.rate if rate is None else rate) * t
-    return suspension(p, longitude) + turned_to_site(p, local, longitude)
+    return suspension(p, p.rate * t) + turned_to_site(p, local, p.rate * t)
 
 
 def by_angles(p: Point, cord: Any, azimuth: Any) -> Vector:
@@ -66,25 +68,18 @@ def by_plane(p: Point, x: Any, y: Any) -> Vector:
     return vector(x, y, -sqrt(p.length**2 - x**2 - y**2))
 
 
-def velocity(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Vector:
-    """Return the velocity in axes that do not turn, of coordinates q that change at the rates v."""
-    return derivative(lambda s: place(p, coordinates(p, *(q + s * v)), t + s, rate))
+def square_speed(p: Point, coordinates: Coordinates, q: Vector, v: Vector, t: Any = 0) -> Any:
+    """Return v² in axes that do not turn, twice the kinetic energy per mass: of coordinates q with the rates v."""
+    velocity = derivative(lambda s: place(p, coordinates(p, *(q + s * v)), t + s))
+    return dot(velocity, velocity)
 
 
-def square_speed(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Any:
-    """Return twice the kinetic energy per mass."""
-    moving = velocity(p, coordinates, q, v, rate, t)
-    return dot(moving, moving)
-
-
-def lagrangian(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Any:
+def lagrangian(p: Point, coordinates: Coordinates, q: Vector, v: Vector, t: Any = 0) -> Any:
     """Return K - V per mass, V = g z."""
-    return square_speed(p, coordinates, q, v, rate, t) / 2 - p.gravity * coordinates(p, *q)[2]
+    return square_speed(p, coordinates, q, v, t) / 2 - p.gravity * coordinates(p, *q)[2]
 
 
-def euler_lagrange(
-    p: Point, coordinates: Coordinates, q: Vector, v: Vector, a: Vector, i: int, rate: Any = None
-) -> Any:
+def euler_lagrange(p: Point, coordinates: Coordinates, q: Vector, v: Vector, a: Vector, i: int) -> Any:
     """Return d/dt ∂L/∂v_i - ∂L/∂q_i along a path with coordinates q, rates v and accelerations a."""
 
     def shifted(a: Vector, by: Any) -> Vector:
@@ -92,10 +87,10 @@ def euler_lagrange(
 
     def momentum(s: Any) -> Any:
         position, rates = q + s * v + s * s / 2 * a, v + s * a
-        ahead, behind = (lagrangian(p, coordinates, position, shifted(rates, by), rate, s) for by in (1, -1))
+        ahead, behind = (lagrangian(p, coordinates, position, shifted(rates, by), s) for by in (1, -1))
         return (ahead - behind) / 2  # exact: L is quadratic in the velocities
 
-    return derivative(momentum) - derivative(lambda s: lagrangian(p, coordinates, shifted(q, s), v, rate))
+    return derivative(momentum) - derivative(lambda s: lagrangian(p, coordinates, shifted(q, s), v))
 
 
 def in_rate(function: Callable[[Any], Any], power: int) -> Any:

@@ -69,9 +69,8 @@ def lines(options: Options) -> Iterator[str]:
     """
     yield from _comments(options)
     count = 0
-    frame = SiteFrame(options.scene)
     for times, states, zeros in _exact(options) if options.exact else _integrated(options):
-        snapshots = frame.snapshots(times, states)
+        snapshots = snapshots_of(options.scene, times, states)
         begin = 0
         for zero in zeros:
             end = int(np.searchsorted(times, zero, side="left"))
@@ -87,15 +86,11 @@ def _texts(rows: Array) -> Iterator[str]:
 
 
 def _comments(options: Options) -> Iterator[str]:
-    mode = "--exact" if options.exact else f"-R {_order(options.method)} -a {options.bits}"
+    mode = "--exact" if options.exact else f"-R {options.order} -a {options.bits}"
     yield f"# foucault pend {options.printed}"
     yield f"# {mode}"
     yield f"# columns: {COLUMNS}"
     yield "# transits of xdot = 0: # P count t/s frequency/Hz"
-
-
-def _order(method: str) -> str:
-    return next(order for order, name in METHOD_OF.items() if name == method)
 
 
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
@@ -128,33 +123,26 @@ def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     yield solution.t[: rows + 1], states[: rows + 1], zeros
 
 
-class SiteFrame:
-    """The suspension and its axes, seen from axes that do not turn, Mathar (1)-(9)."""
-
-    def __init__(self, scene: Scene) -> None:
-        ctx, exact = context(PREC), scene.exact
-        k = constants(exact, ctx)
-        numbers = (exact.equatorial_radius, exact.flattening, exact.altitude)
-        radius, flattening, altitude = (to_mpf(number, ctx) for number in numbers)
-        normal = axis_distance(radius, flattening, 0, k.sin, 1, ctx.sqrt)  # N of (2), the normal down to the axis
-        self.sin, self.cos, self.rate = float(k.sin), float(k.cos), float(k.rate)
-        self.axis_distance = float(k.axis_distance * k.length)
-        self.height = float((normal * (1 - flattening) ** 2 + altitude) * k.sin)
-
-    def snapshots(self, times: Array, states: Array) -> Array:
-        """Return the ten columns, shape (rows, 10), of states x, y, z, vx, vy, vz, shape (rows, 6)."""
-        x, y, z = states[:, :3].T
-        distance = self.axis_distance - self.sin * y + self.cos * z
-        turn = self.rate * times
-        inertial = (
-            distance * np.cos(turn) - x * np.sin(turn),
-            distance * np.sin(turn) + x * np.cos(turn),
-            self.height + self.cos * y + self.sin * z,
-        )
-        angle = np.degrees(np.arctan2(np.hypot(x, y), -z))
-        azimuth = np.degrees(np.arctan2(y, x))
-        speed = np.sqrt((states[:, 3:] ** 2).sum(axis=1))
-        return np.column_stack((times, x, y, z, *inertial, angle, azimuth, speed))
+def snapshots_of(scene: Scene, times: Array, states: Array) -> Array:
+    """Return the ten columns, shape (rows, 10), of states x, y, z, vx, vy, vz, shape (rows, 6); Mathar (1)-(9)."""
+    ctx, exact = context(PREC), scene.exact
+    k = constants(exact, ctx)
+    numbers = (exact.equatorial_radius, exact.flattening, exact.altitude)
+    radius, flattening, altitude = (to_mpf(number, ctx) for number in numbers)
+    normal = axis_distance(radius, flattening, 0, k.sin, 1, ctx.sqrt)  # N of (2), the normal down to the axis
+    height = float((normal * (1 - flattening) ** 2 + altitude) * k.sin)  # of the suspension above the equator's plane
+    x, y, z = states[:, :3].T
+    distance = float(k.axis_distance * k.length) - float(k.sin) * y + float(k.cos) * z
+    turn = float(k.rate) * times
+    inertial = (
+        distance * np.cos(turn) - x * np.sin(turn),
+        distance * np.sin(turn) + x * np.cos(turn),
+        height + float(k.cos) * y + float(k.sin) * z,
+    )
+    angle = np.degrees(np.arctan2(np.hypot(x, y), -z))
+    azimuth = np.degrees(np.arctan2(y, x))
+    speed = np.sqrt((states[:, 3:] ** 2).sum(axis=1))
+    return np.column_stack((times, x, y, z, *inertial, angle, azimuth, speed))
 
 
 def parabola_zero(t: Array, v: Array) -> float:
@@ -217,10 +205,10 @@ def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
         InputError: numba is not installed.
         IntegrationError: the bob reaches the height of the suspension, or the run fails otherwise.
     """
-    method = METHODS[options.method]
+    method = METHODS[METHOD_OF[options.order]]
     missing = available(method)
     if missing is not None:
-        raise InputError("-R", options.method, "a method that is installed", f"It is {missing}.")
+        raise InputError("-R", method.id, "a method that is installed", f"It is {missing}.")
     step = float(options.step)
     problem = _problem(options, step)
     first = 0

@@ -47,7 +47,7 @@ class Options:
         step: step size in s.
         steps: whole steps up to T.
         skip: steps from one snapshot to the next.
-        method: id of the integrator.
+        order: value of -R, which says the integrator.
         bits: value of -a; the lowest two bits tell which terms are left out, others mean nothing.
         exact: take the lines from the reference instead.
     """
@@ -56,7 +56,7 @@ class Options:
     step: Fraction
     steps: int
     skip: int
-    method: str
+    order: str
     bits: int
     exact: bool
 
@@ -98,7 +98,7 @@ class Options:
         steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))
         if not 1 <= steps <= MAX_STEPS:
             raise InputError("-t", values["t"], f"1 to {MAX_STEPS} steps up to T = {values['T']} s", "Change -t or -T.")
-        return cls(scene, inputs.grid_step, steps, skip, METHOD_OF[values["R"]], bits, exact)
+        return cls(scene, inputs.grid_step, steps, skip, values["R"], bits, exact)
 
 
 def _whole(switch: str, text: str, low: int) -> int:

@@ -10,7 +10,7 @@ from reference.system.documents import texts_of
 from ..report.folder import PAGE, json_text
 from ..report.page import Html, Table, choices, faint, page, paragraph, plate, section, strong
 from .checks import VERDICTS, JudgedRow
-from .figures import FIGURES
+from .figures import CAPTIONS, FIGURES
 
 TEXTS = texts_of(__file__)
 
@@ -34,7 +34,7 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
 def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
     """Return the page as HTML."""
     counts: dict[str, int] = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
-    plates = [plate(figures[n], n, FIGURES[n].printed, FIGURES[n].remark) for n in FIGURES]
+    plates = [plate(figures[n], n, **CAPTIONS[str(n)]) for n in FIGURES]
     return page(
         "The papers' formulas, numbers and figures, recomputed",
         [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .checks import Answer, Approximate, Check, Identity, Statement, section
+from .checks import Answer, Approximate, Check, Identity, Statement, component, over, section
 from .digits import (
     MP,
     Vector,
@@ -33,6 +33,7 @@ from .first_principles import (
     plane_state,
     rate_up,
     swing_rate,
+    turned_in_plane,
     turning,
     uniform_acceleration,
 )
@@ -52,13 +53,7 @@ def _axes_turn(p: Point) -> Vector:
 
 def primed(path: Path, rate: Any) -> Path:
     """Return x' = x cosω_p t - y sinω_p t, y' = x sinω_p t + y cosω_p t along a path."""
-
-    def turned(t: Any) -> Vector:
-        x, y = path(t)
-        c, s = cos(rate * t), sin(rate * t)
-        return vector(x * c - y * s, x * s + y * c)
-
-    return turned
+    return lambda t: turned_in_plane(path(t), rate * t)
 
 
 def generic_path(p: Point) -> Path:
@@ -95,16 +90,6 @@ def _away_from_axis() -> Answer:
     return Answer(vanishes(gap), f"-ω × (ω × r) points away from the axis to within {shown(gap)}")
 
 
-def _rising(s: Any) -> Point:
-    """Return the first random point, its amplitude times s."""
-    return points()[0].swinging(s)
-
-
-def _hooke(s: Any) -> tuple[Vector, Vector]:
-    p = _rising(s).but(rate=MP.zero)
-    return -p.gravity / p.length * p.position[:2], uniform_acceleration(p)
-
-
 def _any_rate(p: Point) -> Any:
     """Return some ω_p, not the special one."""
     return p.cord_rate
@@ -112,7 +97,7 @@ def _any_rate(p: Point) -> Any:
 
 def _turned(p: Point, xy: Vector) -> Vector:
     """Return x cosω_p t - y sinω_p t and x sinω_p t + y cosω_p t."""
-    return primed(lambda t: xy, _any_rate(p))(p.t)
+    return turned_in_plane(xy, _any_rate(p) * p.t)
 
 
 def _first(p: Point) -> Vector:
@@ -162,10 +147,6 @@ def _far_below_gravity() -> Answer:
     p = paris()
     ratio = p.rate * norm((p.x, p.y)) * sqrt(p.gravity / p.length) / p.gravity
     return Answer(ratio < mpf("1e-4"), f"ω xdot / g = {shown(ratio)} in Paris")
-
-
-def _spinning(s: Any) -> Point:
-    return paris().but(rate=paris().rate * s)
 
 
 def _centrifugal(p: Point) -> Vector:
@@ -229,14 +210,15 @@ def checks() -> list[Check]:
         Approximate("sine", "", "mg sinθ ≈ mgθ",
             lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ", remark="at a random θ of 0.9 rad"),
         Approximate("hooke", "", "T - mgk ≈ -(mg/L) ρ (i cosφ + j sinφ)",
-            _hooke, 2, "amplitude", remark="horizontal part, at a random point"),
+            over(points()[0].but(rate=MP.zero).swinging, lambda p: -p.gravity / p.length * p.position[:2],
+                uniform_acceleration), 2, "amplitude", remark="horizontal part, at a random point"),
         Identity("omega", "", "ω = ω (j cosα + k sinα)",
             lambda p: (0, p.rate * cos(p.phi), p.rate * sin(p.phi)), lambda p: p.k.turn),
         Identity("cross", "", "-2ω × v = 2ω xdot k cosα - 2ω xdot j sinα + 2ω ydot i sinα",
             lambda p: 2 * p.rate * vector(p.vy * sin(p.phi), -p.vx * sin(p.phi), p.vx * cos(p.phi)),
             lambda p: -2 * cross(p.k.turn, (p.vx, p.vy, 0))),
         Approximate("z", "", "2ω xdot cosα = zddot (and ignored)",
-            lambda s: (2 * _rising(s).rate * _rising(s).vx * cos(_rising(s).phi), acceleration_of(_rising(s))[2]), 1,
+            over(points()[0].swinging, lambda p: 2 * p.rate * p.vx * cos(p.phi), component(acceleration_of, 2)), 1,
             "amplitude", "m/s²", remark="at a random point; the cord's vertical pull differs from mg by as much"),
         Identity("pair", "", "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot", coupled_at, linearised,
             remark="truth: reference.model.force with gravity alone, linear"),
@@ -263,8 +245,8 @@ def checks() -> list[Check]:
             remark="truth: eigenvalues of the decoupled pair"),
         Identity("1_omega2", ", method 1", "ω̃ = sqrt(g/L + ω_p²)", swing_rate, measured_rate),
         Approximate("1_omega3", ", method 1", "ω̃ ≈ sqrt(g/L)",
-            lambda s: (sqrt(_spinning(s).gravity / _spinning(s).length), swing_rate(_spinning(s))), 2, "ω",
-            remark="in Paris"),
+            over(lambda s: paris().but(rate=paris().rate * s), lambda p: sqrt(p.gravity / p.length), swing_rate), 2,
+            "ω", remark="in Paris"),
         Approximate("1_amplitude", ", method 1", "A ω̃ = L θ_max ω̃",
             lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ_max", remark="A over L, at a random θ"),
         Statement("1_small", ", method 1", "ω xdot << g", _far_below_gravity),

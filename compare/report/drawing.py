@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
+from reference.system.imports import missing
 
 # Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its darkest colour
 INKS = {
@@ -50,7 +51,6 @@ _PARAMETERS = {
     "lines.linewidth": 1.3,
 }
 _NO_DATE = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
-_FAINT = 0.35  # opacity of faint markers
 _NARROW = 0.06  # a band below this part of the height of the axes has its text above it
 _GAP = 5  # between a line's end and its name, in points
 
@@ -64,11 +64,8 @@ def check_matplotlib(field: str) -> None:
     Raises:
         InputError: matplotlib is not installed.
     """
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        advice = "pip install 'foucault-reference[plot]'."
-        raise InputError(field, "no matplotlib", "the extra plot", advice) from None
+    if missing(["matplotlib"]):
+        raise InputError(field, "no matplotlib", "the extra plot", "pip install 'foucault-reference[plot]'.")
 
 
 def check_target(path: Path, field: str = "--plot") -> None:
@@ -191,25 +188,22 @@ class Line:
         x: x of its points, in data coordinates.
         y: y of its points, in data coordinates.
         style: matplotlib's keywords, with the colour; see `line_style`.
-        faint: for each point whether its marker is drawn faint; empty for a line without markers.
+        markers: opacity of its markers; 0 for a line without.
     """
 
     name: str
     x: Sequence[float]
     y: Sequence[float]
     style: Mapping[str, Any]
-    faint: Sequence[bool] = ()
+    markers: float = 0.0
 
 
 def draw(axes: Any, lines: Sequence[Line]) -> None:
     """Draw lines with their markers."""
     for line in lines:
         axes.plot(line.x, line.y, **{**line.style, "marker": ""}, zorder=3)
-        for faint, alpha in ((False, 1.0), (True, _FAINT)):
-            marked = [i for i, one in enumerate(line.faint) if one == faint]
-            if marked:
-                style = {**line.style, "linestyle": "none"}
-                axes.plot(line.x, line.y, **style, markevery=marked, alpha=alpha, zorder=4)
+        if line.markers:
+            axes.plot(line.x, line.y, **{**line.style, "linestyle": "none"}, alpha=line.markers, zorder=4)
 
 
 def legend(axes: Any, lines: Sequence[Line], *, size: float = 8.0, inside: bool = False) -> None:
@@ -217,7 +211,7 @@ def legend(axes: Any, lines: Sequence[Line], *, size: float = 8.0, inside: bool 
     from matplotlib.lines import Line2D
 
     handles = [
-        Line2D([], [], label=line.name, **(line.style if line.faint else {**line.style, "marker": ""}))
+        Line2D([], [], label=line.name, **(line.style if line.markers else {**line.style, "marker": ""}))
         for line in lines
     ]
     where = {"loc": "best"} if inside else {"loc": "upper left", "bbox_to_anchor": (1, 1)}

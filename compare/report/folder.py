@@ -54,12 +54,12 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
         InputError: it has one of these files but no page of ours, so that somebody else's would be replaced; it is no
             folder, or cannot be written to.
     """
-    existing = next((name for name in names if (folder / name).exists()), None)
-    if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
-        reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
-        expected = "a new folder, or one that an earlier run wrote"
-        raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
     with writing("--out", folder):
+        existing = next((name for name in names if (folder / name).exists()), None)
+        if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
+            reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
+            expected = "a new folder, or one that an earlier run wrote"
+            raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
         place = folder.absolute()
         while not place.exists():
             place = place.parent
@@ -68,11 +68,7 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
 
 
 def _is_ours(page: Path) -> bool:
-    try:
-        with page.open("rb") as stream:
-            return MARK.encode() in stream.read(_HEAD)
-    except OSError:
-        return False
+    return page.is_file() and MARK.encode() in page.read_bytes()[:_HEAD]
 
 
 @contextmanager

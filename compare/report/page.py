@@ -74,10 +74,10 @@ def figure(svg: str, caption: str) -> Html:
     return Html(f'<figure>\n<div class="wide">\n{svg}</div>\n<figcaption>{text(caption)}</figcaption>\n</figure>')
 
 
-def plate(svg: str, number: int, title: str, remark: str) -> Html:
+def plate(svg: str, number: int, printed: str, remark: str) -> Html:
     """Return a numbered picture in its own colours, as an image, with its printed title and a remark beside it."""
     image = f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
-    caption_html = f"<p>{strong(f'FIG. {number}.')} {text(title)}</p>\n<p>{text(remark)}</p>"
+    caption_html = f"<p>{strong(f'FIG. {number}.')} {text(printed)}</p>\n<p>{text(remark)}</p>"
     return Html(
         f'<figure id="figure-{number}" class="plate">\n<img alt="Figure {number}" src="{image}">\n'
         f"<figcaption>\n{caption_html}\n</figcaption>\n</figure>"

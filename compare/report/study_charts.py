@@ -90,7 +90,7 @@ def ladders(
             family = family_of(curve.method)
             style = line_style(FAMILY_COLOURS[family], places[family])
             across, up = zip(*points, strict=True)
-            lines.append(Ladder(name(curve), across, up, style, [False] * len(points), family))
+            lines.append(Ladder(name(curve), across, up, style, 1.0, family))
             places[family] += 1
     return lines
 

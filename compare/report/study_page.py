@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Sequence
 from typing import Any
 
 from reference.system.documents import texts_of
+from reference.system.imports import missing
 
 from ..studies.measure import REPEAT_S, REPEATS
 from ..studies.row import Row
@@ -54,7 +54,7 @@ def _lead(document: dict[str, Any]) -> Html:
 
 
 def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
-    if importlib.util.find_spec("matplotlib") is None:
+    if missing(["matplotlib"]):
         return [section("Pictures", paragraph(TEXTS["no_pictures"]))]
     from . import study_charts
 

@@ -9,8 +9,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from string import Template
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -22,12 +23,13 @@ from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
 
-from .straight_line import StraightLine, elements, generated
+from .straight_line import StraightLine, compiled, elements
 from .tracing import differentiated, record
 
 SMALLEST_SIZE = 1e-12  # least swing of a variable, so that tolerances for a bob at rest are not zero
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]
 Derivatives = Callable[[Sequence[Any], Constants, Any], Sequence[Any]]
+Filling = Callable[[Array, Array, Array], None]  # of the last array, from a state and the parameters
 
 
 @dataclass(frozen=True)
@@ -184,31 +186,33 @@ class Problem:
         return np.array([*self.system.parameters.values()] or [0.0])
 
     @cached_property
-    def rhs(self) -> Callable[[float, Array], Array]:
-        """`rhs(t, y)`: derivatives, compiled by numba."""
-        derivatives, k = self.rates.rhs, self.parameters
-        return lambda t, y: derivatives(t, y, k)
+    def rates(self) -> Filling:
+        """`rates(y, k, dy)` writes the derivatives, compiled by numba; k are the `parameters`."""
+        return cast(Filling, self.compiled(self.system.program, _RATES).rates)
 
     @cached_property
-    def jacobian(self) -> Callable[[float, Array], Array]:
-        """`jacobian(t, y)`: shape (variables, variables), compiled by numba."""
-        jacobian, k = self.slopes.jacobian, self.parameters
-        return lambda t, y: jacobian(t, y, k)
-
-    @cached_property
-    def rates(self) -> ModuleType:
-        """Compiled `rhs(t, y, k)`, and `rhs_into(y, k, dy)` in place; k are the `parameters`."""
-        return self.compiled(self.system.program, _RATES)
-
-    @cached_property
-    def slopes(self) -> ModuleType:
-        """Compiled `jacobian(t, y, k)`, and `jacobian_into(y, k, j)` in place."""
+    def slopes(self) -> Filling:
+        """`slopes(y, k, j)` writes the Jacobian, shape (variables, variables), compiled by numba."""
         rows = range(len(self.start))
-        return self.compiled(self.system.jacobian, _SLOPES, j="".join(elements("j", len(rows), str(i)) for i in rows))
+        targets = "".join(elements("j", len(rows), str(i)) for i in rows)
+        return cast(Filling, self.compiled(self.system.jacobian, _SLOPES, j=targets).slopes)
 
     def compiled(self, program: StraightLine, template: str, **texts: object) -> ModuleType:
-        """Return straight-line code of the system and a template that calls it, as `straight_line.generated` does."""
-        return generated(program, template, len(self.start), len(self.system.parameters), **texts)
+        """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
+
+        Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of
+        these names, as many as variables (`${size}`); `${k}` are those of the parameters. `${x}` and `${c}` are numbers
+        with names of their own, which `${unpack_y}` and `${unpack_k}` take from y and k. `${counter}` is the place
+        behind the parameters, of which libraries are given one at least.
+        """
+        variables, parameters = len(self.start), len(self.system.parameters)
+        for array in ("y", "z", "f", "p", "dy"):
+            texts[array] = elements(array, variables)
+        texts |= {"k": elements("k", parameters), "size": variables, "counter": max(parameters, 1)}
+        for letter, array, count in (("x", "y", variables), ("c", "k", parameters)):
+            texts[letter] = "".join(f"{letter}{i}, " for i in range(count))
+            texts[f"unpack_{array}"] = f"{texts[letter]}= {texts[array]}" if count else "pass"
+        return compiled(f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}")
 
     def cartesian(self, states: Array) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""
@@ -219,28 +223,14 @@ class Problem:
 
 
 _RATES = """
-@nb.njit(nb.float64[::1](nb.float64, STATE, nb.float64[::1]), **OPTIONS)
-def rhs(t, y, k):
-    dy = np.empty(len(y))
-    ${dy}= traced(${y}${k})
-    return dy
-
-
 @nb.njit(nb.void(STATE, nb.float64[::1], nb.float64[:]), **OPTIONS)
-def rhs_into(y, k, dy):
+def rates(y, k, dy):
     ${dy}= traced(${y}${k})
 """
 
 _SLOPES = """
-@nb.njit(nb.float64[:, ::1](nb.float64, STATE, nb.float64[::1]), **OPTIONS)
-def jacobian(t, y, k):
-    j = np.empty((len(y), len(y)))
-    ${j}= traced(${y}${k})
-    return j
-
-
 @nb.njit(nb.void(STATE, nb.float64[::1], nb.float64[:, :]), **OPTIONS)
-def jacobian_into(y, k, j):
+def slopes(y, k, j):
     ${j}= traced(${y}${k})
 """
 

@@ -8,14 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
-from pathlib import Path
-from string import Template
 from types import ModuleType
 
-from reference.system.cache import discard, entry, kept
+from reference.system.cache import kept
 from reference.system.workspace import replace_file
 
 FUNCTIONS = ("atan2", "cos", "sin", "sqrt")
@@ -68,23 +65,6 @@ class StraightLine:
         return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
 
 
-def generated(program: StraightLine, template: str, variables: int, parameters: int, **texts: object) -> ModuleType:
-    """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
-
-    Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of these
-    names, as many as variables (`${size}`); `${k}` are those of the parameters. `${x}` and `${c}` are numbers with
-    names of their own, which `${unpack_y}` and `${unpack_k}` take from y and k. `${counter}` is the place behind the
-    parameters, of which libraries are given one at least.
-    """
-    for array in ("y", "z", "f", "p", "dy"):
-        texts[array] = elements(array, variables)
-    texts |= {"k": elements("k", parameters), "size": variables, "counter": max(parameters, 1)}
-    for letter, array, count in (("x", "y", variables), ("c", "k", parameters)):
-        texts[letter] = "".join(f"{letter}{i}, " for i in range(count))
-        texts[f"unpack_{array}"] = f"{texts[letter]}= {texts[array]}" if count else "pass"
-    return compiled(f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}")
-
-
 def elements(array: str, count: int, row: str = "") -> str:
     """Return the elements of an array (of its row, if one is named), each with a comma behind it."""
     return "".join(f"{array}[{row and row + ', '}{i}], " for i in range(count))
@@ -94,22 +74,12 @@ def elements(array: str, count: int, row: str = "") -> str:
 def compiled(body: str) -> ModuleType:
     """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    Machine code is read from the cache if it belongs to the very same text.
+    What runs is this text, whatever its file holds: that is there for numba's cache, which goes by its name and times.
     """
     text = (HEADER + body).encode()
     name = f"f{hashlib.sha256(text).hexdigest()[:32]}"
-    stored = entry("generated", f"{name}.py")
-    if stored is not None and not _holds(stored, text):
-        discard(stored)
     path = kept("generated", f"{name}.py", lambda path: replace_file(path, lambda stream: stream.write(text)))
     module = ModuleType(name)
     sys.modules[name] = module  # numba's cache unpickles its functions by the module's name
     exec(compile(text, str(path), "exec"), module.__dict__)
     return module
-
-
-def _holds(path: Path, text: bytes) -> bool:
-    """Return whether a file has just this text: else it was damaged, or cannot be read."""
-    with suppress(OSError):
-        return path.read_bytes() == text
-    return False

@@ -33,6 +33,8 @@ from fractions import Fraction
 from operator import add, mul, neg, sub, truediv
 from typing import Any
 
+from reference.model.algebra import plus, product
+
 from .straight_line import FUNCTIONS, CodeLine, StraightLine
 
 
@@ -41,7 +43,10 @@ class TracingError(TypeError):
 
 
 class TracedNumber:
-    """A number that records the operations on it; it has no value, so that nothing may branch on it."""
+    """A number that records the operations on it; it has no value, so that nothing may branch on it.
+
+    An exact zero, and factors of one and minus one, need no operation; no bit of the result depends on that.
+    """
 
     __slots__ = ("_tape", "name")
 
@@ -49,31 +54,29 @@ class TracedNumber:
         self._tape, self.name = tape, name
 
     def __add__(self, other: Any) -> Any:
-        return self._tape.add(self, other)
-
-    def __radd__(self, other: Any) -> Any:
-        return self._tape.add(other, self)
+        return self if _is(other, 0) else self._tape.record("add", self, other)
 
     def __sub__(self, other: Any) -> Any:
-        return self._tape.subtract(self, other)
+        return self if _is(other, 0) else self._tape.record("sub", self, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return self._tape.subtract(other, self)
+        return -self if _is(other, 0) else self._tape.record("sub", other, self)
 
     def __mul__(self, other: Any) -> Any:
-        return self._tape.multiply(self, other)
-
-    def __rmul__(self, other: Any) -> Any:
-        return self._tape.multiply(other, self)
+        if _is(other, 0):
+            return 0
+        if _is(other, 1):
+            return self
+        return -self if _is(other, -1) else self._tape.record("mul", self, other)
 
     def __truediv__(self, other: Any) -> Any:
-        return self._tape.divide(self, other)
+        return self if _is(other, 1) else self._tape.record("div", self, other)
 
     def __rtruediv__(self, other: Any) -> Any:
-        return self._tape.divide(other, self)
+        return 0 if _is(other, 0) else self._tape.record("div", other, self)
 
     def __neg__(self) -> Any:
-        return self._tape.negate(self)
+        return self._tape.record("neg", self)
 
     def __pow__(self, exponent: Any) -> Any:
         if not isinstance(exponent, int) or exponent < 1:
@@ -86,20 +89,16 @@ class TracedNumber:
     def _refuse(self, *_: Any) -> Any:
         raise TracingError("a traced function must not compare or convert numbers: straight-line code has no branches")
 
+    __radd__, __rmul__ = __add__, __mul__
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = __float__ = __int__ = __abs__ = _refuse
 
 
 class Tape:
-    """The operations recorded so far. Only rewritings that change no bit of the result are made."""
+    """The operations recorded so far, each once."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, tuple[str, ...]], TracedNumber] = {}
-        self._negated: dict[str, TracedNumber] = {}
         self.lines: list[CodeLine] = []
-
-    def input(self, name: str) -> TracedNumber:
-        """Return a number that is an input of the code."""
-        return TracedNumber(self, name)
 
     def operand(self, value: Any) -> str:
         """Return the name of a number, or the literal of a constant (the nearest double of a fraction)."""
@@ -119,70 +118,15 @@ class Tape:
             self._known[key] = result
         return self._known[key]
 
-    def add(self, a: Any, b: Any) -> Any:
-        """Return a + b; a sum with a negated number is recorded as a difference."""
-        if _is(a, 0) or _is(b, 0):
-            return b if _is(a, 0) else a
-        if self._positive(b) is not None:
-            return self.subtract(a, self._positive(b))
-        if self._positive(a) is not None:
-            return self.subtract(b, self._positive(a))
-        return self.record("add", a, b)
-
-    def subtract(self, a: Any, b: Any) -> Any:
-        """Return a - b."""
-        if _is(a, 0) or _is(b, 0):
-            return self.negate(b) if _is(a, 0) else a
-        if self._positive(b) is not None:
-            return self.add(a, self._positive(b))
-        return self.record("sub", a, b)
-
-    def multiply(self, a: Any, b: Any) -> Any:
-        """Return a b; ±1 and an exact 0 need no multiplication."""
-        for factor, other in ((a, b), (b, a)):
-            if _is(factor, 0):
-                return 0
-            if _is(factor, 1):
-                return other
-            if _is(factor, -1):
-                return self.negate(other)
-        return self.record("mul", a, b)
-
-    def divide(self, a: Any, b: Any) -> Any:
-        """Return a / b."""
-        if _is(a, 0) or _is(b, 1):
-            return a
-        return self.record("div", a, b)
-
-    def negate(self, a: Any) -> Any:
-        """Return -a."""
-        if not isinstance(a, TracedNumber):
-            return -a
-        negated = self._positive(a)
-        if negated is None:
-            negated = self.record("neg", a)
-            self._negated[negated.name] = a
-        return negated
-
-    def _positive(self, a: Any) -> Any:
-        return self._negated.get(a.name) if isinstance(a, TracedNumber) else None
-
     def program(self, inputs: Sequence[str], outputs: Sequence[Any]) -> StraightLine:
-        """Return the operations that the outputs need, renumbered."""
-        results = [self.operand(value) for value in outputs]
-        needed, lines_needed = set(results), []
+        """Return the operations that the outputs need."""
+        results = tuple(map(self.operand, outputs))
+        needed, lines = set(results), []
         for line in reversed(self.lines):
             if line.name in needed:
                 needed.update(line.operands)
-                lines_needed.append(line)
-        lines_needed.reverse()
-        short = {line.name: f"t{i}" for i, line in enumerate(lines_needed)}
-
-        def renamed(names: Sequence[str]) -> tuple[str, ...]:
-            return tuple(short.get(name, name) for name in names)
-
-        lines = tuple(CodeLine(short[line.name], line.operation, renamed(line.operands)) for line in lines_needed)
-        return StraightLine(tuple(inputs), lines, renamed(results))
+                lines.append(line)
+        return StraightLine(tuple(inputs), tuple(reversed(lines)), results)
 
 
 def _is(value: Any, number: int) -> bool:
@@ -215,15 +159,15 @@ def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str])
         TracingError: the function did something else.
     """
     tape = Tape()
-    outputs = function([tape.input(name) for name in inputs], RecordingFunctions(tape))
-    return tape.program(inputs, list(outputs))
+    outputs = function([TracedNumber(tape, name) for name in inputs], RecordingFunctions(tape))
+    return tape.program(inputs, outputs)
 
 
 def differentiated(program: StraightLine, variables: Sequence[str]) -> StraightLine:
     """Return the program of the Jacobian: ∂ output / ∂ variable, row by row, shape (outputs, variables) flattened."""
     tape = Tape()
     functions = RecordingFunctions(tape)
-    values: dict[str, Any] = {name: tape.input(name) for name in program.inputs}
+    values: dict[str, Any] = {name: TracedNumber(tape, name) for name in program.inputs}
     slopes: dict[str, list[Any]] = {v: [int(v == u) for u in variables] for v in variables}
     none = [0] * len(variables)
 
@@ -238,7 +182,7 @@ def differentiated(program: StraightLine, variables: Sequence[str]) -> StraightL
         slopes[line.name] = list(none)
         for name, partial in zip(line.operands, partials, strict=True):
             for i, slope in enumerate(slopes.get(name, none)):
-                slopes[line.name][i] = tape.add(slopes[line.name][i], tape.multiply(partial, slope))
+                slopes[line.name][i] = plus(slopes[line.name][i], product(partial, slope))
     return tape.program(program.inputs, [slope for name in program.outputs for slope in slopes.get(name, none)])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import Approximate, Check, Identity, component, section
+from ..checks import Approximate, Check, Identity, component, over, section
 from ..digits import MP, Vector, cos, cross, derivative, dot, sin, vector
 from ..first_principles import (
     acceleration_of,
@@ -36,7 +36,7 @@ def kinetic(p: Point, square: Any) -> Any:
 
 def _lagrangian(p: Point, q: Vector, v: Vector) -> Any:
     """Return m v²/2 - m g_a z of angles q that change at the rates v, from the motion itself."""
-    return p.mass * lagrangian(p, by_angles, q, v, MP.zero)
+    return p.mass * lagrangian(p.but(rate=MP.zero), by_angles, q, v)
 
 
 def coriolis(p: Point) -> Vector:
@@ -46,11 +46,7 @@ def coriolis(p: Point) -> Vector:
 
 def along(i: int) -> Callable[[Point], Vector]:
     """Return ∂r/∂θ or ∂r/∂φ."""
-
-    def moved(p: Point, s: Any) -> Vector:
-        return by_angles(p, p.cord + s, p.azimuth) if i == 0 else by_angles(p, p.cord, p.azimuth + s)
-
-    return lambda p: derivative(lambda s: moved(p, s))
+    return lambda p: derivative(lambda s: by_angles(p, *(angle_state(p)[0] + s * vector(1 - i, i))))
 
 
 def _by_theta(p: Point) -> Vector:
@@ -87,7 +83,7 @@ def _half(p: Point) -> Any:
 
 def left_side(p: Point, i: int) -> Any:
     """Return d(∂L/∂q')/dt - ∂L/∂q of the Lagrangian, along a path with the point's accelerations."""
-    return p.mass * euler_lagrange(p, by_angles, *angle_state(p), i, 0)
+    return p.mass * euler_lagrange(p.but(rate=MP.zero), by_angles, *angle_state(p), i)
 
 
 def _without_prime(p: Point, i: int) -> Any:
@@ -244,10 +240,10 @@ def checks() -> list[Check]:
         Identity("7_2_phi2", "7.2", "φ'' = (-2 cosθ θ'φ' - 2 (cosθ sinλ_a - sinθ sinφ cosλ_a) Ω θ') / sinθ",
             lambda p: printed_accelerations(p)[1], lambda p: angle_accelerations(p)[1]),
         Approximate("7_3_theta", "7.3", "θ'' = -g_a/L0 θ + θ φ'² + 2 θ sinλ_a Ω φ'",
-            lambda s: (small_accelerations(_narrow(s))[0], angle_accelerations(_narrow(s))[0]), 1, "θ",
+            over(_narrow, component(small_accelerations, 0), component(angle_accelerations, 0)), 1, "θ",
             remark="at a random point"),
         Approximate("7_3_phi", "7.3", "φ'' = (-2 θ'φ' - 2 sinλ_a Ω θ') / θ",
-            lambda s: (small_accelerations(_narrow(s))[1], angle_accelerations(_narrow(s))[1]), 1, "θ",
+            over(_narrow, component(small_accelerations, 1), component(angle_accelerations, 1)), 1, "θ",
             remark="at a random point"),
         Identity("7_3_first", "7.3", "x'' = L0 θ'' cosφ - …, y'' = L0 θ'' sinφ + … (of x = L0 θ cosφ, y = L0 θ sinφ)",
             _flat_printed, lambda p: derivative(lambda s: _flat(p, s), 0, 2)),

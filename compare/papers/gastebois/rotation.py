@@ -9,7 +9,7 @@ from reference import load_scene
 from reference.model.constants import axis_distance
 
 from ...approximations.case import Case
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
 from ..digits import (
     MP,
     Vector,
@@ -73,11 +73,6 @@ def wide_swing(s: Any) -> tuple[Any, Any]:
     r0 = PANTHEON_RELEASE * s
     true = plane_period(PANTHEON_LENGTH, r0, GRAVITY, RATE) * RATE / (2 * pi)
     return 1 + mpf("0.375") * (r0 / PANTHEON_LENGTH) ** 2, true
-
-
-def narrow_swing(s: Any) -> tuple[Any, Any]:
-    """Return T_f / T_p = 1 and the closed form."""
-    return MP.one, wide_swing(s)[1]
 
 
 def precession_ratio(angle: Any) -> Any:
@@ -216,7 +211,7 @@ def checks() -> list[Check]:
             lambda p: -p.rate * vector(cos(p.rate * p.t), sin(p.rate * p.t)),
             lambda p: derivative(lambda t: vector(-sin(p.rate * t), cos(p.rate * t)), p.t)),
         PrintedNumber("1", "1", "in one hour the pendulum had turned by 11,3°",
-            "11.3", lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111"))),
+            "11.3", lambda: 360 / SIDEREAL_DAY * sin(paris().phi)),
         PrintedNumber("2_radius", "2", "R_p = 6370 km",
             "6370e3", lambda: MEAN_RADIUS, about=lambda: MEAN_RADIUS, remark="m; mean radius of the ellipsoid"),
         Identity("2_distance", "2", "R = R_p cosλ", lambda p: p.radius * cos(p.phi),
@@ -232,7 +227,7 @@ def checks() -> list[Check]:
             "1908", lambda: 24 * 60 / sin(radians(49)), remark="minutes"),
         PrintedNumber("4_1_hour", "4.1", "(11,3° in 1 hour)", "11.3", lambda: 360 * sin(radians(49)) / 24),
         Approximate("4_1_ga", "4.1", "g_a = g",
-            lambda s: (pantheon_on_sphere(s).gravity, norm(apparent(pantheon_on_sphere(s)))), 1, "Ω²", "m/s²",
+            over(pantheon_on_sphere, lambda p: p.gravity, lambda p: norm(apparent(p))), 1, "Ω²", "m/s²",
             remark="at 48.87°"),
         Identity("4_1_omega", "4.1", "Ω = Ω cosλ j + Ω sinλ k",
             turning, lambda p: p.k.turn, remark="truth: reference.model.constants"),
@@ -246,7 +241,8 @@ def checks() -> list[Check]:
         Identity("4_1_tf", "4.1", "T_f = 2π/ω_f = T_p / sinλ",
             lambda p: 2 * pi / p.rate / sin(p.phi), lambda p: 2 * pi / dot(turning(p), (0, 0, MP.one))),
         Approximate("4_1_small", "4.1", "ω_f = Ω sinλ for small angles",
-            narrow_swing, 2, "r0/L0", remark="T_f/T_p at the pole, r0 = 6.5 m; truth: elliptic integrals"),
+            lambda s: (MP.one, wide_swing(s)[1]), 2, "r0/L0",
+            remark="T_f/T_p at the pole, r0 = 6.5 m; truth: elliptic integrals"),
         Statement("4_1_pole", "4.1", "at the poles T_f = T_p", _pole, by_run=True),
         Statement("4_1_equator", "4.1", "at the equator the plane does not turn", _equator, by_run=True),
         Statement("4_1_dx", "4.1, remark", "if the amplitude grows, dx < v dt", _shorter_than_the_arc),

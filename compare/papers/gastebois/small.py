@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations.gastebois import constants_of
-from ..checks import Answer, Approximate, Check, Identity, Statement, component, section
+from ..checks import Answer, Approximate, Check, Identity, Statement, component, over, section
 from ..digits import MP, Vector, cos, dot, j, mpf, shown, sin, vector
 from ..first_principles import (
     acceleration_of,
@@ -41,12 +41,6 @@ def _swung(s: Any) -> tuple[Any, Any]:
     p = points()[0]
     top, angle = MP.mpf("0.3") * s, MP.mpf("0.15") * s
     return p.gravity * (top**2 - angle**2), 2 * p.gravity * (cos(angle) - cos(top))
-
-
-def _tension(s: Any) -> tuple[Any, Any]:
-    """Return g_a and the tension of the cord per mass, without rotation, at s times the point's amplitude."""
-    p = points()[0].but(rate=MP.zero).swinging(s)
-    return p.gravity, pull(p)
 
 
 def _with_tension(p: Point) -> Vector:
@@ -130,7 +124,9 @@ def checks() -> list[Check]:
         Approximate("5_flat", "5", "z = -l, z' = 0", _flat, 2, "amplitude", remark="z and z' at a random point"),
         Approximate("5_square", "5", "2 g_a (cosθ - cosθm) = g_a (θm² - θ²)",
             _swung, 2, "θm", remark="θm = 0.3, θ = 0.15"),
-        Approximate("5_tension", "5", "T = m g_a", _tension, 2, "amplitude", remark="at a random point"),
+        Approximate("5_tension", "5", "T = m g_a",
+            over(points()[0].but(rate=MP.zero).swinging, lambda p: p.gravity, pull), 2, "amplitude",
+            remark="at a random point"),
         Identity("5_long", "5", "x'' = -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, y'' = -T/m y/L0 - 2x'Ω sinλ_a",
             _with_tension, uniform_acceleration, remark="truth: reference.model.force with gravity alone"),
         Identity("5_small", "5", "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",

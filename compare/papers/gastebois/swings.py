@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
-from ..first_principles import motion, rate_up, swing_rate
+from ..first_principles import motion, rate_up, swing_rate, turned_in_plane
 from ..points import Point, points
 from .rotation import (
     GRAVITY,
@@ -27,12 +27,6 @@ APPARENT_LATITUDE = mpf("48.97")  # λ_a, as he rounds it
 def simple(p: Point, t: Any) -> Vector:
     """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
     return p.x * vector(*gastebois.in_turning_axes(0, swing_rate(p), rate_up(p), t, MP))
-
-
-def in_turning_axes(p: Point, xy: Vector, t: Any) -> Vector:
-    """Return X = x cosΩ_z t - y sinΩ_z t, Y = y cosΩ_z t + x sinΩ_z t."""
-    cu, su = cos(rate_up(p) * t), sin(rate_up(p) * t)
-    return vector(xy[0] * cu - xy[1] * su, xy[1] * cu + xy[0] * su)
 
 
 def _start_simple(p: Point) -> Vector:
@@ -92,7 +86,8 @@ def _clockwise() -> Answer:
 
 
 def _ellipse(p: Point, t: Any) -> Vector:
-    return in_turning_axes(p, motion_at_rest(p, t), t)
+    """Return X = x cosΩ_z t - y sinΩ_z t, Y = y cosΩ_z t + x sinΩ_z t of the bob let go at rest."""
+    return turned_in_plane(motion_at_rest(p, t), rate_up(p) * t)
 
 
 def _one_swing(s: Any) -> tuple[Any, Any]:
@@ -119,15 +114,15 @@ def checks() -> list[Check]:
         Identity("6_2_v", "6.2", "v_x = -r0 ω cosΩ_z t sinωt - …, v_y = r0 ω sinΩ_z t sinωt - …",
             lambda p: simple(p, p.t)[2:], lambda p: motion(p, _start_simple(p), p.t)[2:]),
         Identity("6_2_axes", "6.2", "X = r0 cosωt, Y = 0", lambda p: (p.x * cos(swing_rate(p) * p.t), 0),
-            lambda p: in_turning_axes(p, motion(p, _start_simple(p), p.t)[:2], p.t)),
+            lambda p: turned_in_plane(motion(p, _start_simple(p), p.t)[:2], rate_up(p) * p.t)),
         Identity("6_2_turn", "6.2", "the axes OXYZ turn about Oz with the angular velocity Ω_z", rate_up, _axes_turn,
             remark="clockwise from above counted positive, as his 4.1 counts ω_f; so do the formulas for X and Y"),
         Identity("6_2_start", "6.2", "x0 = r0, y0 = 0, v_x0 = 0, v_y0 = -r0 Ω_z", _start_simple,
             lambda p: (*simple(p, MP.zero)[:2], *derivative(lambda t: simple(p, t)[:2], MP.zero))),
         Approximate("6_2_omega", "6.2", "ω = ω0 (1 + Ω_z² / 2ω0²)",
-            lambda s: (_expanded(pantheon(s)), swing_rate(pantheon(s))), 4, "Ω"),
+            over(pantheon, _expanded, swing_rate), 4, "Ω"),
         Approximate("6_2_period", "6.2", "T = T0 (1 - Ω_z² / 2ω0²)",
-            lambda s: (_expanded_period(pantheon(s)), 2 * pi / swing_rate(pantheon(s))), 4, "Ω"),
+            over(pantheon, _expanded_period, lambda p: 2 * pi / swing_rate(p)), 4, "Ω"),
         Identity("6_3_c", "6.3", "c1 = (ω-Ω_z) r0 / 2ω, c2 = (ω+Ω_z) r0 / 2ω",
             lambda p: tuple((swing_rate(p) + sign * rate_up(p)) * p.x / (2 * swing_rate(p)) for sign in (-1, 1)),
             lambda p: fitted_constants(p.but(y=MP.zero, vx=MP.zero, vy=MP.zero))[::2]),

@@ -10,7 +10,7 @@ import numpy as np
 from reference.model.constants import axis_distance
 
 from ..checks import Answer, Check, Identity, Statement, section
-from ..digits import MP, Vector, cos, cross, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
+from ..digits import MP, Vector, cos, cross, degrees, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
 from ..first_principles import (
     angle_state,
     by_angles,
@@ -51,7 +51,7 @@ def north(p: Point, t: Any) -> Vector:
 
 def _along_meridian(p: Point) -> Vector:
     """Return dX_s/dϕ from the ellipsoid's geometry."""
-    return derivative(lambda phi: suspension(p, p.rate * p.t, phi=phi), p.phi)
+    return derivative(lambda phi: suspension(p.but(latitude=degrees(phi)), p.rate * p.t), p.phi)
 
 
 def _meridian_radius(p: Point) -> Any:
@@ -66,10 +66,6 @@ def _not_the_north_direction() -> Answer:
 
 def _is_the_north_direction() -> bool:
     return all(vanishes(_along_meridian(p) - (_meridian_radius(p) + p.altitude) * north(p, p.t)) for p in points())
-
-
-def _distance_of_suspension(p: Point) -> Any:
-    return norm(suspension(p, MP.one)[:2])
 
 
 def _east_from_latitude() -> Answer:
@@ -136,13 +132,9 @@ def _by_chain_rule(p: Point) -> Vector:
     return sum(terms)
 
 
-def _velocity_of_place(p: Point) -> Vector:
-    return derivative(lambda s: place(p, p.position + s * p.velocity, p.t + s))
-
-
 def _alpha(power: int) -> Callable[[Point], Any]:
     """Return the coefficient of Ω**power in the squared velocity."""
-    return lambda p: in_rate(lambda rate: square_speed(p, by_angles, *angle_state(p)[:2], rate), power)
+    return lambda p: in_rate(lambda rate: square_speed(p.but(rate=rate), by_angles, *angle_state(p)[:2]), power)
 
 
 def alpha_0(p: Point) -> Any:
@@ -171,7 +163,7 @@ def checks() -> list[Check]:
             lambda p: printed_suspension(p, p.t), lambda p: suspension(p, p.rate * p.t),
             remark="truth: h along the normal of the ellipsoid"),
         Identity("2", "(2)", "N = ρ_e / sqrt(1 - e² sin²ϕ)", lambda p: p.radius / sqrt(1 - p.e2 * sin(p.phi) ** 2),
-            lambda p: _distance_of_suspension(p.but(altitude=MP.zero)) / cos(p.phi),
+            lambda p: norm(suspension(p.but(altitude=MP.zero), MP.one)[:2]) / cos(p.phi),
             remark="truth: length of the normal from the ellipsoid to the axis"),
         Identity("3", "(3)", "R = (N+h) cosϕ", lambda p: (p.N + p.altitude) * cos(p.phi),
             lambda p: axis_distance(p.radius, p.flattening, p.altitude, sin(p.phi), cos(p.phi), MP.sqrt),
@@ -181,7 +173,7 @@ def checks() -> list[Check]:
         Identity("4", "(4)", "e_E = (-sinΩt, cosΩt, 0), e_E² = 1", _at_its_time(east), _at_its_time(_site_axis(0))),
         Identity("5", "(5)", "e_U = (cosϕ cosΩt, cosϕ sinΩt, sinϕ)", _at_its_time(up), _at_its_time(_site_axis(2))),
         Identity("5_h", ", before (5)", "e_U by differentiating (1) with respect to h", _at_its_time(up),
-            lambda p: derivative(lambda h: suspension(p, p.rate * p.t, h), p.altitude)),
+            lambda p: derivative(lambda h: suspension(p.but(altitude=h), p.rate * p.t), p.altitude)),
         Identity("6", "(6)", "e_N = e_U × e_E", _up_cross_east, _at_its_time(_site_axis(1))),
         Identity("6_b", "(6)", "e_N = (-sinϕ cosΩt, -sinϕ sinΩt, cosϕ)",
             _at_its_time(north), lambda p: unit(_up_cross_east(p))),
@@ -206,7 +198,7 @@ def checks() -> list[Check]:
             lambda p: (p.N + p.altitude) * p.rate * cos(p.phi) * vector(-sin(p.rate * p.t), cos(p.rate * p.t), 0),
             lambda p: derivative(lambda t: suspension(p, p.rate * t), p.t)),
         Identity("14", "(14)", "Xdot = Xdot_s + e_E' x + e_E x' + e_N' y + e_N y' + e_U' z + e_U z'",
-            _by_chain_rule, _velocity_of_place),
+            _by_chain_rule, lambda p: derivative(lambda s: place(p, p.position + s * p.velocity, p.t + s))),
         Identity("15_e", "(15)", "e_E' = Ω (-cosΩt, -sinΩt, 0)",
             lambda p: p.rate * vector(-cos(p.rate * p.t), -sin(p.rate * p.t), 0),
             _rates_of(_site_axis(0))),

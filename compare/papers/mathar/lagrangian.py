@@ -91,7 +91,7 @@ def plane_alpha_2(p: Point) -> Any:
 
 
 def _plane_alpha(power: int) -> Any:
-    return lambda p: in_rate(lambda rate: square_speed(p, by_plane, *plane_state(p)[:2], rate), power)
+    return lambda p: in_rate(lambda rate: square_speed(p.but(rate=rate), by_plane, *plane_state(p)[:2]), power)
 
 
 def _energy_in_the_inertial_frame_changes() -> Answer:
@@ -116,7 +116,7 @@ def _no_time_in_the_lagrangian() -> Answer:
 def _spherical(p: Point) -> Vector:
     """Return the equations of the spherical pendulum, from the Lagrangian without rotation."""
     q, v, a = angle_state(p)
-    first, second = (euler_lagrange(p, by_angles, q, v, a, i, MP.zero) / p.length**2 for i in (0, 1))
+    first, second = (euler_lagrange(p.but(rate=MP.zero), by_angles, q, v, a, i) / p.length**2 for i in (0, 1))
     return vector(first, second / sin(p.cord))
 
 
@@ -191,7 +191,7 @@ def _coefficient(i: int, power: int) -> Callable[[Point], Any]:
     """Return z⁴ times the terms of Euler-Lagrange without accelerations, at one power of Ω."""
     still = vector(0, 0)
     return lambda p: (
-        p.z**4 * in_rate(lambda rate: euler_lagrange(p, by_plane, *plane_state(p)[:2], still, i, rate), power)
+        p.z**4 * in_rate(lambda rate: euler_lagrange(p.but(rate=rate), by_plane, *plane_state(p)[:2], still, i), power)
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...approximations.frequency import line_of_46, series, triangle
 from ...approximations.mathar import derivatives, truncated
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, component, over, section
 from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import coupled_at, horizontal_acceleration, in_rate, linearised, rest, uniform_acceleration
 from ..points import Point, paris, points
@@ -115,11 +115,6 @@ def _derived_series(p: Point) -> Vector:
     return vector(*(derivative(angle, order=power) / MP.factorial(power) for power in (2, 4, 6)))
 
 
-def series_term(i: int) -> tuple[Callable[[Point], Any], Callable[[Point], Any]]:
-    """Return a coefficient as printed, and as derived."""
-    return lambda p: series(p.case)[i], lambda p: _derived_series(p)[i]
-
-
 def _shorter(s: Any) -> Point:
     """Return Paris with a cord s times as long."""
     return paris().but(length=paris().length * s)
@@ -170,11 +165,12 @@ def _section_v() -> list[Check]:
         Identity("46_root", "(46)", "its root is the rest position",
             lambda p: line_of_46(p.case, p.case.rest_angle), lambda p: 0,
             remark="root: reference.model.force.rest_position"),
-        *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}", *series_term(i),
+        *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}",
+            component(lambda p: series(p.case), i), component(_derived_series, i),
             remark="truth: Taylor series of the rest position") for i, (power, mark, printed) in enumerate(SERIES)),
         Statement("47_text", ", after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
         Approximate("48", "(48)", "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
-            lambda s: (_shorter(s).case.apparent_gravity, _shorter(s).case.pull_at_rest), 1, "l", "m/s²",
+            over(_shorter, lambda p: p.case.apparent_gravity, lambda p: p.case.pull_at_rest), 1, "l", "m/s²",
             remark="N+h stands for the distance of the bob, N+h-l"),
         Identity("49", "(49)", "RΩ² / sinφ = g' / sinϕ",
             lambda p: p.case.outward / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
@@ -183,11 +179,11 @@ def _section_v() -> list[Check]:
             _vector_sum, lambda p: p.length * vector(*p.k.pull),
             remark="on east, north, up; truth: reference.model.constants"),
         Approximate("50", "(50)", "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
-            lambda s: (triangle(_shorter(s).case), _shorter(s).case.rest_angle), 1, "l", "rad"),
+            over(_shorter, lambda p: triangle(p.case), lambda p: p.case.rest_angle), 1, "l", "rad"),
         Approximate("50_two", ", after (50)", "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
-            lambda s: (_two_terms(_slower(s)), sin(triangle(_slower(s).case))), 3, "RΩ²", "rad"),
+            over(_slower, _two_terms, lambda p: sin(triangle(p.case))), 3, "RΩ²", "rad"),
         Approximate("50_one", ", after (50)", "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
-            lambda s: (_one_term(_slower(s)), sin(triangle(_slower(s).case))), 2, "RΩ²", "rad"),
+            over(_slower, _one_term, lambda p: sin(triangle(p.case))), 2, "RΩ²", "rad"),
     )  # fmt: skip
 
 
@@ -210,31 +206,6 @@ def without(item: int) -> Callable[[Point], Vector]:
     return accelerations
 
 
-def _depth_is_length(p: Point) -> Vector:
-    """Return x'', y'' of item 5, in the term with g: z replaced by l."""
-    return -p.gravity / p.length * p.position[:2]
-
-
-def _dropped(item: int) -> Callable[[Any], tuple[Vector, Vector]]:
-    """Return print and truth at an amplitude s times that of Paris, without rotation."""
-    return lambda s: (without(item)(_swinging(s)), solved(_swinging(s)))
-
-
-def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
-    p = _swinging(MP.one, paris().rate * s)
-    return without(1)(p), solved(p)
-
-
-def _printed_gravity(s: Any) -> tuple[Any, Any]:
-    p = paris().faster(s)
-    return p.gravity - p.case.outward * cos(p.phi), p.case.apparent_gravity
-
-
-def _no_centrifugal_force(s: Any) -> tuple[Any, Any]:
-    p = paris().faster(s)
-    return p.gravity, p.case.pull_at_rest
-
-
 def _cosine(s: Any) -> tuple[Vector, Vector]:
     """Return print and truth of the Coriolis part alone, which is linear in Ω."""
     p = _swinging(s)
@@ -244,11 +215,6 @@ def _cosine(s: Any) -> tuple[Vector, Vector]:
 
     printed, true = (tuple(linear(function, i) for i in (0, 1)) for function in (without(4), solved))
     return printed, true
-
-
-def _whole(s: Any) -> tuple[Vector, Vector]:
-    p = _swinging(s, paris().rate)
-    return coupled_at(p), uniform_acceleration(p)
 
 
 def _pulled(p: Point) -> Vector:
@@ -263,20 +229,22 @@ def _section_vi() -> list[Check]:
     return section("mathar_", "Mathar VI",
         PrintedNumber("vi_1_size", "item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
         Approximate("vi_1", "item 1", "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
-            _no_centrifugal_force, 1, "Ω²", "m/s²",
+            over(paris().faster, lambda p: p.gravity, lambda p: p.case.pull_at_rest), 1, "Ω²", "m/s²",
             remark=f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(share, 3)} of g, not Ω²"),
         Approximate("vi_1_order", "item 1", "β_x2 = β_y2 = 0",
-            _sizes_at_rate, 2, "Ω", "m/s²", remark="accelerations half way through a swing; bit 2 of the program's -a"),
+            over(lambda s: _swinging(MP.one, paris().rate * s), without(1), solved), 2, "Ω", "m/s²",
+            remark="accelerations half way through a swing; bit 2 of the program's -a"),
         Approximate("vi_1_variant", "item 1, variant", "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
-            _printed_gravity, 2, "RΩ²", "m/s²"),
+            over(paris().faster, lambda p: p.gravity - p.case.outward * cos(p.phi),
+                lambda p: p.case.apparent_gravity), 2, "RΩ²", "m/s²"),
         Approximate("vi_2", "item 2", "-yx in (43) set to zero",
-            _dropped(2), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
+            over(_swinging, without(2), solved), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
         Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
-            _dropped(3), 2, "amplitude", remark=place),
+            over(_swinging, without(3), solved), 2, "amplitude", remark=place),
         Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
             _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
         Approximate("vi_5", "item 5", "z replaced by l",
-            lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))), 2, "amplitude", remark=place),
+            over(_swinging, lambda p: -p.gravity / p.length * p.position[:2], _pulled), 2, "amplitude", remark=place),
         Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
             lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
             lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
@@ -286,7 +254,8 @@ def _section_vi() -> list[Check]:
             lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
             lambda p: linearised(p)[1] / p.length, remark="the text at hand has every hat and dot of this line"),
         Approximate("51_52", "(51), (52)", "an approximation of (43)",
-            _whole, 1, "amplitude", remark=f"against gravity alone, all of items 2-5; {place}"),
+            over(lambda s: _swinging(s, paris().rate), coupled_at, uniform_acceleration), 1, "amplitude",
+            remark=f"against gravity alone, all of items 2-5; {place}"),
     )  # fmt: skip
 
 

@@ -117,11 +117,8 @@ def _card(entry: Entry, thumb: str) -> str:
 
 def _filters(scenes: Sequence[Entry]) -> Html:
     flags = sorted({flag for entry in scenes for flag in entry.flags})
-    levels = [
-        level
-        for level in LEVELS
-        if any(level == golden.manifest.level for entry in scenes for golden in entry.datasets)
-    ]
+    made = {golden.manifest.level for entry in scenes for golden in entry.datasets}
+    levels = [level for level in LEVELS if level in made]
     return Html(
         f'<form class="filters" hidden>\n{_choice("flag", flags)}\n{_choice("level", levels)}\n'
         '<output id="count"></output>\n</form>'
@@ -141,10 +138,8 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
         if golden.manifest.counts.transits
         else ""
     )
-    wanted, known = (
-        f"a row for {times} … s, or for some of them",
-        "the golden rows alone: the dataset has no golden function",
-    )
+    wanted = f"a row for {times} … s, or for some of them"
+    known = "the golden rows alone: the dataset has no golden function"
     if made:
         wanted = f"rows at any times up to {golden.t[-1]:.15g} s"
         bounds = ", ".join(f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z"))

@@ -190,16 +190,9 @@ def _vocabulary() -> dict[str, Any]:
     reading = names, text_reader, read, candidate
     found = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
     said = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
-    limits = {
-        "TOLERANCE": judge.TOLERANCE,
-        "FINER": judge.FINER,
-        "FAR": judge.FAR,
-        "SAME": judge.SAME,
-        "WHOLE": WHOLE,
-        "SMALL": judge.SMALL,
-    }
+    limits = {name: getattr(judge, name) for name in ("TOLERANCE", "FINER", "FAR", "SAME", "SMALL")}
     axes = [[*order, *signs, text] for (order, signs), (_, text) in conventions.AXES_SAID.items()]
-    return found | said | limits | {"AXES_SAID": axes}
+    return found | said | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
 
 
 def plain(value: object) -> Any:

@@ -143,7 +143,9 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
     (x, y, z), (vx, vy, vz) = plumb.inward(case.position), plumb.inward(case.velocity)
     aside = case.ctx.hypot(x, y)
     start = (case.ctx.atan2(aside, -z), case.ctx.atan2(y, x), vz / aside, (x * vy - y * vx) / aside**2)
-    fall, rate, latitude = (float(v) for v in (case.apparent_gravity / case.length, case.rate, case.apparent_latitude))
+    fall, rate, latitude = (
+        float(v) for v in (case.apparent_gravity / case.length, case.k.rate, case.apparent_latitude)
+    )
 
     def section_7_2(state, functions):
         theta, phi, theta_rate, phi_rate = state

@@ -69,7 +69,7 @@ def test_the_apparent_latitude_and_the_ellipse_of_6_3():
     case = Case.of_scene(gastebois())
     assert f"{float(case.ctx.degrees(case.apparent_latitude)):.2f}" == "48.97"
     omega, _ = small_angles(case)
-    turn = float(case.rate * case.sin)  # its 5.49e-5 rad/s is without the centrifugal force
+    turn = float(case.turn)  # its 5.49e-5 rad/s is without the centrifugal force
     minor = 6.5 * turn / float(omega)
     assert f"{turn:.2e}" == "5.49e-05"
     assert f"{minor * 1e3:.2f}" == "0.93"
@@ -100,11 +100,11 @@ def test_the_spherical_drift_is_nearer_to_the_truth_at_the_pole_than_without():
 def test_the_printed_45_has_no_solution_in_paris():
     # y² = sqrt(l² - y²) (y - R s - 2 y c²) Ω²/g + c (R y + (l² - 2 y²) s) Ω²/g; the right one has y on the left.
     case = Case.of_scene(PARIS)
-    ctx, cord, s, c, R = case.ctx, case.length, case.sin, case.cos, case.axis_distance
+    ctx, cord, s, c, R = case.ctx, case.length, case.k.sin, case.k.cos, case.axis_distance
 
     def right_side(y):
         inner = ctx.sqrt(cord**2 - y**2) * (y - R * s - 2 * y * c**2) + c * (R * y + (cord**2 - 2 * y**2) * s)
-        return inner * case.rate**2 / case.gravity
+        return inner * case.k.rate**2 / case.gravity
 
     rest = -cord * ctx.sin(APPROXIMATIONS["rest_equation"].value(PARIS))
     assert abs(right_side(rest) - rest) < 1e-50

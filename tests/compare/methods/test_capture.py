@@ -11,7 +11,7 @@ import pytest
 import reference
 from compare import assert_agrees, study
 from compare.methods import METHODS, available, library
-from compare.methods.library import captured
+from compare.methods.library import captured, quoted
 from compare.methods.rhs.problem import Problem
 from reference.scenes.fields import LEVELS
 
@@ -44,7 +44,7 @@ def test_what_is_written_is_captured_and_quoted_on_one_line(capfd, own_process):
         os.write(1, b"a step\n")
         os.write(2, b"failed\n")
     os.write(1, b"after\n")
-    assert output.words() == "a step failed"
+    assert quoted(output) == "a step failed"
     assert capfd.readouterr().out == "after\n"
 
 
@@ -53,7 +53,7 @@ def test_threads_that_capture_at_once_give_the_descriptors_back(capfd, own_proce
         for _ in range(50):
             with captured(1) as output:
                 os.write(1, b"quiet\n")
-            assert output.data == b"quiet\n"
+            assert output == b"quiet\n"
 
     threads = [threading.Thread(target=capture) for _ in range(4)]
     for thread in threads:

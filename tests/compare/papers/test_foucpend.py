@@ -18,7 +18,7 @@ from compare.candidates.read import read_stream
 from compare.commands.papers import pend as command
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
-from compare.papers.foucpend import Options, SiteFrame, Transits, lines, parabola_zero
+from compare.papers.foucpend import Options, Transits, lines, parabola_zero, snapshots_of
 from compare.papers.foucpend_options import DEFAULTS
 from compare.papers.points import paris
 from reference import InputError, IntegrationError, load, load_scene
@@ -49,7 +49,7 @@ def test_the_defaults_are_the_paper_s() -> None:
     for name in ("length", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening"):
         assert getattr(inputs, name) == getattr(exact, name)
     assert inputs.position == (0, 0, 0, 0)
-    assert (options.method, options.bits, options.skip, options.steps) == ("rk4", 0, 1, 864000)
+    assert (options.order, options.bits, options.skip, options.steps) == ("4", 0, 1, 864000)
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_the_columns_are_what_their_definitions_say() -> None:
     p = paris()
     state = np.array([[0.3, 0.4, float(p.z), 0.01, -0.02, 0.03]])
     t = 5000.0
-    (row,) = SiteFrame(load_scene("paris")).snapshots(np.array([t]), state)
+    (row,) = snapshots_of(load_scene("paris"), np.array([t]), state)
     assert row[4:7] == pytest.approx([float(part) for part in place(p, p.position, t)], rel=1e-15)
     assert row[7] == pytest.approx(float(degrees(np.arcsin(0.5 / 67))), rel=1e-12)
     assert row[8] == pytest.approx(float(np.degrees(np.arctan2(0.4, 0.3))))

@@ -6,6 +6,7 @@ import base64
 import csv
 import json
 import re
+import sys
 import xml.etree.ElementTree as ET
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -93,15 +94,6 @@ def test_what_stands_in_a_row_cannot_break_the_page() -> None:
 
 
 def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    import builtins
-
-    imported = builtins.__import__
-
-    def refusing(name: str, *arguments: object, **more: object) -> object:
-        if name == "matplotlib":
-            raise ImportError(name)
-        return imported(name, *arguments, **more)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(builtins, "__import__", refusing)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(InputError, match=r"foucault-reference\[plot\]"):
         figures.svg(1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
 import json
 import os
 import re
@@ -187,10 +186,7 @@ def test_a_study_in_which_everything_failed_still_has_a_page():
 
 
 def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
-    real = importlib.util.find_spec
-    monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
-    )
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
     html = study_page.page_text(study_document())
     assert "<svg" not in html
     assert "foucault-reference[plot]" in html

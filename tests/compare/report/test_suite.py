@@ -52,9 +52,9 @@ def folder(tmp_path_factory):
 
 def test_the_files_of_a_suite_are_named_by_their_scenes(folder):
     found = suite_files(folder)
-    assert [one.candidate.name for one in found] == ["bad.csv", "paris.npz", "wrong.csv"]
-    assert [one.scene for one in found] == [str(folder / "bad.toml"), "paris", str(folder / "wrong.toml")]
-    assert [one.transits and one.transits.name for one in found] == [None, "paris.transits.csv", None]
+    assert [candidate.name for candidate, _ in found.values()] == ["bad.csv", "paris.npz", "wrong.csv"]
+    assert list(found) == [str(folder / "bad.toml"), "paris", str(folder / "wrong.toml")]
+    assert [transits and transits.name for _, transits in found.values()] == [None, "paris.transits.csv", None]
 
 
 def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):

@@ -73,7 +73,7 @@ def test_an_exact_zero_drops_out_but_a_double_zero_does_not():
 
 
 def test_fractions_become_the_nearest_double():
-    assert "0.3333333333333333 " in record(lambda s, _: (Fraction(1, 3) * s[0],), ["a"]).source("f")
+    assert "* 0.3333333333333333\n" in record(lambda s, _: (Fraction(1, 3) * s[0],), ["a"]).source("f")
 
 
 @pytest.mark.parametrize(
