@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -117,13 +116,11 @@ def _sought(wanted: Wanted) -> tuple[int, ...]:
     return tuple(kind for kind, sought in is_sought.items() if sought)
 
 
-def prepare(wanted: Wanted, drag: bool, tolerance: float) -> float:
-    """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
-    started = time.thread_time()
+def prepare(wanted: Wanted, tolerance: float) -> None:
+    """Compile what such rows without drag need in the calling thread."""
     for sought in {_sought(wanted), ()}:
-        with _lent(sought, wanted.form and bool(sought), drag, tolerance):
+        with _lent(sought, wanted.form and bool(sought), False, tolerance):
             pass
-    return time.thread_time() - started
 
 
 def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:

@@ -79,7 +79,7 @@ class Stepper:
         keep_on_disk(number)
         self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
         self.compile_s = time.process_time() - started
-        self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
+        self.order = int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
 
     @property

@@ -36,7 +36,6 @@ ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since ev
 POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
 SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
-PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
 
 
 def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: int) -> tuple[Counts, Array]:
@@ -47,12 +46,9 @@ def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: i
     bits = fraction_bits(limb_count)
     parts = [divmod(t.numerator * grain.denominator, t.denominator * grain.numerator) for t in times]
     whole = np.array([top for top, _ in parts], dtype=np.int64)
-    limbs = np.zeros((len(times), limb_count))
-    broken = [i for i, (_, remainder) in enumerate(parts) if remainder]
-    if broken:
-        remainders = [(parts[i][1] << bits) // (times[i].denominator * grain.numerator) for i in broken]
-        limbs[broken] = split(remainders, limb_count)
-    return whole, limbs.ravel()
+    pairs = zip(times, parts, strict=True)
+    remainders = [(remainder << bits) // (t.denominator * grain.numerator) for t, (_, remainder) in pairs]
+    return whole, split(remainders, limb_count).ravel()
 
 
 class Integration:
@@ -233,7 +229,6 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
         directions=signs,
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
-        terms=PRODUCTS_WITH_DRAG if problem.model.drag else PRODUCTS,
         compile_s=integration.compile_s,
         cpu_s=time.process_time() - cpu_start,
     )
