@@ -175,6 +175,7 @@ class Batch(OptionalEngine, ABC):
 
     Attributes:
         drag: whether it solves rows with drag.
+        lanes: rows that it solves at a time.
         swing_s: CPU seconds of a default row over the period of a small swing.
         section_work: over that, what a section adds: a gate or a turn; highest or lowest points.
         load_s: CPU seconds of loading what is kept on disk.
@@ -183,6 +184,7 @@ class Batch(OptionalEngine, ABC):
     """
 
     drag: ClassVar[bool]
+    lanes: ClassVar[int] = 8
     swing_s: ClassVar[float]
     section_work: ClassVar[tuple[float, float]]
     load_s: ClassVar[float] = 0.0

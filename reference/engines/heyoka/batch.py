@@ -17,6 +17,7 @@ class HeyokaBatch(Batch):
     requires = ("heyoka",)
     extra = ""
     drag = True
+    lanes = 1
     swing_s = 2.2e-5
     section_work = (0.7, 0.7)
     compile_s = (0.4, 0.1)
