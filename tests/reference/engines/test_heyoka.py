@@ -12,7 +12,7 @@ from small_scenes import make_scene, model_at, stepper_of
 import reference.engines.heyoka.run as module
 from reference.engines.heyoka import stepper as stepper_module
 from reference.engines.heyoka import system
-from reference.engines.heyoka.system import System, equations_text
+from reference.engines.heyoka.system import equations_text, system_of
 from reference.engines.plan import Plan
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
@@ -98,7 +98,7 @@ def test_drag_is_in_the_equations_when_the_scene_has_it():
 def test_no_python_float_stands_in_a_real_system(paris):
     """A float is a double for ever; every constant of the compiled lines must carry the run's digits."""
     stepper = stepper_of(paris, real(200))
-    lines = System.build(FORMULATIONS["momentum"], stepper.model.k).equations
+    lines = system_of(FORMULATIONS["momentum"], stepper.model.k)[0]
     numbers = [word.strip("()-") for _, rate in lines for word in str(rate).split()]
     constants = [word for word in numbers if word[:1].isdigit()]
     assert constants
