@@ -7,10 +7,9 @@ bit for bit, whatever rows stand beside it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from operator import itemgetter
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -157,16 +156,13 @@ class Outcomes:
             columns[name] = np.zeros(0, kind)
         return cls(**columns)
 
-    def with_transits(self, transits: Iterable[tuple[int, Array, Array]]) -> Self:
-        """Return the same with transits: of each row its number, their times and their directions."""
-        ordered = sorted(transits, key=itemgetter(0))
-        if not ordered:
-            return self
+    def with_transits(self, times: Sequence[Array], directions: Sequence[Array]) -> Self:
+        """Return the same with transits: their times and their directions, row by row."""
         return replace(
             self,
-            transit_row=np.repeat([row for row, _, _ in ordered], [len(times) for _, times, _ in ordered]),
-            transit_t=np.concatenate([times for _, times, _ in ordered]),
-            transit_direction=np.concatenate([directions for *_, directions in ordered]).astype(np.int8),
+            transit_row=np.repeat(np.arange(len(times)), np.fromiter(map(len, times), np.int64)),
+            transit_t=np.concatenate([np.zeros(0), *times]),
+            transit_direction=np.concatenate([np.zeros(0), *directions]).astype(np.int8),
         )
 
 

@@ -129,17 +129,18 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
     numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
     numbers, drags = moved(numbers, wanted.moved), moved(rows.drag[:, 0], wanted.moved)
     forms = axes.forms(rows).T if wanted.form else [XDOT] * len(rows)
-    listed: list[tuple[int, Array, Array]] = []
+    found: list[RowZeros] = []
     with np.errstate(all="ignore"):
         for row in range(len(rows)):
             n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
             k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
             state = [*n, *np.cross(n, V)]
             release = RowRelease.of(rows, axes, row, RowMotion.of(state, k), forms[row])
-            transits = _solve(outcomes, row, release, k, state, wanted, tolerance)
-            listed.append((row, transits.times, transits.directions))
+            found.append(_solve(outcomes, row, release, k, state, wanted, tolerance))
         _turn_back(outcomes, rows, axes)
-    return outcomes.with_transits(listed if wanted.times else [])
+    if not wanted.times:
+        return outcomes
+    return outcomes.with_transits([zeros.times for zeros in found], [zeros.directions for zeros in found])
 
 
 def _solve(
