@@ -65,6 +65,10 @@ class Table(Framed):
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
+        return self.array(name)
+
+    def array(self, name: str) -> Array:
+        """Return a column as the nearest doubles, shape (rows,)."""
         i, unit = self._place(name), 1 << self.bits
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
 
@@ -74,7 +78,7 @@ class Table(Framed):
         Raises:
             InputError: pandas is not installed.
         """
-        return data_frame({name: self[name] for name in self.columns})
+        return data_frame({name: self.array(name) for name in self.columns})
 
     def exact(self, name: str) -> list[Fraction]:
         """Return the values of a column, exactly as computed."""

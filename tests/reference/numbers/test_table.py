@@ -46,7 +46,7 @@ def test_the_distance_of_two_tables_is_that_of_their_fractions(rows, bits, other
 
 def test_a_column_is_given_as_doubles_in_two_ways():
     columns = table([(256, 1), (-128, 2)])
-    assert columns["x"].tolist() == [1.0, -0.5]
+    assert columns["x"].tolist() == columns.array("x").tolist() == [1.0, -0.5]
 
 
 def test_columns_are_taken_by_name_whatever_their_order():
