@@ -21,11 +21,8 @@ GROUPS = {
 SELDOM = 100_000  # objects made between two searches for garbage: imports make many, and leave none
 
 
-def commands(word: str = "") -> typer.Typer:
-    """Return the command line; all imports are here, so that an interruption finds `main` at work.
-
-    If `word` is one of the commands, it alone is there: reading the options of all takes as long as many a command.
-    """
+def commands() -> typer.Typer:
+    """Return the command line; all imports are here, so that an interruption finds `main` at work."""
     import typer
     from typer.core import TyperGroup
 
@@ -58,11 +55,8 @@ def commands(word: str = "") -> typer.Typer:
         rich_markup_mode=None,
         context_settings={"help_option_names": ["--help", "-h"], "max_content_width": 110},
     )
-    alone = any(word in names for names in GROUPS.values())
     for part in (computing, comparing):
-        few = typer.Typer(rich_markup_mode=None)
-        few.registered_commands = [one for one in part.registered_commands if one.name == word or not alone]
-        app.add_typer(few)
+        app.add_typer(part)
 
     version_option = typer.Option(
         False, "--version", callback=_version, is_eager=True, help="Print the versions of code and data and exit."
@@ -115,7 +109,7 @@ def _run() -> None:
     try:
         with plain_output(), terminable() as signals:
             try:
-                commands(next(iter(sys.argv[1:]), ""))(prog_name="foucault")
+                commands()(prog_name="foucault")
             finally:
                 sys.stdout.flush()
     except SystemExit as end:

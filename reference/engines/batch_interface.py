@@ -7,18 +7,16 @@ bit for bit, whatever rows stand beside it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from operator import itemgetter
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from ..model.constants import Constants
 from ..numbers.double_double import DoubleDouble, square_root
 from ..numbers.precision import Array
-from ..system.imports import missing, switched_off
+from ..system.imports import OptionalEngine
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
@@ -67,27 +65,10 @@ class Rows:
         return len(self.length)
 
     @cached_property
-    def k(self) -> Constants:
-        """The constants in double, arrays of shape (n,)."""
-        (_, north, up), (_, south, down) = self.turn[..., 0].T, self.pull[..., 0].T
-        return Constants(
-            length=self.length[:, 0],
-            turn=(0, north, up),
-            pull=(0, south, down),
-            centrifugal=(north * north + up * up, up * up, -north * up, north * north),
-            drag=self.drag[:, 0],
-        )
-
-    @cached_property
     def rate(self) -> Array:
         """Angular frequency √|c| of a small swing, in rad/s."""
         rate: Array = np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1))
         return rate
-
-    @property
-    def swings(self) -> Array:
-        """Length of the span in periods 2π/√|c| of a small swing."""
-        return self.t_end[:, 0] * self.rate / (2 * np.pi)
 
     @classmethod
     def joined(cls, blocks: Sequence[Self]) -> Self:
@@ -175,26 +156,20 @@ class Outcomes:
             columns[name] = np.zeros(0, kind)
         return cls(**columns)
 
-    def with_transits(self, transits: Iterable[tuple[int, Array, Array]]) -> Self:
-        """Return the same with transits: of each row its number, their times and their directions."""
-        ordered = sorted(transits, key=itemgetter(0))
-        if not ordered:
-            return self
+    def with_transits(self, times: Sequence[Array], directions: Sequence[Array]) -> Self:
+        """Return the same with transits: their times and their directions, row by row."""
         return replace(
             self,
-            transit_row=np.repeat([row for row, _, _ in ordered], [len(times) for _, times, _ in ordered]),
-            transit_t=np.concatenate([times for _, times, _ in ordered]),
-            transit_direction=np.concatenate([directions for *_, directions in ordered]).astype(np.int8),
+            transit_row=np.repeat(np.arange(len(times)), np.fromiter(map(len, times), np.int64)),
+            transit_t=np.concatenate([np.zeros(0), *times]),
+            transit_direction=np.concatenate([np.zeros(0), *directions]).astype(np.int8),
         )
 
 
-class Batch(ABC):
+class Batch(OptionalEngine, ABC):
     """An engine that solves many rows in double.
 
     Attributes:
-        name: the name of its folder.
-        requires: modules that must be installed.
-        extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
         drag: whether it solves rows with drag.
         lanes: rows that it solves at a time.
         swing_s: CPU seconds of a default row over the period of a small swing.
@@ -204,9 +179,6 @@ class Batch(ABC):
         identity: what decides its digits beside the rows: orders, tolerance, versions of what it computes with.
     """
 
-    name: ClassVar[str]
-    requires: ClassVar[tuple[str, ...]]
-    extra: ClassVar[str]
     drag: ClassVar[bool]
     lanes: ClassVar[int] = 8
     swing_s: ClassVar[float]
@@ -215,18 +187,13 @@ class Batch(ABC):
     compile_s: ClassVar[tuple[float, float]]
 
     @property
-    def installed(self) -> bool:
-        """Whether the modules that it requires are installed, and may compile."""
-        return not missing(self.requires) and not switched_off(self.requires)
-
-    @property
     @abstractmethod
     def identity(self) -> str:
         """All that decides the digits, as one line: name, orders, tolerance, versions."""
 
     @abstractmethod
-    def prepare(self, wanted: Wanted, drag: bool) -> float:
-        """Compile what these rows need, where it is not done yet; return the CPU seconds that it took."""
+    def prepare(self, wanted: Wanted) -> None:
+        """Compile what such rows without drag need, where it is not done yet."""
 
     @abstractmethod
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:

@@ -21,7 +21,7 @@ from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, NumberType, real
 from ..numbers.table import Table
 from ..numbers.taylor_step import TaylorStep
 from ..scenes.inputs import Inputs
-from ..system.imports import missing, switched_off
+from ..system.imports import OptionalEngine
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s
 Pace = Callable[[int, float], None]  # called with the steps taken and the time reached; raises to end a run
@@ -66,7 +66,6 @@ class Run:
         directions: sign of each crossing of xdot.
         order: order of the Taylor polynomials.
         steps: number of steps.
-        terms: elementary operations in the compiled Taylor decomposition.
         compile_s: CPU seconds of compiling.
         cpu_s: CPU seconds of the run without compiling.
         passages: of each section `columns.SECTION` at each passage, and the signs of the crossings.
@@ -78,7 +77,6 @@ class Run:
     directions: list[int] = field(repr=False)
     order: int
     steps: int
-    terms: int
     compile_s: float
     cpu_s: float
     passages: dict[str, tuple[Table, list[int]]] = field(default_factory=dict, repr=False)
@@ -91,31 +89,20 @@ class Run:
         return float(np.min(tension((x, y, z), (vx, vy, vz), k)))
 
 
-class Engine(ABC):
+class Engine(OptionalEngine, ABC):
     """An integrator of the model that finds the zeros of xdot, in number types of its own.
 
     Attributes:
-        name: its name on the command line and in datasets.
         formulation: the formulation that suits it best; not `space` or `spin`, in which heyoka confirms other runs.
-        requires: modules that must be installed.
-        extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
         bits: lowest and highest precision that it is chosen for.
         own_process: whether a proof has it compute in a child process; else it costs too little for that.
         start_s: CPU seconds until its first step: of importing what it requires and of loading what it has compiled.
     """
 
-    name: ClassVar[str]
     formulation: ClassVar[str]
-    requires: ClassVar[tuple[str, ...]]
-    extra: ClassVar[str]
     bits: ClassVar[range]
     own_process: ClassVar[bool]
     start_s: ClassVar[float]
-
-    @property
-    def installed(self) -> bool:
-        """Whether the modules that it requires are installed, and may compile."""
-        return not missing(self.requires) and not switched_off(self.requires)
 
     @abstractmethod
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:

@@ -14,7 +14,6 @@ from time import process_time
 from typing import Any
 
 from ..errors import FoucaultError, InputError
-from ..system.imports import switched_off
 from ..system.workers import Emit, Worker, usable_cores
 from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
@@ -49,13 +48,7 @@ def checked(name: str | None) -> str:
         return AUTO
     if name not in engine_names():
         raise InputError("engine", name, f"one of {', '.join((AUTO, *engine_names()))}")
-    engine = engines()[name]
-    variable = switched_off(engine.requires)
-    if variable is not None:
-        raise InputError("--engine", name, f"{variable} unset", "Unset it. The engine heyoka does without.")
-    if not engine.installed:
-        advice = f"Install it with pip install 'foucault-reference[{engine.extra}]'. The engine heyoka does without."
-        raise InputError("--engine", name, f"the package {', '.join(engine.requires)}, which it needs", advice)
+    engines()[name].check_installed()
     return name
 
 

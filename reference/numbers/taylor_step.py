@@ -30,10 +30,15 @@ class Digits(Sequence[list[int]]):
 
     def __getitem__(self, row: Any) -> Any:
         """Return the integers of a row."""
-        high, *low = self.table[row].astype(object)
-        for digit in low:
-            high = (high << DIGIT_BITS) + digit
-        return high.tolist()
+        return whole(self.table[row]).tolist()
+
+
+def whole(digits: npt.NDArray[Any]) -> Any:
+    """Return integers, as objects, from arrays of their digits of radix 2^22, highest first."""
+    total, *low = digits.astype(object)
+    for digit in low:
+        total = (total << DIGIT_BITS) + digit
+    return total
 
 
 class TaylorStep(NamedTuple):

@@ -19,7 +19,7 @@ from pydantic import AfterValidator, TypeAdapter, ValidationError
 from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
-from .inputs import Inputs, Line, Refused, Widths, as_read, explained
+from .inputs import RELEASES, SITE, Inputs, Line, Refused, Widths, as_read, explained
 from .shipped import data_root, scene_ids
 
 MAX_ROWS = 2_000_000
@@ -65,25 +65,18 @@ class Scene(SceneTable):
         def read(text: str | None) -> Fraction:
             return as_read(text or "0", self.inputs)
 
-        site, release = self.site, self.release
-        inverse = site.inverse_flattening
-        cartesian = release.angle is None
-        position = read(release.x), read(release.y), read(release.vx), read(release.vy)
-        angles = read(release.angle), read(release.azimuth), read(release.angle_rate), read(release.azimuth_rate)
+        inverse, kind = self.site.inverse_flattening, "position" if self.release.angle is None else "angles"
+        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE}
+        numbers |= {"position": None, "angles": None}
+        numbers[kind] = tuple(read(getattr(self.release, name)) for name in RELEASES[kind])
         return Inputs(
             length=read(self.pendulum.length),
             drag=read(self.pendulum.drag),
-            latitude=read(site.latitude),
-            altitude=read(site.altitude),
-            gravity=read(site.gravity),
-            rotation_rate=read(site.rotation_rate),
-            equatorial_radius=read(site.equatorial_radius),
             flattening=Fraction(0) if inverse == "inf" else 1 / read(inverse),
-            position=position if cartesian else None,
-            angles=None if cartesian else angles,
             t_end=read(self.run.t_end),
             grid_step=read(self.run.grid_step),
-            gravity_is=site.gravity_is,
+            gravity_is=self.site.gravity_is,
+            **numbers,
         )
 
     def with_values(self, values: Words) -> Scene:

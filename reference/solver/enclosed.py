@@ -27,7 +27,7 @@ from .agreement import bits_lacking, passages_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, guarded, proved
-from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, transit_decimals
+from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, tables_of, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
@@ -93,15 +93,9 @@ def audited(solution: Solution, digits: Any) -> Solution:
 
 def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
-    tables = [solution.grid.printed(grid_decimals(solution))]
-    if solution.zeros is not None:
-        tables.append(solution.zeros.printed(transit_decimals(solution)))
-    signs, possible = [solution.directions], [solution.possible]
-    for passages in solution.sections.values():
-        tables.append(passages.table.printed(section_decimals(solution)))
-        signs.append(passages.directions)
-        possible.append(passages.possible)
-    return tables, signs, [[parity for *_, parity in part] for part in possible]
+    tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
+    found = [(part.directions, [parity for *_, parity in part.possible]) for part in solution.sections.values()]
+    return tables, [(solution.directions, [parity for *_, parity in solution.possible]), *found]
 
 
 def _send_digits(emit: Emit, problem: ProofTask) -> None:

@@ -24,7 +24,7 @@ from .agreement import with_passage_errors
 from .choice import first_radius, late_radius, second_order_bits
 from .pilot import ESTIMATE_FACTOR, Pilot
 from .proof_steps import COEFFICIENT_BITS, EngineChanged, Feed
-from .solution import CrossCheck, Passages, Proof, Solution, Source, UndecidedRounding, check_decided
+from .solution import CrossCheck, Passages, Proof, Solution, Source, UndecidedRounding, check_decided, separated
 
 ROUNDING_TRIES = 8  # radii that are tried before giving up
 FINER = 2**16  # the next radius is smaller by this factor at least,
@@ -135,10 +135,8 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
 
 def _passages(zeros: Any, columns: tuple[str, ...], end: Fraction, bits: int) -> Passages:
     """Return zeros as a table; they lie in (0, end], and the ball of a cluster may be a little wider."""
-    ones, others = ([z for z in zeros if (z.kind == "one") is single] for single in (True, False))
-    table = Table.of_intervals(columns, [[getattr(z, name) for name in columns] for z in ones], bits)
-    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
-    return Passages(table, [z.direction for z in ones], possible)
+    rows, directions, possible = separated(zeros, columns, end)
+    return Passages(Table.of_intervals(columns, rows, bits), directions, possible)
 
 
 def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:

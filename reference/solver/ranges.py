@@ -14,6 +14,7 @@ from ..errors import InputError, unknown
 from ..numbers.columns import GRID, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
+from .solution import Undecided, separated
 from .swing import HOUR, Swing, swing_of
 
 
@@ -74,17 +75,13 @@ class ZeroRanges:
 
     table: Intervals
     directions: list[int] = field(repr=False)
-    possible: tuple[tuple[Fraction, Fraction, str], ...]
+    possible: Undecided
 
     @classmethod
     def of(cls, found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> ZeroRanges:
         """Return what a proof found up to `end`."""
-        ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
-        return cls(
-            Intervals(columns, tuple(tuple(getattr(z, name) for name in columns) for z in ones)),
-            [z.direction for z in ones],
-            tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others),
-        )
+        rows, directions, possible = separated(found, columns, end)
+        return cls(Intervals(columns, tuple(rows)), directions, possible)
 
 
 class Derivative(NamedTuple):
@@ -127,7 +124,7 @@ class Ranges:
     grid: Intervals
     transits: Intervals
     directions: list[int] = field(repr=False)
-    possible: tuple[tuple[Fraction, Fraction, str], ...]
+    possible: Undecided
     engine: str
     sections: Mapping[str, ZeroRanges] = field(default_factory=dict, repr=False)
     proof: Any = field(default=None, repr=False)

@@ -5,7 +5,7 @@ The decimals follow from the bounds, and so does whether a proof decides each di
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -23,6 +23,7 @@ from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
 from .swing import Swing, swing_of
 
+Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
 SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
 
@@ -111,7 +112,7 @@ class Passages:
 
     table: Table = field(repr=False)
     directions: list[int]
-    possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
+    possible: Undecided = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -149,7 +150,7 @@ class Solution(GridColumns):
     checks: tuple[CrossCheck, ...]
     pilot_s: float
     proof: Proof | None = None
-    possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
+    possible: Undecided = ()
     guard: CrossCheck | None = None
     not_checked: str = ""
     sections: Mapping[str, Passages] = field(default_factory=dict, repr=False)
@@ -228,12 +229,24 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
     return digits
 
 
-def check_decided(solution: Solution) -> None:
-    """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit."""
-    tables: list[tuple[Table, dict[str, int]]] = [(solution.grid, grid_decimals(solution))]
+def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
+    """Return the tables of grid, transits and sections, each with the digits after the point of its columns."""
+    tables = [(solution.grid, grid_decimals(solution))]
     if solution.zeros is not None:
         tables.append((solution.zeros, transit_decimals(solution)))
-    tables += [(passages.table, section_decimals(solution)) for passages in solution.sections.values()]
+    return tables + [(passages.table, section_decimals(solution)) for passages in solution.sections.values()]
+
+
+def separated(found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> tuple[list[Any], list[int], Undecided]:
+    """Return of what a proof found up to `end` the rows of single zeros, their directions, and what it left open."""
+    ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
+    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
+    return [tuple(getattr(z, name) for name in columns) for z in ones], [z.direction for z in ones], possible
+
+
+def check_decided(solution: Solution) -> None:
+    """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit."""
+    tables = tables_of(solution)
     undecided = [number for table, decimals in tables if (number := table.undecided(decimals)) is not None]
     if undecided:
         raise UndecidedRounding(*max(undecided))

@@ -173,7 +173,7 @@ def prepared(request: Request) -> float:
     started = time.thread_time()
     engine = batches()[request.engine]
     for wanted in (request.wanted, MOVED, *([PASSAGES] if request.sections else [])):
-        engine.prepare(wanted, drag=False)
+        engine.prepare(wanted)
     return time.thread_time() - started
 
 

@@ -285,8 +285,5 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
         return min(can, key=expected_s)
     if name not in engines:
         raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
-    if not engines[name].installed:
-        needed = ", ".join(engines[name].requires)
-        advice = f"Install it with pip install 'foucault-reference[{engines[name].extra}]'."
-        raise InputError("--engine", name, f"the package {needed}, which it needs", advice)
+    engines[name].check_installed()
     return engines[name]

@@ -28,7 +28,6 @@ Columns = Mapping[str, DoubleDouble]
 
 SITE = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
 POSITION, ANGLES = RELEASES.values()
-_AT_ONCE = 8192  # rows whose working arrays fit into a processor's cache
 _NEARLY = 1e-9
 _SAME = 2.0**-94  # of the parts of a sum: if it is less, it is zero
 _NEWTON_STEPS, _CLOSE = 8, 2.0**-94  # to a rest position, in rad: the last step is at most as long
@@ -94,20 +93,6 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
         count: how many rows.
         section: as in `engine_rows`.
     """
-    blocks = []
-    for first in range(0, count, _AT_ONCE):
-        size = min(_AT_ONCE, count - first)
-        rows = slice(first, first + size)
-        block = {
-            name: value if len(value.high) == 1 else DoubleDouble(value.high[rows], value.low[rows])
-            for name, value in columns.items()
-        }
-        blocks.append(_of_block(block, gravity_is, size, section))
-    return Rows.joined(blocks)
-
-
-def _of_block(columns: Columns, gravity_is: GravityIs, count: int, section: str) -> Rows:
-    """Return the constants and releases of a few rows."""
     length, rate = columns["length"], columns["rotation_rate"]
     sin, cos = sine_and_cosine(columns["latitude"])
     distance = _ZERO

@@ -62,7 +62,7 @@ class Store:
             clear(folder / kind)  # a part that is there is not written again, which would clear it
         clear(folder)
         if not (folder / PLAN).exists():
-            _write_json(folder / PLAN, {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()})
+            write_json(folder / PLAN, {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()})
         return store
 
     @classmethod
@@ -146,29 +146,20 @@ class Store:
         data = parquet(columns, values, self._named(part, kind))
         replace_file(self.path(part, kind), lambda stream: stream.write(data))
 
-    def read(self, names: Iterable[str] | None = None, kind: str = ROWS) -> dict[str, Any]:
-        """Return columns of the whole sweep as arrays, all if no names are given.
+    def read(
+        self, names: list[str] | None = None, kind: str = ROWS, parts: Iterable[int] | None = None
+    ) -> dict[str, Any]:
+        """Return columns of some parts as arrays, one below the other: all columns and parts if none are named.
 
         Raises:
             InputError: a part was damaged or lost since its seal was checked.
         """
-        chosen = list(names) if names is not None else None
-        return self._arrays([self.path(part, kind) for part in range(self.request.parts)], chosen)
-
-    def read_part(self, part: int, names: Iterable[str] | None = None) -> dict[str, Any]:
-        """Return columns of one part as arrays, all if no names are given; errors as of `read`."""
-        return self._arrays([self.path(part)], list(names) if names is not None else None)
-
-    def _arrays(self, paths: list[Path], names: list[str] | None = None) -> dict[str, Any]:
+        chosen = range(self.request.parts) if parts is None else parts
         try:
-            return arrays(paths, names)
+            return arrays([self.path(part, kind) for part in chosen], names)
         except OSError as error:
             advice = f"{error.strerror or error}. Go on with `foucault sweep --out {self.folder}`."
             raise InputError("sweep", str(self.folder), "parts as they were written", advice) from None
-
-    def summarize(self, document: dict[str, Any]) -> None:
-        """Write what became of the sweep."""
-        _write_json(self.folder / SUMMARY, document)
 
 
 def _foreign(path: Path) -> bool:
@@ -176,6 +167,7 @@ def _foreign(path: Path) -> bool:
     return path.name not in (ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
 
 
-def _write_json(path: Path, document: dict[str, Any]) -> None:
+def write_json(path: Path, document: dict[str, Any]) -> None:
+    """Write a document of a sweep, whole or not at all."""
     data = (plain_json(document) + "\n").encode()
     replace_file(path, lambda stream: stream.write(data))

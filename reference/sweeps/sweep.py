@@ -26,7 +26,7 @@ from .driver import Executor, drive, on_this_machine
 from .part import Part, Tally
 from .promote import Audit, audited
 from .request import Request, request
-from .store import PLAN, TRANSITS, Store
+from .store import PLAN, SUMMARY, TRANSITS, Store, write_json
 
 MOST_IN_MEMORY = 100_000  # rows
 PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
@@ -93,7 +93,7 @@ class Swept(Framed):
             yield self["status"]
             return
         for part in range(self.request.parts):
-            yield self.store.read_part(part, ["status"])["status"]
+            yield self.store.read(["status"], parts=[part])["status"]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -259,14 +259,13 @@ def run(
         compile_s = executor.compile_s
     audit, audit_from = None, time.process_time()
     if asked.audit:
-        read = store.read_part if store is not None else lambda part: in_memory[part].columns
-        audit = audited(asked, read)
+        audit = audited(asked, lambda part: store.read(parts=[part]) if store else in_memory[part].columns)
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
     audit_s, wall_s = time.process_time() - audit_from, time.perf_counter() - started
     swept = Swept(asked, store, solved, tally, audit, compile_s, audit_s, wall_s)
     if store is not None:
         document = asdict(audit) if audit is not None else None
-        store.summarize({"rows": len(swept), "counts": swept.counts, "audit": document})
+        write_json(store.folder / SUMMARY, {"rows": len(swept), "counts": swept.counts, "audit": document})
     return swept
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections import UserDict
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from importlib import import_module
 from importlib.util import find_spec
 from pkgutil import iter_modules
-from typing import Any, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 from ..errors import InputError, no_attribute, unknown
 
@@ -46,7 +47,7 @@ class Declaration(Protocol):
 D = TypeVar("D", bound=Declaration)
 
 
-class Registry(Mapping[str, D]):
+class Registry(UserDict[str, D]):
     """Declarations by id, in the order of `group`, then of the files' names, then as they stand in the file.
 
     Args:
@@ -60,7 +61,8 @@ class Registry(Mapping[str, D]):
         self._package, self._variable, self._what, self._group = package, variable, what, group
 
     @cached_property
-    def _by_id(self) -> dict[str, D]:
+    def data(self) -> dict[str, D]:  # type: ignore[override]
+        """The declarations, imported at the first look."""
         names = sorted(module.name for module in iter_modules(import_module(self._package).__path__))
         modules = [import_module(f"{self._package}.{name}") for name in names]
         declared: list[D] = [entry for module in modules for entry in getattr(module, self._variable, ())]
@@ -69,26 +71,10 @@ class Registry(Mapping[str, D]):
             raise ValueError(f"two files of {self._package} declare the same id")
         return by_id
 
-    def __getitem__(self, word: str) -> D:
-        if word not in self._by_id:
-            article = "an" if self._what[0] in "aeiou" else "a"
-            raise unknown(
-                self._what, word, f"the id of {article} {self._what}", self._by_id, "`foucault methods` lists them."
-            )
-        return self._by_id[word]
-
-    def get(self, word: str, default: Any = None) -> Any:
-        """Return a declaration, or the default where there is none of that id."""
-        return self._by_id.get(word, default)
-
-    def __contains__(self, word: object) -> bool:
-        return word in self._by_id
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._by_id)
-
-    def __len__(self) -> int:
-        return len(self._by_id)
+    def __missing__(self, word: str) -> D:
+        article = "an" if self._what[0] in "aeiou" else "a"
+        expected = f"the id of {article} {self._what}"
+        raise unknown(self._what, word, expected, self.data, "`foucault methods` lists them.")
 
     def __repr__(self) -> str:
         return f"{len(self)} {self._what}s: {', '.join(self)}"
@@ -122,3 +108,34 @@ def _installed(module: str) -> bool:
     except ModuleNotFoundError:  # its parent package is missing
         return False
     return spec is not None and spec.origin is not None  # a folder without code has no origin
+
+
+class OptionalEngine:
+    """An engine that needs modules which an extra brings.
+
+    Attributes:
+        name: its name on the command line and in datasets: that of its folder.
+        requires: modules that must be installed.
+        extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
+    """
+
+    name: ClassVar[str]
+    requires: ClassVar[tuple[str, ...]]
+    extra: ClassVar[str]
+
+    @property
+    def installed(self) -> bool:
+        """Whether the modules that it requires are installed, and may compile."""
+        return not missing(self.requires) and not switched_off(self.requires)
+
+    def check_installed(self) -> None:
+        """Refuse it where it is not installed.
+
+        Raises:
+            InputError: it is not.
+        """
+        without = "The engine heyoka does without"
+        if variable := switched_off(self.requires):
+            raise InputError("--engine", self.name, f"{variable} unset", f"Unset it. {without}.")
+        for module in self.requires:
+            needed(module, self.extra, "--engine", self.name, "which it needs", f". {without}")

@@ -18,7 +18,7 @@ from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Manifest, differenc
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import ENGINE, OPTIONS, Making, bounds_of, command, completeness, following
 from ..render import derived_texts
-from ..sheets import NUMBERS, Sheet, by_field, exact
+from ..sheets import NUMBERS, Sheet, by_field
 
 PREC = 128  # bits; only exact zeros matter here
 SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
@@ -76,7 +76,7 @@ def _doubles(files: Files, kind: str) -> Iterator[str]:
         column = Fraction(0) if (kind, name) == ("grid", "t") else files.manifest.bound(kind, name)  # type: ignore[arg-type]
         for row, other in zip(plain.rows, doubles.rows, strict=True):
             bound = Fraction(row[-1]) if kind == "transits" and name == "t" else column
-            value, double = exact(row[i]), float(other[i])
+            value, double = Fraction(row[i]), float(other[i])
             if double.hex() != other[j] or not float(value - bound) <= double <= float(value + bound):
                 yield f"{kind}.binary64.csv: {name} = {other[i]} is not the double nearest to {row[i]}"
             elif f"{double:.16e}" != other[i]:

@@ -27,11 +27,11 @@ class HeyokaBatch(Batch):
         """Return version and tolerances."""
         return f"heyoka {version('heyoka')}, tolerances {TOLERANCE!r} and {MOVED_TOLERANCE!r}"
 
-    def prepare(self, wanted: Wanted, drag: bool) -> float:
+    def prepare(self, wanted: Wanted) -> None:
         """Compile what such rows need in the calling thread."""
         from .loop import prepare
 
-        return prepare(wanted, drag, _tolerance(wanted))
+        prepare(wanted, _tolerance(wanted))
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
         """Solve rows, one after the other."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -117,13 +116,11 @@ def _sought(wanted: Wanted) -> tuple[int, ...]:
     return tuple(kind for kind, sought in is_sought.items() if sought)
 
 
-def prepare(wanted: Wanted, drag: bool, tolerance: float) -> float:
-    """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
-    started = time.thread_time()
+def prepare(wanted: Wanted, tolerance: float) -> None:
+    """Compile what such rows without drag need in the calling thread."""
     for sought in {_sought(wanted), ()}:
-        with _lent(sought, wanted.form and bool(sought), drag, tolerance):
+        with _lent(sought, wanted.form and bool(sought), False, tolerance):
             pass
-    return time.thread_time() - started
 
 
 def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
@@ -132,17 +129,18 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
     numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
     numbers, drags = moved(numbers, wanted.moved), moved(rows.drag[:, 0], wanted.moved)
     forms = axes.forms(rows).T if wanted.form else [XDOT] * len(rows)
-    listed: list[tuple[int, Array, Array]] = []
+    found: list[RowZeros] = []
     with np.errstate(all="ignore"):
         for row in range(len(rows)):
             n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
             k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
             state = [*n, *np.cross(n, V)]
             release = RowRelease.of(rows, axes, row, RowMotion.of(state, k), forms[row])
-            transits = _solve(outcomes, row, release, k, state, wanted, tolerance)
-            listed.append((row, transits.times, transits.directions))
+            found.append(_solve(outcomes, row, release, k, state, wanted, tolerance))
         _turn_back(outcomes, rows, axes)
-    return outcomes.with_transits(listed if wanted.times else [])
+    if not wanted.times:
+        return outcomes
+    return outcomes.with_transits([zeros.times for zeros in found], [zeros.directions for zeros in found])
 
 
 def _solve(

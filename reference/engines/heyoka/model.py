@@ -53,7 +53,6 @@ class Numbers:
         self.dtype: Any
         self.type, self.dtype = _HARDWARE.get(number, (hy.real, hy.real))
         self.keywords: dict[str, Any] = {} if number.hardware else {"prec": number.prec}
-        self._twos: dict[int, Any] = {}
 
     def of(self, value: Any) -> Any:
         """Return the number of the type that is nearest to an mpf, int, Fraction or float."""
@@ -79,9 +78,7 @@ class Numbers:
 
     def power_of_two(self, exponent: int) -> Any:
         """Return 2**exponent, exactly."""
-        if exponent not in self._twos:
-            self._twos[exponent] = self.of(Fraction(2) ** exponent)
-        return self._twos[exponent]
+        return self.of(Fraction(2) ** exponent)
 
     def fixed(self, values: Any, bits: int) -> list[int]:
         """Return each number of an array as an integer over 2**bits, cut off towards zero."""

@@ -149,7 +149,6 @@ def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, 
         directions=[zero.direction for zero in zeros or ()],
         order=stepper.order,
         steps=stepper.steps,
-        terms=stepper.terms,
         compile_s=stepper.compile_s,
         cpu_s=time.process_time() - started,
     )

@@ -18,7 +18,7 @@ from ...model.start import Start
 from ...numbers.precision import NumberType
 from ..plan import Pace, Report
 from .model import RoundedModel
-from .system import System, keep_on_disk
+from .system import keep_on_disk, system_of
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
 SHORT_RUN = 2000  # span times rate of a run beyond long double that is too short for optimised code to pay
@@ -61,7 +61,7 @@ class Stepper:
         self.zeros: list[Zero] = []
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
-        system = System.build(formulation, self.model.k)
+        equations, xdot = system_of(formulation, self.model.k)
         keywords = dict(self.numbers.keywords)
         if span is not None and float(span) * start.rate < SHORT_RUN:
             keywords["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
@@ -72,14 +72,14 @@ class Stepper:
                 integrator.update_d_output(t)
                 zeros.append(Zero(t, int(direction), integrator.d_output.copy()))
 
-            event = hy.nt_event(system.xdot, callback=record, fp_type=self.numbers.type)
+            event = hy.nt_event(xdot, callback=record, fp_type=self.numbers.type)
             keywords["nt_events"] = [event]
         state = np.array(self.model.release(start), dtype=self.numbers.dtype)
         started = time.process_time()
         keep_on_disk(number)
-        self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
+        self._ta: Any = hy.taylor_adaptive(equations, state, fp_type=self.numbers.type, **keywords)
         self.compile_s = time.process_time() - started
-        self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
+        self.order = int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
 
     @property

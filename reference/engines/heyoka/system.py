@@ -6,7 +6,6 @@ heyoka's cache of machine code on disk is set here too.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -56,25 +55,14 @@ NAMES = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class System:
-    """Equations of motion as heyoka expressions.
+def system_of(formulation: Formulation, constants: Constants) -> tuple[list[tuple[Any, Any]], Any]:
+    """Return a formulation's equations as pairs of a variable and its rate, and xdot over l.
 
-    Attributes:
-        equations: pairs of a variable and its rate.
-        xdot: velocity of the x coordinate, over l.
+    They are heyoka expressions; `constants` are numbers of the run's type, or variables.
     """
-
-    equations: list[tuple[Any, Any]]
-    xdot: Any
-
-    @classmethod
-    def build(cls, formulation: Formulation, constants: Constants) -> System:
-        """Build the expressions of a formulation; `constants` are numbers of the run's type, or variables."""
-        state = hy.make_vars(*formulation.variables)
-        _, v = formulation.cartesian(state, constants, hy)
-        equations = as_pairs(state, rates(formulation, constants)(state, hy))
-        return cls(equations, v[0])
+    state = hy.make_vars(*formulation.variables)
+    _, v = formulation.cartesian(state, constants, hy)
+    return as_pairs(state, rates(formulation, constants)(state, hy)), v[0]
 
 
 def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:
@@ -108,7 +96,7 @@ def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
     """Return the lines "name' = …" that are compiled, constants by name, without exact zeros and constant variables."""
     named = Constants.of({name: hy.make_vars(NAMES[name]) for name in constants.entries()})
     constant = constant_variables(formulation, constants)
-    pairs = zip(formulation.variables, System.build(formulation, named).equations, strict=True)
+    pairs = zip(formulation.variables, system_of(formulation, named)[0], strict=True)
     return [f"{name}' = {rate}" for name, (_, rate) in pairs if name not in constant]
 
 

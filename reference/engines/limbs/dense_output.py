@@ -159,10 +159,8 @@ def sign_after_release(s: Series, multiplicity: int, limb_count: int) -> int:
     """Return the sign of xdot just after a release at which it has a zero of this multiplicity."""
     block = (multiplicity + 1) * limb_count * LANES
     for q in range(limb_count):
-        limb = s.c[block + LANES * q + X]
-        if limb != 0.0:
-            return 1 if limb > 0.0 else -1
-    return 0
+        s.scalar[q] = s.c[block + LANES * q + X]
+    return sign_of(s.scalar, limb_count)
 
 
 @compiled

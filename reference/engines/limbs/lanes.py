@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from functools import wraps
 from typing import Any, TypeVar
 
 import numba.extending
@@ -91,6 +92,19 @@ def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any)
     return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
 
 
+def lanewise(write: Callable[..., Any]) -> Any:
+    """Register `write(builder, *vectors)`, which makes eight doubles of one or more eights, as a compiled function."""
+
+    @wraps(write)
+    def typed(_: Any, *vectors: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return write(builder, *arguments)
+
+        return Lanes(*[Lanes] * len(vectors)), generate
+
+    return instruction(typed)
+
+
 @instruction
 def load(_: Any, array: Any, index: Any) -> Any:
     """Return eight elements of a flat array from `index` on."""
@@ -125,34 +139,22 @@ def spread(_: Any, value: Any) -> Any:
     return Lanes(types.float64), generate
 
 
-@instruction
-def plus_product(_: Any, total: Any, a: Any, b: Any) -> Any:
+@lanewise
+def plus_product(builder: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, where both operations are exact: the compiler may fuse them."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.fadd(arguments[0], builder.fmul(arguments[1], arguments[2], flags=FUSE), flags=FUSE)
-
-    return Lanes(Lanes, Lanes, Lanes), generate
+    return builder.fadd(total, builder.fmul(a, b, flags=FUSE), flags=FUSE)
 
 
-@instruction
-def fma(_: Any, total: Any, a: Any, b: Any) -> Any:
+@lanewise
+def fma(builder: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, rounded once, also where the processor has no such instruction."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _by_name(builder, "fma", *arguments[1:], arguments[0])
-
-    return Lanes(Lanes, Lanes, Lanes), generate
+    return _by_name(builder, "fma", a, b, total)
 
 
-@instruction
-def nearest(_: Any, a: Any) -> Any:
+@lanewise
+def nearest(builder: Any, a: Any) -> Any:
     """Return each lane rounded to the nearest integer."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _by_name(builder, "rint", *arguments)
-
-    return Lanes(Lanes), generate
+    return _by_name(builder, "rint", a)
 
 
 @instruction
@@ -167,72 +169,48 @@ def occupied(_: Any, a: Any) -> Any:
     return types.boolean(Lanes), generate
 
 
-@instruction
-def at_least(_: Any, a: Any, b: Any) -> Any:
+@lanewise
+def at_least(builder: Any, a: Any, b: Any) -> Any:
     """Return 1 in each lane where a >= b, else 0."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.uitofp(builder.fcmp_ordered(">=", *arguments), VECTOR)
-
-    return Lanes(Lanes, Lanes), generate
+    return builder.uitofp(builder.fcmp_ordered(">=", a, b), VECTOR)
 
 
-@instruction
-def magnitude(_: Any, a: Any) -> Any:
+@lanewise
+def magnitude(builder: Any, a: Any) -> Any:
     """Return |a| in each lane."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _by_name(builder, "fabs", *arguments)
-
-    return Lanes(Lanes), generate
+    return _by_name(builder, "fabs", a)
 
 
-@instruction
-def larger(_: Any, a: Any, b: Any) -> Any:
+@lanewise
+def larger(builder: Any, a: Any, b: Any) -> Any:
     """Return the larger of a and b in each lane, b where one is not a number."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.select(builder.fcmp_ordered(">", *arguments), *arguments)
-
-    return Lanes(Lanes, Lanes), generate
+    return builder.select(builder.fcmp_ordered(">", a, b), a, b)
 
 
-@instruction
-def where(_: Any, truth: Any, a: Any, b: Any) -> Any:
+@lanewise
+def where(builder: Any, truth: Any, a: Any, b: Any) -> Any:
     """Return a in each lane where `truth` is not zero, else b."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.select(builder.fcmp_unordered("!=", arguments[0], ZERO), arguments[1], arguments[2])
-
-    return Lanes(Lanes, Lanes, Lanes), generate
+    return builder.select(builder.fcmp_unordered("!=", truth, ZERO), a, b)
 
 
 _WHOLES = ir.VectorType(ir.IntType(64), LANES)
 _SCALE, _BIAS = 2.0**52, 1023.0
 
 
-@instruction
-def log2_of(_: Any, a: Any) -> Any:
+@lanewise
+def log2_of(builder: Any, a: Any) -> Any:
     """Return log2 of positive numbers, off by at most 0.09: exact for powers of two, linear between them."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        whole = builder.sitofp(builder.bitcast(arguments[0], _WHOLES), VECTOR)
-        scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
-        return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
-
-    return Lanes(Lanes), generate
+    whole = builder.sitofp(builder.bitcast(a, _WHOLES), VECTOR)
+    scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
+    return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
 
 
-@instruction
-def exp2_of(_: Any, a: Any) -> Any:
+@lanewise
+def exp2_of(builder: Any, a: Any) -> Any:
     """Return the inverse of `log2_of`, for numbers between -1022 and 1023."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        raised = builder.fadd(arguments[0], ir.Constant(VECTOR, [_BIAS] * LANES))
-        scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
-        return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
-
-    return Lanes(Lanes), generate
+    raised = builder.fadd(a, ir.Constant(VECTOR, [_BIAS] * LANES))
+    scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
+    return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
 
 
 @instruction
@@ -253,23 +231,17 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
     """Return a compiled function that takes lane order[i] to lane i; lane i becomes 0 where order[i] is negative."""
     places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order])
 
-    def shuffle(_: Any, a: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return builder.shuffle_vector(arguments[0], ZERO, places)
-
-        return Lanes(Lanes), generate
+    def shuffle(builder: Any, a: Any) -> Any:
+        return builder.shuffle_vector(a, ZERO, places)
 
     shuffle.__name__ = shuffle.__qualname__ = name
-    return _extending.intrinsic(shuffle)
+    return lanewise(shuffle)
 
 
 def _binary(operation: Any, name: str) -> None:
-    @instruction
-    def apply(_: Any, a: Any, b: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return getattr(builder, name)(*arguments)
-
-        return Lanes(Lanes, Lanes), generate
+    @lanewise
+    def apply(builder: Any, a: Any, b: Any) -> Any:
+        return getattr(builder, name)(a, b)
 
     # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
     @_extending.overload(operation, jit_options=OPTIONS | {"forceinline": True})

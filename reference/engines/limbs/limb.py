@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...numbers.precision import to_fraction
+from ...numbers.taylor_step import whole
 from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
 from .size import LIMB_BITS, fraction_bits
 
@@ -57,15 +58,7 @@ def rows_of(numbers: Sequence[Any], limb_count: int) -> Array:
 
 def joined(limbs: Array) -> Any:
     """Return limbs of shape (..., limb_count) as integers over 2**fraction_bits(limb_count): objects, shape (...)."""
-    limb_count = limbs.shape[-1]
-    whole = limbs.astype(np.int64)
-    if limb_count % 2:
-        whole = np.concatenate([np.zeros_like(whole[..., :1]), whole], axis=-1)
-    pairs = ((whole[..., ::2] << LIMB_BITS) + whole[..., 1::2]).astype(object)
-    total = pairs[..., 0]
-    for place in range(1, pairs.shape[-1]):
-        total = (total << (2 * LIMB_BITS)) + pairs[..., place]
-    return total
+    return whole(np.moveaxis(limbs, -1, 0).astype(np.int64))
 
 
 @compiled

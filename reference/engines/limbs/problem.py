@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...model.algebra import add, cross
-from ...model.constants import Constants, Vector
+from ...model.constants import Vector
 from ...model.start import Start
 from ...numbers.precision import GUARD_BITS
 from ...scenes.inputs import Inputs
@@ -68,8 +68,9 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
     unit, first = _unit_of_time(start)
     order = order or round(ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
     h = ctx.mpf(unit.numerator) / unit.denominator
-    sin, cos = _axis(k)
-    turn, pull = _earth_axes(k.turn, sin, cos), _earth_axes(k.pull, sin, cos)
+    sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
+    vectors = k.turn, k.pull, start.n, add(start.v, cross(k.turn, start.n))
+    turn, pull, n, inertial = (_earth_axes(vector, sin, cos) for vector in vectors)
     longest = (
         min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / (h * ctx.sqrt(ctx.norm(pull)))))) if any(pull) else MOST_GRAINS
     )
@@ -86,21 +87,8 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
         along=rows_of([1, sin, sin, 1, sin, sin, 1], limb_count),
         across=2 * rows_of([0, cos, -cos, 0, cos, -cos], limb_count),
     )
-    return LimbProblem(model, _state_rows(start, unit, limb_count), unit, min(first, longest), start)
-
-
-def _state_rows(start: Start, unit: Fraction, limb_count: int) -> Array:
-    """Return n and V in the unit of time, in the axes of the Earth, at a start: lanes 0 to 2 and 3 to 5."""
-    ctx, k, n = start.ctx, start.k, start.n
-    h = ctx.mpf(unit.numerator) / unit.denominator
-    sin, cos = _axis(k)
-    inertial = _earth_axes(add(start.v, cross(k.turn, n)), sin, cos)
-    return rows_of([*_earth_axes(n, sin, cos), *(h * u for u in inertial)], limb_count)
-
-
-def _axis(k: Constants) -> tuple[Any, Any]:
-    """Return sine and cosine of the latitude at which the axes stand: without rotation, x, y and z."""
-    return (k.sin, k.cos) if k.rate else (1, 0)
+    state = rows_of([*n, *(h * u for u in inertial)], limb_count)
+    return LimbProblem(model, state, unit, min(first, longest), start)
 
 
 def highest_prec_of_fewer_limbs(inputs: Inputs, prec: int) -> int:

@@ -18,12 +18,10 @@ from __future__ import annotations
 from .lanes import LANES, compiled, inlined, load, merged, occupied, plus_product, shuffled, spread, store, within
 from .limb import DOUBLED, LARGEST, Array, carry, carry_scalar, divide
 from .series import (
-    AXIAL_SQUARE,
-    MOST_ROWS,
     PLANES,
     SPIN,
     TENSION,
-    TURNED,
+    VX,
     WIDTH,
     Counts,
     LinearTerms,
@@ -31,17 +29,14 @@ from .series import (
     Series,
     W,
     X,
-    add_convolved,
-    add_linear,
-    column,
     partner,
     to_positions,
     to_speeds,
 )
 
-_turned = shuffled(TURNED[0], "_turned")
-_tension_axial = shuffled(TURNED[1], "_tension_axial")
-_tension_turned = shuffled(TURNED[2], "_tension_turned")
+_turned = shuffled((0, 1, -1, 3, 4, -1, 6, 7), "_turned")
+_tension_axial = shuffled((-1, -1, -1, -1, -1, -1, 5, -1), "_tension_axial")
+_tension_turned = shuffled((-1, -1, -1, -1, -1, -1, 2, -1), "_tension_turned")
 _dragged = shuffled((-1, -1, -1, 3, 4, 5, 6, 7), "_dragged")
 _dragged_aside = shuffled((-1, -1, -1, 1, 0, -1, 2, -1), "_dragged_aside")
 _tension_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_tension_across")
@@ -85,7 +80,7 @@ def add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> N
 @merged
 def add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) -> None:
     """Add to the sums all products of order k with lower orders."""
-    c, planes, sums, factors, first, stride = s.c, s.planes, s.sums, s.factors, s.first[k], PLANES * WIDTH
+    c, planes, sums, factors, first = s.c, s.planes, s.sums, s.factors, s.first[k]
     for p in range(first, limb_count):
         limb, row = LANES * (k * limb_count + p), PLANES * LANES * p
         store(factors, row, spread(DOUBLED * c[limb + X]))
@@ -96,71 +91,25 @@ def add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) -> 
     for j in range(0, max(min(k, order - k), 1), LANES):
         while j > 0 and highest < limb_count and s.used[highest] <= j:
             highest += 1
-        r, at = first + highest + 1, k + j
-        if drag:
-            _add_axial_squares(planes, factors, sums, first, highest, limb_count, j, at)
-        rows = limb_count + 1 - r
-        while rows > MOST_ROWS:
-            rows -= 2
-            _two_rows(planes, factors, sums, first, highest, r + rows, j, at)
-        plane, row = highest * stride + j, r * stride + at
-        add_convolved(rows, planes, plane, factors, PLANES * LANES * first, sums, row)
-
-
-@inlined
-def _two_rows(
-    planes: Array,
-    factors: Array,
-    sums: Array,
-    first: int,
-    highest: int,
-    r: int,
-    j: int,
-    at: int,
-) -> None:
-    """Add the products to rows r and r + 1 of the sums: each limb that is loaded serves both."""
-    stride, factor = PLANES * WIDTH, PLANES * LANES * first
-    row, plane = r * stride + at, (r - first) * stride + j
-    below = row + stride
-    x, m, w = load(sums, row), load(sums, row + WIDTH), load(sums, row + 2 * WIDTH)
-    x1, m1, w1 = load(sums, below), load(sums, below + WIDTH), load(sums, below + 2 * WIDTH)
-    nx, nm, nw = load(planes, plane), load(planes, plane + WIDTH), load(planes, plane + 2 * WIDTH)
-    tension = load(planes, plane + 3 * WIDTH)
-    for p in range(first, r - highest + 1):
-        fx, fm, fw = load(factors, factor), load(factors, factor + LANES), load(factors, factor + 2 * LANES)
-        f = load(factors, factor + 3 * LANES)
-        x1 = plus_product(plus_product(x1, f, nx), fx, tension)
-        m1 = plus_product(plus_product(m1, f, nm), fm, tension)
-        w1 = plus_product(plus_product(w1, f, nw), fw, tension)
-        if p == r - highest:
-            break
-        plane -= stride
-        nx, nm, nw = load(planes, plane), load(planes, plane + WIDTH), load(planes, plane + 2 * WIDTH)
-        tension = load(planes, plane + 3 * WIDTH)
-        x = plus_product(plus_product(x, f, nx), fx, tension)
-        m = plus_product(plus_product(m, f, nm), fm, tension)
-        w = plus_product(plus_product(w, f, nw), fw, tension)
-        factor += PLANES * LANES
-    store(sums, row, x)
-    store(sums, row + WIDTH, m)
-    store(sums, row + 2 * WIDTH, w)
-    store(sums, below, x1)
-    store(sums, below + WIDTH, m1)
-    store(sums, below + 2 * WIDTH, w1)
-
-
-@compiled
-def _add_axial_squares(
-    planes: Array, factors: Array, sums: Array, first: int, highest: int, limb_count: int, j: int, at: int
-) -> None:
-    """Do the part of `add_products` for w²."""
-    for r in range(first + highest + 1, limb_count + 1):
-        row = (r * PLANES + AXIAL_SQUARE) * WIDTH + at
-        square = load(sums, row)
-        for p in range(first, r - highest):
-            axial = load(factors, (PLANES * p + 2) * LANES)
-            square = plus_product(square, axial + axial, load(planes, ((r - 1 - p) * PLANES + 2) * WIDTH + j))
-        store(sums, row, square)
+        for r in range(first + highest + 1, limb_count + 1):
+            row = r * PLANES * WIDTH + k + j
+            x, m, w = load(sums, row), load(sums, row + WIDTH), load(sums, row + 2 * WIDTH)
+            square = load(sums, row + 3 * WIDTH)
+            for p in range(first, r - highest):
+                plane, factor = (r - 1 - p) * PLANES * WIDTH + j, PLANES * LANES * p
+                axial, tension = load(planes, plane + 2 * WIDTH), load(planes, plane + 3 * WIDTH)
+                fw, f = load(factors, factor + 2 * LANES), load(factors, factor + 3 * LANES)
+                x = plus_product(plus_product(x, f, load(planes, plane)), load(factors, factor), tension)
+                m = plus_product(
+                    plus_product(m, f, load(planes, plane + WIDTH)), load(factors, factor + LANES), tension
+                )
+                w = plus_product(plus_product(w, f, axial), fw, tension)
+                if drag:
+                    square = plus_product(square, fw + fw, axial)
+            store(sums, row, x)
+            store(sums, row + WIDTH, m)
+            store(sums, row + 2 * WIDTH, w)
+            store(sums, row + 3 * WIDTH, square)
 
 
 @merged
@@ -224,19 +173,12 @@ def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int
 def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Write the derivative's coefficient of order k, drag left out, to `total`; not carried."""
     c, block, turn, total = s.c, k * limb_count * LANES, terms.turn, s.total
-    for r in range(limb_count + 1):
-        value = spread(0.0) - column(s.sums, r * PLANES * WIDTH + k)
-        if first <= r < limb_count:
-            value = value + to_positions(load(c, block + LANES * r))
-        if k == 0:
-            value = value + load(terms.steady, LANES * r)
-        store(total, LANES * r, value)
     if k == 1:
         for q in range(limb_count):
             v = load(c, LANES * q)
             store(s.twice, LANES * q, v + v)
     zeroth = s.twice if k else c
-    for r in range(first + 1 + MOST_ROWS, limb_count + 1):
+    for r in range(limb_count + 1):
         turned, pulled = spread(0.0), spread(0.0)
         for q in range(first, r):
             v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
@@ -244,15 +186,19 @@ def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_coun
             pulled = plus_product(pulled, spread(c[block + LANES * q + TENSION]), load(zeroth, p))
             pulled = plus_product(pulled, spread(zeroth[p + TENSION]), v)
         value = _turned(turned) + (_tension_axial(turned) + _tension_turned(turned)) - to_speeds(pulled)
-        store(total, LANES * r, load(total, LANES * r) + value)
-    rows = min(limb_count - first, MOST_ROWS)
-    add_linear(rows, c, block + LANES * first, zeroth, 0, turn, 0, total, LANES * (first + 1))
+        if first <= r < limb_count:
+            value = value + to_positions(load(c, block + LANES * r))
+        if k == 0:
+            value = value + load(terms.steady, LANES * r)
+        store(total, LANES * r, value)
+        for i in range(3):
+            total[LANES * r + VX + i] -= s.sums[(r * PLANES + i) * WIDTH + k]
 
 
 @merged
 def _add_drag(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Add the terms of drag to `total`."""
-    c, block, start, stride = s.c, k * limb_count * LANES, AXIAL_SQUARE * WIDTH + k, PLANES * WIDTH
+    c, block, start, stride = s.c, k * limb_count * LANES, 3 * WIDTH + k, PLANES * WIDTH
     weight = 2.0 * DOUBLED if k else DOUBLED
     for r in range(limb_count + 1):
         square = s.sums[start + r * stride]

@@ -36,7 +36,6 @@ ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since ev
 POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
 SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
-PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
 
 
 def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: int) -> tuple[Counts, Array]:
@@ -47,12 +46,9 @@ def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: i
     bits = fraction_bits(limb_count)
     parts = [divmod(t.numerator * grain.denominator, t.denominator * grain.numerator) for t in times]
     whole = np.array([top for top, _ in parts], dtype=np.int64)
-    limbs = np.zeros((len(times), limb_count))
-    broken = [i for i, (_, remainder) in enumerate(parts) if remainder]
-    if broken:
-        remainders = [(parts[i][1] << bits) // (times[i].denominator * grain.numerator) for i in broken]
-        limbs[broken] = split(remainders, limb_count)
-    return whole, limbs.ravel()
+    pairs = zip(times, parts, strict=True)
+    remainders = [(remainder << bits) // (t.denominator * grain.numerator) for t, (_, remainder) in pairs]
+    return whole, split(remainders, limb_count).ravel()
 
 
 class Integration:
@@ -89,7 +85,9 @@ class Integration:
             aligned(polynomials * (model.order + 1) * limb_count * LANES),
         )
         self.until = int(whole[-1]) + 1
-        self._zeros: list[tuple[Any, Any, Any]] = []
+        self.moments: list[int] = []  # of zeros of xdot: times in grains and states, over 2**fraction_bits
+        self.zero_states: list[list[int]] = []
+        self.signs: list[int] = []
         cpu_start = time.process_time()
         prepare(march, "limbs", COMPILE_S, *self._arguments(0))
         self.compile_s = time.process_time() - cpu_start
@@ -129,28 +127,19 @@ class Integration:
 
     def _keep_zeros(self) -> None:
         n, limb_count = int(self.state.counts[ZEROS]), self.problem.model.limb_count
-        if n:
-            moments = self.out.moments[: 3 * n].reshape(n, 3).copy()
-            places = joined(self.out.places[: n * limb_count].reshape(n, limb_count))
-            self._zeros.append((moments, places, self.table(self.out.zero_states, n)))
-            self.state.counts[ZEROS] = 0
+        starts, lengths, signs = self.out.moments[: 3 * n].reshape(n, 3).T.tolist()
+        places = joined(self.out.places[: n * limb_count].reshape(n, limb_count))
+        parts, bits = zip(starts, lengths, places, strict=True), fraction_bits(limb_count)
+        self.moments += [(start << bits) + length * place for start, length, place in parts]
+        self.zero_states += self.table(self.out.zero_states, n).tolist()
+        self.signs += signs
+        self.state.counts[ZEROS] = 0
 
     def table(self, rows: Array, count: int) -> Any:
         """Return rows of limbs as integers over 2**fraction_bits, shape (count, COLUMNS)."""
         limb_count = self.problem.model.limb_count
         limbs = np.moveaxis(rows[: count * limb_count * LANES].reshape(count, limb_count, LANES), 1, 2)
         return joined(limbs[:, :COLUMNS])
-
-    def zeros(self) -> tuple[Any, Any, list[int]]:
-        """Return the zeros of xdot: times in grains and states, over 2**fraction_bits; signs of the crossings."""
-        bits = fraction_bits(self.problem.model.limb_count)
-        times, tables, signs = [np.zeros(0, dtype=object)], [np.zeros((0, COLUMNS), dtype=object)], []
-        for moments, places, rows in self._zeros:
-            starts, lengths = moments[:, 0].astype(object), moments[:, 1].astype(object)
-            times.append((starts << bits) + lengths * places)
-            tables.append(rows)
-            signs += moments[:, 2].tolist()
-        return np.concatenate(times), np.concatenate(tables), signs
 
 
 def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -> Integration:
@@ -233,7 +222,6 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
         directions=signs,
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
-        terms=PRODUCTS_WITH_DRAG if problem.model.drag else PRODUCTS,
         compile_s=integration.compile_s,
         cpu_s=time.process_time() - cpu_start,
     )
@@ -253,8 +241,8 @@ def _scaled(column: Any, factor: Fraction) -> Any:
 def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> tuple[Table, list[int]]:
     """Return the zeros up to the last output time, and the signs of the crossings."""
     problem = integration.problem
-    times, table, signs = integration.zeros()
-    count = bisect_right(times, int(plan.times[-1] / problem.grain * 2**bits))
-    moments = _scaled(times[:count], problem.grain * 2 ** (si_bits - bits))
-    columns = _si(table[:count], plan.inputs.length, problem.unit, bits, si_bits)
-    return Table(("t", *RUN), si_bits, list(zip(moments, *columns, strict=True))), signs[:count]
+    count = bisect_right(integration.moments, int(plan.times[-1] / problem.grain * 2**bits))
+    moments = _scaled(np.array(integration.moments[:count], dtype=object), problem.grain * 2 ** (si_bits - bits))
+    states = np.array(integration.zero_states[:count], dtype=object).reshape(count, COLUMNS)
+    columns = _si(states, plan.inputs.length, problem.unit, bits, si_bits)
+    return Table(("t", *RUN), si_bits, list(zip(moments, *columns, strict=True))), integration.signs[:count]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from importlib.metadata import version
 from typing import Any, cast
 
@@ -35,15 +34,13 @@ class OctetBatch(Batch):
         """Return orders, tolerance and the compiler."""
         return f"octet, orders {ORDER} and {MOVED_ORDER}, tolerance {TOLERANCE!r}, numba {version('numba')}"
 
-    def prepare(self, wanted: Wanted, drag: bool) -> float:
+    def prepare(self, wanted: Wanted) -> None:
         """Compile the kernel, or read it from the disk, once a process: later calls find it done."""
         from .march import empty_march, empty_moments, march
 
-        started = time.thread_time()
         arguments = _arguments(empty_march(), wanted, np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
         what, kernel = "steps of eight rows at once" + " with sections" * wanted.form, cast("Any", march)
         prepare(kernel, what, round(self.compile_s[bool(kernel.stats.cache_misses)]), *arguments)
-        return time.thread_time() - started
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
         """Solve rows without drag."""

@@ -135,7 +135,7 @@ def test_options_are_read_as_they_are_written():
 
 
 def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch, foucault, tmp_path):
-    monkeypatch.setattr("reference.engines.plan.missing", lambda names: [name for name in names if name == "numba"])
+    monkeypatch.setattr("reference.system.imports.missing", lambda names: [name for name in names if name == "numba"])
     for words in (("conical",), ("conical", "--out", tmp_path / "conical")):
         status, out, err = foucault("generate", *words)
         assert (status, out) == (2, "")

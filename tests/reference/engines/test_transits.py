@@ -14,7 +14,7 @@ from reference import solve, sweep
 from reference.engines.heyoka.events import _first_contradiction, _Step, march, quiet_start
 from reference.engines.heyoka.model import Numbers
 from reference.engines.heyoka.stepper import Stepper
-from reference.engines.heyoka.system import System
+from reference.engines.heyoka.system import system_of
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError
@@ -28,11 +28,11 @@ def bare_heyoka(scene, number, t_end, first_step=None):
 
     release = start_for(scene, number)
     numbers, model = Numbers(number), FORMULATIONS["momentum"]
-    system = System.build(model, release.k.converted(numbers.of))
+    equations, xdot = system_of(model, release.k.converted(numbers.of))
     times: list[float] = []
-    event = hy.nt_event(system.xdot, callback=lambda _, t, __: times.append(float(t)), fp_type=numbers.type)
+    event = hy.nt_event(xdot, callback=lambda _, t, __: times.append(float(t)), fp_type=numbers.type)
     start = np.array([numbers.of(part) for part in release.state(model)], dtype=numbers.dtype)
-    alone = hy.taylor_adaptive(system.equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
+    alone = hy.taylor_adaptive(equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
     if first_step is not None:
         alone.step(first_step)
     alone.propagate_until(numbers.of(t_end))

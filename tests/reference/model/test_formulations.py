@@ -11,7 +11,7 @@ from sampled import one_in
 from small_scenes import make_scene, model_at
 
 from reference.engines.heyoka.model import Numbers
-from reference.engines.heyoka.system import System
+from reference.engines.heyoka.system import system_of
 from reference.model.algebra import cross, dot, minus, plus, product
 from reference.model.carried import carried, constant_variables
 from reference.model.constants import Constants, axis_distance, constants
@@ -65,8 +65,8 @@ def acceleration_of(name: str, ctx, k, n, v):
 def lagrangian_rates(state, k):
     """heyoka's own Euler-Lagrange equations, evaluated in `real`."""
     numbers = Numbers(real(PREC))
-    system = System.build(FORMULATIONS["lagrangian"], k.converted(numbers.of))
-    names, rates = zip(*system.equations, strict=True)
+    equations, _ = system_of(FORMULATIONS["lagrangian"], k.converted(numbers.of))
+    names, rates = zip(*equations, strict=True)
     compiled = hy.cfunc(list(rates), list(names), fp_type=hy.real, prec=PREC)
     values = compiled(np.array([numbers.of(s) for s in state], dtype=hy.real))
     ctx = context(PREC)
@@ -112,9 +112,9 @@ def test_above_the_horizontal_all_but_the_plane_form_agree(seed):
 def test_the_heyoka_expression_and_the_mpmath_evaluation_are_the_same_code(name):
     ctx, k, n, v = model_at(random_scene(3), PREC)
     numbers, model = Numbers(real(PREC)), FORMULATIONS[name]
-    system = System.build(model, k.converted(numbers.of))
+    equations, _ = system_of(model, k.converted(numbers.of))
     state = model.start(n, v, k, ctx)
-    names, rates = zip(*system.equations, strict=True)
+    names, rates = zip(*equations, strict=True)
     compiled = hy.cfunc(list(rates), list(names), fp_type=hy.real, prec=PREC)
     got = numbers.fixed(compiled(np.array([numbers.of(s) for s in state], dtype=hy.real)), 600)
     for whole, expected in zip(got, model.derivatives(state, k, ctx), strict=True):

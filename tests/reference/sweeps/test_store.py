@@ -170,7 +170,7 @@ def test_what_became_of_the_rows_is_counted_in_the_memory_of_one_part(tmp_path):
         if number == request.parts - 1:
             part.fail(-1, Status.CRASHED, "told")
         store.save(number, part)
-    store.read_part(0)  # imports what reads
+    store.read(parts=[0])  # imports what reads
     swept = load_sweep(tmp_path)
     tracemalloc.start()
     assert swept.counts == {"crashed": 1, "ok": len(swept) - 1}
