@@ -114,7 +114,7 @@ def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str])
         from foucault import main
 
         built = command_line()
-        monkeypatch.setattr("foucault.commands", lambda _="": built)
+        monkeypatch.setattr("foucault.commands", lambda: built)
         monkeypatch.setattr(sys, "argv", ["foucault", *map(str, words)])
         monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(stdin)))
         status = 0

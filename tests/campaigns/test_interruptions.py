@@ -109,6 +109,6 @@ def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(num
     """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser."""
     body = body.replace("INTERRUPT", f"os.kill(os.getpid(), {int(number)})")
     program = f"import os, time, foucault\nfrom reference.errors import InputError\n\ndef interrupted(prog_name):{body}"
-    program += "\nfoucault.commands = lambda _: interrupted\nfoucault.main()\n"
+    program += "\nfoucault.commands = lambda: interrupted\nfoucault.main()\n"
     ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")
