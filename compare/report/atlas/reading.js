@@ -180,16 +180,14 @@ function readColumns(text, needed, vocabulary, onComment = () => {}) {
   const above = [];
   const columns = {};
   const notes = [];
-  const comments = vocabulary.COMMENTS;
   let [spelled, places, width, rows, finer] = [null, null, 0, 0, false];
   text.replace(/^\ufeff/, "").split(/\r?\n/).forEach((raw, i) => {
     const line = raw.trim();
     if (!line) return;
-    const mark = comments.find((one) => line.startsWith(one));
-    if (mark) {
-      const comment = line.slice(mark.length).trim();
-      if (!places) above.push({ text: comment, comment: true, number: i + 1 });
-      onComment(comment, i + 1);
+    const remark = whole(vocabulary.COMMENT).exec(line);
+    if (remark) {
+      if (!places) above.push({ text: remark[1], comment: true, number: i + 1 });
+      onComment(remark[1], i + 1);
       return;
     }
     if (!places) {
