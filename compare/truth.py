@@ -9,7 +9,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache as once
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -30,6 +29,8 @@ DENSE_FORMAT = (
     b"dense 6"  # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
 )
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
+
+_here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
 
 Report = Callable[[float], None]
 
@@ -65,19 +66,19 @@ def golden_of(
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     parts = problem.model_dump(mode="json", include={"inputs", "pendulum", "site", "release", "run"})
     name = f"{scene.id}-{hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]}"
-    if path := cache.entry("golden", name):
+    if path := _here.get(name) or cache.entry("golden", name):
         with suppress(DatasetError, InputError, OSError):
             return _loaded(path)
         cache.discard(path)  # damaged: it is solved again
     from reference import solve, write
 
-    @once  # the first place where it is written may have no room
-    def solution() -> Solution:
-        if announce is not None:
-            announce(f"{_why_solved(problem)}: solving it to {problem.run.digits} digits")
-        return solve(problem, report=report)
-
-    return _loaded(cache.kept("golden", name, lambda path: write(solution(), path)))
+    if announce is not None:
+        announce(f"{_why_solved(problem)}: solving it to {problem.run.digits} digits")
+    solution = solve(problem, report=report)
+    path = cache.store("golden", name, lambda path: write(solution, path))
+    if path is None:
+        path = _here[name] = write(solution, cache.temporary() / name)
+    return _loaded(path)
 
 
 def with_function(scene: Scene) -> Golden | None:

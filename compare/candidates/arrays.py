@@ -41,7 +41,7 @@ def candidate_of(
     columns = {key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays}
     low = {}
     for key, near in columns.items():
-        if arrays[key].dtype.itemsize > 8 and np.isfinite(near).all():
+        if arrays[key].dtype.kind == "f" and arrays[key].dtype.itemsize > 8 and np.isfinite(near).all():
             remainder = np.asarray(arrays[key] - near.astype(arrays[key].dtype), dtype=np.float64)
             if remainder.any():
                 low[key] = remainder

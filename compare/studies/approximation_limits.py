@@ -59,7 +59,7 @@ def sweep_values(scene: Scene, over: str) -> Sequence[float]:
     return [float(v) for v in range(-90, 91, 15)] if over == "latitude" else LENGTHS
 
 
-def sweep(scene: Scene, chosen: Iterable[Motion], over: str, t: float) -> list[SweepRow]:
+def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[SweepRow]:
     """Return the errors of approximations up to t in s as amplitude, latitude or length of the scene is `varied`."""
     rows = []
     for value in sweep_values(scene, over):

@@ -129,7 +129,9 @@ def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tup
     types = TypeAdapter(kind)
     for record in json_lines(path, "--out"):
         with suppress(KeyError, TypeError, ValueError):
-            yield (record["recipe"], tuple(record["item"])), types.validate_python(record["result"])
+            key = record["recipe"], tuple(record["item"])
+            hash(key)
+            yield key, types.validate_python(record["result"])
 
 
 def _store(path: Path | None, record: dict[str, Any]) -> None:

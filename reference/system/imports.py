@@ -71,6 +71,10 @@ class Registry(UserDict[str, D]):
             raise ValueError(f"two files of {self._package} declare the same id")
         return by_id
 
+    def get(self, word: str, default: Any = None) -> Any:
+        """Return a declaration, or the default where there is none of that id."""
+        return self.data.get(word, default)
+
     def __missing__(self, word: str) -> D:
         article = "an" if self._what[0] in "aeiou" else "a"
         expected = f"the id of {article} {self._what}"

@@ -184,7 +184,7 @@ function readColumns(text, needed, vocabulary, onComment = () => {}) {
   text.replace(/^\ufeff/, "").split(/\r?\n/).forEach((raw, i) => {
     const line = raw.trim();
     if (!line) return;
-    const remark = whole(vocabulary.COMMENT).exec(line);
+    const remark = whole(vocabulary.COMMENT, "s").exec(line);
     if (remark) {
       if (!places) above.push({ text: remark[1], comment: true, number: i + 1 });
       onComment(remark[1], i + 1);

@@ -131,7 +131,8 @@ class Explanation:
             yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
         if self.slip:
             yield self.slip
-        if self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions):
+        mended = self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions)
+        if mended and math.isfinite(self.corrected_m):
             these = "this" if len(self.causes) == 1 else "all this"
             share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
             # a smaller rest is rounding, and not the same on every processor

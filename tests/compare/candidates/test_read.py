@@ -41,6 +41,11 @@ def archive(*tables, **arrays):
     return stream
 
 
+def test_empty_columns_of_text_are_refused():
+    with pytest.raises(InputError, match=r"no rows|real numbers"):
+        read_stream(archive(t=np.array([]), x=np.array([]), y=np.array([], "U3")), "mine.npz")
+
+
 def refused(stream, *words):
     with pytest.raises(InputError) as caught:
         read_stream(stream, "run")

@@ -63,6 +63,11 @@ def test_a_tighter_setting_is_better(name):
     assert errors[1] < errors[0] or errors[0] < 1e-13
 
 
+def test_a_word_that_no_method_has_may_be_looked_for():
+    assert METHODS.get("nothing") is None
+    assert METHODS.get("nothing", 0) == 0
+
+
 def test_a_declaration_is_complete(name):
     method = METHODS[name]
     assert method.id == name

@@ -89,6 +89,7 @@ def test_after_half_a_line_the_next_result_has_a_line_of_its_own(tmp_path: Path,
 @pytest.mark.parametrize(
     "line",
     [
+        pytest.param('{"recipe": "x", "item": [[1]], "result": {}}', id="an item that has no hash"),
         pytest.param('{"recipe": "MARK", "item": ["m", "a"], "result": {}}', id="a result without a status"),
         pytest.param(
             '{"recipe": "MARK", "item": ["m", "a"], "result": {"text": [], "status": "ok"}}', id="other types"
