@@ -30,18 +30,28 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
     Raises:
         OSError: `parent` cannot be written.
     """
-    from filelock import FileLock  # here, as its import takes longer than the rest of a short command
+    from filelock import FileLock, Timeout  # here, as its import takes longer than the rest of a short command
 
     clear(parent, name)
-    folder = Path(tempfile.mkdtemp(prefix=f".{name}.partial-", dir=parent))
-    lock = FileLock(folder / _LOCK, blocking=False)
-    try:
-        with suppress(OSError, NotImplementedError):  # this disk has no locks
-            lock.acquire()
-        yield folder
-    finally:
-        lock.release()
-        _remove(folder, parent / name)
+    while True:
+        folder = Path(tempfile.mkdtemp(prefix=f".{name}.partial-", dir=parent))
+        lock = FileLock(folder / _LOCK, blocking=False)
+        try:
+            try:
+                lock.acquire()
+            except (Timeout, FileNotFoundError):  # another process took it for left behind
+                continue
+            except (OSError, NotImplementedError):  # this disk has no locks
+                pass
+            yield folder
+            return
+        finally:
+            try:
+                lock.release()
+                _remove(folder, parent / name)
+            except BaseException:  # Ctrl-C, just now
+                _remove(folder, parent / name)
+                raise
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import pkgutil
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from reference.system import workspace as module
 from reference.system.workspace import OLD, workspace
 
 HOLDER = """
@@ -38,11 +40,17 @@ def test_the_folder_is_there_for_the_work_and_gone_after_it(tmp_path):
     assert left(tmp_path) == []
 
 
-def test_an_interruption_as_it_begins_leaves_nothing(tmp_path, monkeypatch):
-    def interrupted(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
+@pytest.mark.parametrize("place", ["filelock.FileLock.acquire", "filelock.FileLock.release", "shutil.rmtree"])
+def test_an_interruption_as_it_begins_or_ends_leaves_nothing(tmp_path, monkeypatch, place):
+    usual, calls = pkgutil.resolve_name(place), []
 
-    monkeypatch.setattr("filelock.FileLock.acquire", interrupted)
+    def interrupted(*arguments: object, **options: object) -> object:
+        calls.append(place)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return usual(*arguments, **options)
+
+    monkeypatch.setattr(place, interrupted)
     with pytest.raises(KeyboardInterrupt), workspace(tmp_path, "pp"):
         pass
     assert left(tmp_path) == []
@@ -92,3 +100,21 @@ def test_on_a_disk_without_locks_none_is_cleared_away(tmp_path, monkeypatch):
     with workspace(tmp_path, "pp") as work:
         assert left(tmp_path) == sorted([stale.name, work.name])
     assert left(tmp_path) == [stale.name]
+
+
+def test_a_folder_that_is_cleared_before_it_is_locked_is_made_anew(tmp_path, monkeypatch):
+    """Another process may find a folder between its making and its locking."""
+    made, make = [], module.tempfile.mkdtemp
+
+    def cleared(*args, **keywords):
+        path = make(*args, **keywords)
+        made.append(Path(path))
+        if len(made) == 1:
+            made[0].rmdir()
+        return path
+
+    monkeypatch.setattr(module.tempfile, "mkdtemp", cleared)
+    with workspace(tmp_path, "pp") as work:
+        assert work in made
+        assert work.is_dir()
+    assert left(tmp_path) == []
