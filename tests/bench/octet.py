@@ -105,7 +105,7 @@ def main(count: int = 181, pairs: int = 5) -> None:
     """Print all ratios."""
     rows = many_rows(count)
     bare, transits, whole = Wanted(False, False), Wanted(apsides=False), Wanted()
-    first = cpu_s(lambda: OCTET.prepare(whole, False))
+    first = cpu_s(lambda: OCTET.prepare(whole))
     print(f"{count} rows, {pairs} pairs; octet compiled or read in {first:.2f} CPU s")
     silent, located = ScalarLoop(False), ScalarLoop(True)
 

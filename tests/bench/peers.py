@@ -188,7 +188,7 @@ def ensemble(rows: Rows, loop: ScalarLoop) -> None:
 
 def own(rows: Rows) -> list[Peer]:
     """Return octet, and heyoka in all its forms."""
-    OCTET.prepare(Wanted(), False)
+    OCTET.prepare(Wanted())
     silent, located, whole, bare = ScalarLoop(False), ScalarLoop(True), Wanted(), Wanted(False, False)
     for wanted in (bare, whole):
         HEYOKA.solve(rows[:8], wanted)

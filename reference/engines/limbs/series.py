@@ -14,7 +14,7 @@ from .lanes import LANES, shuffled
 from .limb import Array, aligned
 
 X, M, W, VX, VM, VW, TENSION, SPIN = range(LANES)
-PLANES = 4  # x, m, w and the tension λ, each limb's coefficients one after another; of the sums λ x, λ m, λ w and w²
+PLANES = 4  # x, m, w and the tension λ, each limb's coefficients one after another; those of sums are λ x, λ m, λ w, w²
 WIDTH = 35 * LANES  # from plane to plane, known to the compiler; an odd number of cache lines
 MOST_ORDER = WIDTH - 3 * LANES
 

@@ -23,13 +23,13 @@ ORDER, SERIES_ORDER = 30, 73  # of the comparison; the series goes further
 LAST_PLACES = 64  # units of the last limb: a coefficient is divided once an order
 
 
-def first_step(scene):
-    return next(engines()["limbs"].taylor_steps(scene.exact, (Fraction(0),), BITS, 2 * SERIES_ORDER))
+def first_step(scene, bits=BITS):
+    return next(engines()["limbs"].taylor_steps(scene.exact, (Fraction(0),), bits, 2 * SERIES_ORDER))
 
 
-def assert_same_coefficients(scene, formulation="momentum"):
-    step = first_step(scene)
-    ctx, k, rows = taylor(scene.exact, formulation, ORDER, 3 * BITS)
+def assert_same_coefficients(scene, formulation="momentum", bits=BITS):
+    step = first_step(scene, bits)
+    ctx, k, rows = taylor(scene.exact, formulation, ORDER, 3 * bits)
     n, v = FORMULATIONS[formulation].cartesian([Polynomial(row) for row in rows], k, ctx)
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     expected = [n[0], sin * n[1] - cos * n[2], cos * n[1] + sin * n[2], tension(n, v, k)]
@@ -43,6 +43,13 @@ def assert_same_coefficients(scene, formulation="momentum"):
 @pytest.mark.parametrize("formulation", ["momentum", "space", "spin"])
 def test_the_series_of_paris_is_that_of_every_polynomial_formulation(paris, formulation):
     assert_same_coefficients(paris, formulation)
+
+
+@pytest.mark.parametrize("drag", ["0", "0.7"])
+@pytest.mark.parametrize("bits", [66, 110, 220, 386])  # 4 to 18 limbs, the fewest and the most that are used
+def test_the_series_is_that_of_the_model_for_few_limbs_and_for_many(bits, drag):
+    scene = make_scene(pendulum={"length": "3.7", "drag": drag}, release={"angle": "70", "azimuth": "20", "azimuth_rate": "30"})
+    assert_same_coefficients(scene, bits=bits)
 
 
 degrees = st.decimals(min_value=-90, max_value=90, places=3).map(str)
