@@ -48,7 +48,9 @@ def test_the_series_of_paris_is_that_of_every_polynomial_formulation(paris, form
 @pytest.mark.parametrize("drag", ["0", "0.7"])
 @pytest.mark.parametrize("bits", [66, 110, 220, 386])  # 4 to 18 limbs, the fewest and the most that are used
 def test_the_series_is_that_of_the_model_for_few_limbs_and_for_many(bits, drag):
-    scene = make_scene(pendulum={"length": "3.7", "drag": drag}, release={"angle": "70", "azimuth": "20", "azimuth_rate": "30"})
+    scene = make_scene(
+        pendulum={"length": "3.7", "drag": drag}, release={"angle": "70", "azimuth": "20", "azimuth_rate": "30"}
+    )
     assert_same_coefficients(scene, bits=bits)
 
 
