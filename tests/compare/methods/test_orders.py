@@ -92,14 +92,14 @@ def test_with_eight_stages_gauss_legendre_comes_near_to_order_sixteen_before_rou
 
 @pytest.mark.parametrize("stages", [1, 2, 3, 8])
 def test_gauss_legendre_collocates_at_the_nodes_of_the_quadrature(stages):
-    method = gauss_legendre.gauss(stages)
+    a, b, ahead = gauss_legendre.gauss(stages)
     nodes, weights = np.polynomial.legendre.leggauss(stages)
     c = (nodes + 1) / 2
-    np.testing.assert_allclose(method.b, weights / 2, atol=1e-15)
+    np.testing.assert_allclose(b, weights / 2, atol=1e-15)
     for power in range(stages):  # exact for polynomials of lower degree, within the step and ahead of it
-        np.testing.assert_allclose(method.a @ c**power, c ** (power + 1) / (power + 1), atol=1e-14)
-        np.testing.assert_allclose(method.ahead @ c**power, (1 + c) ** power, rtol=1e-9)
-    m = method.b[:, None] * method.a + method.b[None, :] * method.a.T - np.outer(method.b, method.b)
+        np.testing.assert_allclose(a @ c**power, c ** (power + 1) / (power + 1), atol=1e-14)
+        np.testing.assert_allclose(ahead @ c**power, (1 + c) ** power, rtol=1e-9)
+    m = b[:, None] * a + b[None, :] * a.T - np.outer(b, b)
     np.testing.assert_allclose(m, 0, atol=1e-15)  # the condition for quadratic invariants (Cooper 1987)
 
 
