@@ -34,8 +34,7 @@ def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -
     balls = SceneBalls(inputs, 128)
     w, span = float(balls.w0), float(end)
     loss = span * float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * w) / 0.693
-    ratio = inputs.length / radius
-    target = ratio.numerator.bit_length() - ratio.denominator.bit_length() + log2(2 + span * w)
+    target = magnitude(inputs.length / radius) + log2(2 + span * w)
     cheap = target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS
     method = method or ("radius" if cheap else "columns")
     extra = loss if method == "radius" else COLUMN_MARGIN_BITS + 2 * log2(2 + span * w) / 2
@@ -44,6 +43,11 @@ def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -
         reason = f"enclosure: {short(radius)} m would take more than {MAX_BITS} bits."
         raise UnreachableError(reason, "Ask for fewer digits.")
     return ProofPlan(method, bits)
+
+
+def magnitude(ratio: Fraction) -> int:
+    """Return the logarithm to base 2, about."""
+    return ratio.numerator.bit_length() - ratio.denominator.bit_length()
 
 
 def short(x: Fraction) -> str:

@@ -20,7 +20,7 @@ from ..numbers.taylor_step import TaylorStep
 from .bound import Piece, SceneBalls
 from .course import Course
 from .frames import ColumnSource
-from .plan import MAX_BITS, ProofPlan, plan_for, short
+from .plan import MAX_BITS, ProofPlan, magnitude, plan_for, short
 from .shapes import Proved, ProvedFunction, ProvedSections, State
 from .sums_checked import check_sums
 
@@ -127,29 +127,24 @@ class _Clock:
         self.last = now
 
 
+@dataclass
 class _Run:
     """One attempt at one precision."""
 
-    def __init__(
-        self,
-        inputs: Any,
-        plan: ProofPlan,
-        times: list[Fraction],
-        radius: Fraction,
-        transits: bool,
-        progress: Callable[[float], None] | None,
-        flint_only: bool,
-        function: bool,
-        sections: tuple[str, ...],
-    ) -> None:
-        self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
-        self.transits, self.flint_only, self.function, self.sections = transits, flint_only, function, sections
-        self.end = times[-1]
-        self.clock = _Clock()
+    inputs: Any
+    plan: ProofPlan
+    times: list[Fraction]
+    radius: Fraction
+    transits: bool
+    progress: Callable[[float], None] | None
+    flint_only: bool
+    function: bool
+    sections: tuple[str, ...]
+    clock: _Clock = field(default_factory=_Clock)
 
     def prove(self, approximant: Approximant) -> Enclosure:
         """Prove all steps; raise _TooWide if a state is known less closely than to the radius."""
-        steps = iter(approximant(self.plan.bits))
+        steps, end = iter(approximant(self.plan.bits)), self.times[-1]
         first = next(steps, None)
         if first is None:
             raise UnreachableError("enclosure: the approximant is empty.")
@@ -167,7 +162,7 @@ class _Run:
             from .fit import Fit, on_doubles  # a proof without a function does not rest on its code
 
             fit, steps = Fit(course), on_doubles(steps)
-        for step in until(steps, self.end):
+        for step in until(steps, end):
             self.clock.lap("approximant")
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
             self.clock.lap("proof")
@@ -181,12 +176,12 @@ class _Run:
                 known = len(course.states)
                 self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
             if self.progress:
-                self.progress(float((step.centre + step.h * step.high) / self.end) if self.end else 1.0)
+                self.progress(float((step.centre + step.h * step.high) / end) if end else 1.0)
         function = fit.finish() if fit else None
         proved = function.proved if function else course.finish()
         self.clock.lap("function" if function else "proof")
         passages = sections.finish(proved) if sections else None
-        position, velocity = self._check_widths(proved.states, self.end, 1, bits)
+        position, velocity = self._check_widths(proved.states, end, 1, bits)
         return Enclosure(
             proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function, passages
         )
@@ -196,10 +191,10 @@ class _Run:
         widths = [[(i.high - i.low) / 2 for i in row] for row in states]
         position, velocity = (max(max(row[part]) for row in widths) for part in (slice(3), slice(3, 6)))
         if max(position, velocity) > factor * self.radius:
-            missing = _magnitude(max(position, velocity) / self.radius) + 6
+            missing = magnitude(max(position, velocity) / self.radius) + 6
             # what the rest of the run will lose, if it is like what lies behind
-            lost = max(0, bits + _magnitude(position / self.inputs.length))
-            missing += ceil(lost * (self.end - time) / time) if time else lost
+            lost = max(0, bits + magnitude(position / self.inputs.length))
+            missing += ceil(lost * (self.times[-1] - time) / time) if time else lost
             reason = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
             raise _TooWide(reason, bits + 8 * ceil(missing / 8))
         return [position, velocity]
@@ -215,11 +210,6 @@ def until(steps: Iterable[TaylorStep], end: Fraction) -> Iterator[TaylorStep]:
             return
         yield step
     raise UnreachableError(f"enclosure: the approximant ends before {float(end):g} s.")
-
-
-def _magnitude(ratio: Fraction) -> int:
-    """Return the logarithm to base 2, about."""
-    return ratio.numerator.bit_length() - ratio.denominator.bit_length()
 
 
 def _log(z: arb) -> float:
