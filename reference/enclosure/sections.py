@@ -45,13 +45,13 @@ class Form(Slope):
         self.lost, x, y = miss * max(map(len, piece.p)) * (piece.sizes.p + piece.sizes.k), h * size(a), size(b)
         # at rest, of a velocity alone
         self.slow, self.flat = all(q.is_zero() for q in [*a, d, *piece.balls.release[1]]), False
-        self.hold(sum((n * g for n, g in terms if n), fmpz_poly()), x * eta + y * u, x * u + y * bend)
+        self.hold(arb_poly(sum((n * g for n, g in terms if n), fmpz_poly())), x * eta + y * u, x * u + y * bend)
 
     def hold(self, f: Any, *offs: arb) -> None:
         """Take f, and what it and f' miss; both in few bits and orders as well, which are enough for most signs."""
         self.forms = [(g, arb(0, upper(off + self.lost))) for g, off in zip((f, f.derivative()), offs, strict=True)]
         with ctx.workprec(SHORT):
-            self.short = [cut(arb_poly(g) * (1 / arb(self.unit)), SHORT // 2) + off for g, off in self.forms]
+            self.short = [cut(g * (1 / arb(self.unit)), SHORT // 2) + off for g, off in self.forms]
 
     def at(self, n: int, s: arb) -> Any:
         """Return a ball that contains the form (n = 0) or its rate (n = 1) on the ball `s`."""

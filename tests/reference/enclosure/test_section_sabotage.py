@@ -358,12 +358,12 @@ FAULTS = [
     ("zip((f, f.derivative()), offs", "zip((f, f.derivative()), offs[::-1]"),
     # in few bits
     (
-        "cut(arb_poly(g) * (1 / arb(self.unit)), SHORT // 2) + off",
-        "cut(arb_poly(g) * (1 / arb(self.unit)), SHORT // 2)",
+        "cut(g * (1 / arb(self.unit)), SHORT // 2) + off",
+        "cut(g * (1 / arb(self.unit)), SHORT // 2)",
     ),
     (
-        "cut(arb_poly(g) * (1 / arb(self.unit)), SHORT // 2) + off",
-        "(arb_poly(g) * (1 / arb(self.unit))).truncate(SHORT // 2) + off",
+        "cut(g * (1 / arb(self.unit)), SHORT // 2) + off",
+        "(g * (1 / arb(self.unit))).truncate(SHORT // 2) + off",
     ),
     ("(1 / arb(self.unit))", "(1 / arb(self.piece.unit))"),
     ("plain = self.short[n](s)", "plain = self.short[0](s)"),
