@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Self, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -36,18 +36,7 @@ def failure(error: Exception) -> tuple[Status, str]:
 
 
 @dataclass(frozen=True)
-class Record:
-    """A result with a status, among other fields; `dataclasses.asdict` makes its JSON document."""
-
-    @classmethod
-    def parsed(cls, document: dict[str, Any]) -> Self:
-        """Read a result from its JSON document; keys that it does not have are left out."""
-        values = {field.name: document[field.name] for field in fields(cls) if field.name in document}
-        return cls(**values | {"status": Status(values["status"])})
-
-
-@dataclass(frozen=True)
-class Row(Record):
+class Row:
     """One method at one setting on a scene: status, errors and cost.
 
     Attributes:
