@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from reference import InputError, Scene
 from reference.errors import shortened
+from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 from reference.numbers.table import Table
 from reference.status import Status
@@ -60,32 +61,37 @@ class Outcome:
     Attributes:
         status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or infinity.
         reached_t: last output time that was reached, in s.
-        cartesian: computes `states`; called at most once, so that the conversion is not timed with the run.
+        rows: computes x, y, z in m and vx, vy, vz in m/s at the output times that were reached: an array of shape
+            (rows, 6), or a table where the number type is finer than binary64; it is called at most once, so that the
+            conversion is not timed with the run.
         reason: why it is not ok, in the library's words if it has any; or its warning.
         steps: number of steps, None if the method does not report it.
         rhs_evaluations: number of evaluations of the right-hand side (None for Taylor methods, which make none).
-        finer: computes `exact`, for number types finer than binary64.
         cpu_s: CPU seconds as measured by the run itself, if another process did the work.
     """
 
     status: Status
     reached_t: float
-    cartesian: Callable[[], Array] = field(repr=False)
+    rows: Callable[[], Array | Table] = field(repr=False)
     reason: str = ""
     steps: int | None = None
     rhs_evaluations: int | None = None
-    finer: Callable[[], Table] | None = field(default=None, repr=False)
     cpu_s: float | None = None
 
     @cached_property
-    def states(self) -> Array:
-        """x, y, z in m and vx, vy, vz in m/s at the output times that were reached, shape (rows, 6)."""
-        return self.cartesian()
+    def _computed(self) -> Array | Table:
+        return self.rows()
 
-    @cached_property
+    @property
     def exact(self) -> Table | None:
         """The states as computed in a number type finer than binary64; None for binary64."""
-        return None if self.finer is None else self.finer()
+        return self._computed if isinstance(self._computed, Table) else None
+
+    @cached_property
+    def states(self) -> Array:
+        """The states as doubles, shape (rows, 6)."""
+        computed = self._computed
+        return np.column_stack([computed[name] for name in STATE]) if isinstance(computed, Table) else computed
 
 
 Work = Callable[[], Outcome]
