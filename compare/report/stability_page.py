@@ -150,7 +150,7 @@ def page_text(document: dict[str, Any]) -> str:
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
         picture = figure(error_growth(measured), caption)
         parts.append(section("Long runs", picture, findings(laws(runs))))
-    programs = document.get("programs", {})
+    programs = document["programs"]
     if programs:
         parts.append(section("Programs", _programs(programs)))
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))

@@ -112,7 +112,7 @@ def advice(statuses: Collection[Status]) -> list[str]:
     return [f"{status.words}: {status.advice}" for status in Status if status in statuses and status.advice]
 
 
-def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str] = ()) -> Html:
+def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str]) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
     listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
     of_method: dict[str, ObservedOrder] = {}

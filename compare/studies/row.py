@@ -133,11 +133,6 @@ class GridTruth:
         t = self.golden.transits["t"]
         return np.asarray(t[t < self.times[-1]])
 
-    @cached_property
-    def transits_rounded_by(self) -> Array:
-        """Distance of the doubles in `transits` from the printed times, in s."""
-        return difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])
-
     def position_errors(self, outcome: Outcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         columns = [_column(outcome, name) for name in "xyz"]
@@ -162,7 +157,7 @@ class GridTruth:
         ahead, behind = (
             np.asarray(acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]) for dt in (nudge, -nudge)
         )
-        away = self.transits_rounded_by
+        away = difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])  # of the doubles, in s
         with np.errstate(divide="ignore", invalid="ignore"):
             errors_s = np.abs(away - vx / (a[:, 0] * k.length))
             curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))
