@@ -10,7 +10,7 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -172,25 +172,15 @@ def available(method: Method) -> str | None:
     return f"not installed ({', '.join(absent)}){advice}"
 
 
-def outcome(
-    problem: Problem,
-    states: Array,
-    *,
-    steps: int | None = None,
-    rhs_evaluations: int | None = None,
-    reason: str = "",
-    cpu_s: float | None = None,
-) -> Outcome:
+def outcome(problem: Problem, states: Array, *, reason: str = "", **told: Any) -> Outcome:
     """Return the outcome of a run in binary64.
 
     Args:
         problem: as it was integrated.
         states: of the problem's variables at its first output times, shape (rows, variables); a run with fewer rows
             than times has stopped early; rows from the first NaN or infinity on are left out.
-        steps: number of steps.
-        rhs_evaluations: number of evaluations of the right-hand side.
         reason: the library's own, if it gave one.
-        cpu_s: as in `Outcome`.
+        told: what else the run tells of itself: `steps`, `rhs_evaluations` and `cpu_s` of `Outcome`.
     """
     rows = leading(np.isfinite(states).all(axis=1))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
@@ -199,15 +189,7 @@ def outcome(
         status, reason = Status.NOT_FINITE, reason or f"the state is not finite after t = {reached_t:g} s"
     elif rows < len(problem.times):
         status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
-    return Outcome(
-        status,
-        reached_t,
-        lambda: problem.cartesian(states[:rows]),
-        reason,
-        steps,
-        rhs_evaluations,
-        cpu_s=cpu_s,
-    )
+    return Outcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **told)
 
 
 def leading(flags: npt.ArrayLike) -> int:
