@@ -17,7 +17,16 @@ from reference.model.carried import carried
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.columns import STATE
-from reference.numbers.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE, LONG_DOUBLE_BITS, NumberType, real
+from reference.numbers.precision import (
+    DOUBLE,
+    DOUBLE_BITS,
+    GUARD_BITS,
+    LONG_DOUBLE,
+    LONG_DOUBLE_BITS,
+    Array,
+    NumberType,
+    real,
+)
 from reference.numbers.table import Table
 from reference.status import Status
 
@@ -51,16 +60,12 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         except IntegrationError as error:
             return failed(problem, error.reason)
 
-        def finer() -> Table:
+        def rows() -> Array | Table:
+            if number == DOUBLE:
+                return model.doubles(states)
             return model.table(states, number.prec + SPARE_BITS).only(STATE)
 
-        return Outcome(
-            Status.OK,
-            float(problem.times[-1]),
-            lambda: model.doubles(states),
-            steps=propagator.steps - before,
-            finer=None if number == DOUBLE else finer,
-        )
+        return Outcome(Status.OK, float(problem.times[-1]), rows, steps=propagator.steps - before)
 
     return work
 

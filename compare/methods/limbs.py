@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-import numpy as np
-
 from reference.numbers.columns import STATE
-from reference.numbers.precision import Array
 from reference.status import Status
 
 from .method import Family, Method, Outcome, Work, failed
@@ -30,10 +27,7 @@ def prepare(problem: Problem, setting: float) -> Work:
         except IntegrationError as error:
             return failed(problem, error.reason)
 
-        def cartesian() -> Array:
-            return np.column_stack([run.grid[name] for name in STATE])
-
-        return Outcome(Status.OK, float(times[-1]), cartesian, steps=run.steps, finer=lambda: run.grid.only(STATE))
+        return Outcome(Status.OK, float(times[-1]), lambda: run.grid.only(STATE), steps=run.steps)
 
     return work
 

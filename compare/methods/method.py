@@ -10,13 +10,14 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
 from reference.errors import shortened
+from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 from reference.numbers.table import Table
 from reference.status import Status
@@ -60,32 +61,37 @@ class Outcome:
     Attributes:
         status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or infinity.
         reached_t: last output time that was reached, in s.
-        cartesian: computes `states`; called at most once, so that the conversion is not timed with the run.
+        rows: computes x, y, z in m and vx, vy, vz in m/s at the output times that were reached: an array of shape
+            (rows, 6), or a table where the number type is finer than binary64; it is called at most once, so that the
+            conversion is not timed with the run.
         reason: why it is not ok, in the library's words if it has any; or its warning.
         steps: number of steps, None if the method does not report it.
         rhs_evaluations: number of evaluations of the right-hand side (None for Taylor methods, which make none).
-        finer: computes `exact`, for number types finer than binary64.
         cpu_s: CPU seconds as measured by the run itself, if another process did the work.
     """
 
     status: Status
     reached_t: float
-    cartesian: Callable[[], Array] = field(repr=False)
+    rows: Callable[[], Array | Table] = field(repr=False)
     reason: str = ""
     steps: int | None = None
     rhs_evaluations: int | None = None
-    finer: Callable[[], Table] | None = field(default=None, repr=False)
     cpu_s: float | None = None
 
     @cached_property
-    def states(self) -> Array:
-        """x, y, z in m and vx, vy, vz in m/s at the output times that were reached, shape (rows, 6)."""
-        return self.cartesian()
+    def _computed(self) -> Array | Table:
+        return self.rows()
 
-    @cached_property
+    @property
     def exact(self) -> Table | None:
         """The states as computed in a number type finer than binary64; None for binary64."""
-        return None if self.finer is None else self.finer()
+        return self._computed if isinstance(self._computed, Table) else None
+
+    @cached_property
+    def states(self) -> Array:
+        """The states as doubles, shape (rows, 6)."""
+        computed = self._computed
+        return np.column_stack([computed[name] for name in STATE]) if isinstance(computed, Table) else computed
 
 
 Work = Callable[[], Outcome]
@@ -166,25 +172,15 @@ def available(method: Method) -> str | None:
     return f"not installed ({', '.join(absent)}){advice}"
 
 
-def outcome(
-    problem: Problem,
-    states: Array,
-    *,
-    steps: int | None = None,
-    rhs_evaluations: int | None = None,
-    reason: str = "",
-    cpu_s: float | None = None,
-) -> Outcome:
+def outcome(problem: Problem, states: Array, *, reason: str = "", **told: Any) -> Outcome:
     """Return the outcome of a run in binary64.
 
     Args:
         problem: as it was integrated.
         states: of the problem's variables at its first output times, shape (rows, variables); a run with fewer rows
             than times has stopped early; rows from the first NaN or infinity on are left out.
-        steps: number of steps.
-        rhs_evaluations: number of evaluations of the right-hand side.
         reason: the library's own, if it gave one.
-        cpu_s: as in `Outcome`.
+        told: what else the run tells of itself: `steps`, `rhs_evaluations` and `cpu_s` of `Outcome`.
     """
     rows = leading(np.isfinite(states).all(axis=1))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
@@ -193,15 +189,7 @@ def outcome(
         status, reason = Status.NOT_FINITE, reason or f"the state is not finite after t = {reached_t:g} s"
     elif rows < len(problem.times):
         status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
-    return Outcome(
-        status,
-        reached_t,
-        lambda: problem.cartesian(states[:rows]),
-        reason,
-        steps,
-        rhs_evaluations,
-        cpu_s=cpu_s,
-    )
+    return Outcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **told)
 
 
 def leading(flags: npt.ArrayLike) -> int:

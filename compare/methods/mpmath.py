@@ -9,7 +9,7 @@ from typing import Any
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.columns import STATE
-from reference.numbers.precision import GUARD_BITS, Array, context, to_fraction, to_mpf
+from reference.numbers.precision import GUARD_BITS, context, to_fraction, to_mpf
 from reference.numbers.table import Table
 from reference.status import Status
 
@@ -21,8 +21,6 @@ SPARE_BITS = 64  # exact states are written with this many bits below the precis
 
 def prepare(problem: Problem, setting: float) -> Work:
     """Set up contexts of `setting` bits; the returned function computes the series and sums them."""
-    import numpy as np
-
     prec = int(setting)
     ctx, model = context(prec), FORMULATIONS[problem.formulation]
     exact = Start.of(problem.scene.exact, prec + GUARD_BITS)
@@ -41,18 +39,13 @@ def prepare(problem: Problem, setting: float) -> Work:
         solution = ctx.odefun(rhs, 0, start)
         states = [solution(t) for t in times]
 
-        def rows() -> list[list[Any]]:
-            vectors = [model.cartesian(state, k, ctx) for state in states]
-            return [[part * k.length for part in (*position, *velocity)] for position, velocity in vectors]
-
-        def cartesian() -> Array:
-            return np.array([[float(value) for value in row] for row in rows()])
-
-        def fixed() -> Table:
+        def rows() -> Table:
             bits = prec + SPARE_BITS
-            return Table(STATE, bits, [tuple(int(to_fraction(value) * 2**bits) for value in row) for row in rows()])
+            vectors = [model.cartesian(state, k, ctx) for state in states]
+            values = [tuple(int(to_fraction(part * k.length) * 2**bits) for part in (*n, *v)) for n, v in vectors]
+            return Table(STATE, bits, values)
 
-        return Outcome(Status.OK, float(problem.times[-1]), cartesian, rhs_evaluations=calls, finer=fixed)
+        return Outcome(Status.OK, float(problem.times[-1]), rows, rhs_evaluations=calls)
 
     return work
 

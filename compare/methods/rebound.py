@@ -21,36 +21,22 @@ from reference.numbers.precision import Array
 from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 from .rhs.problem import Problem
 
-_POINTER = """
-@nb.extending.intrinsic
-def pointer(typing, address):
-    def generated(context, builder, signature, arguments):
-        return builder.inttoptr(arguments[0], context.get_value_type(nb.types.voidptr))
-    return nb.types.voidptr(address), generated
+POINTER = 8  # bytes
 
-
-@nb.njit(**OPTIONS)
-def at(base, offset, count):
-    # count doubles behind the pointer that stands at an offset of a structure
-    words = nb.carray(base, (offset // 8 + 1,), np.int64)
-    return nb.carray(pointer(words[offset // 8]), (count,), np.float64)
-
-"""
-
+# each reads its structure as a list of pointers to doubles
 _ODE = """
-@nb.cfunc("void(voidptr, CPointer(float64), CPointer(float64), float64)", **OPTIONS)
+@nb.cfunc("void(CPointer(CPointer(float64)), CPointer(float64), CPointer(float64), float64)", **OPTIONS)
 def rates(ode, dy, y, t):
-    k = at(ode, ${ref}, ${counter} + 1)
+    k = ode[${ref}]
     k[${counter}] += 1.0
     ${dy}= traced(${y}${k})
 """
 
 _FORCES = """
-@nb.cfunc("void(voidptr)", **OPTIONS)
+@nb.cfunc("void(CPointer(CPointer(float64)))", **OPTIONS)
 def rates(simulation):
-    k = at(simulation, ${extras}, ${counter} + 1)
+    k, p = simulation[${extras}], simulation[${particles}]
     k[${counter}] += 1.0
-    p = at(simulation, ${particles}, 9)
     x, y, z, ax, ay, az = traced(${p}${k})
     p[6] += ax
     p[7] += ay
@@ -63,7 +49,7 @@ def prepare_bs(problem: Problem, setting: float) -> Work:
     import rebound
 
     size = len(problem.start)
-    rates = problem.compiled(problem.system.program, _POINTER + _ODE, ref=rebound.ODE.ref.offset).rates
+    rates = problem.compiled(problem.system.program, _ODE, ref=rebound.ODE.ref.offset // POINTER).rates
 
     def work() -> Outcome:
         data = np.append(problem.parameters, 0.0)
@@ -89,8 +75,9 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
     """Compile the forces; the returned function sets up a simulation and integrates."""
     import rebound
 
-    places = {"extras": rebound.Simulation.extras.offset, "particles": rebound.Simulation._particles.offset}
-    rates = problem.compiled(problem.system.program, _POINTER + _FORCES, **places).rates
+    fields = {"extras": rebound.Simulation.extras, "particles": rebound.Simulation._particles}
+    places = {name: field.offset // POINTER for name, field in fields.items()}
+    rates = problem.compiled(problem.system.program, _FORCES, **places).rates
 
     def work() -> Outcome:
         data = np.append(problem.parameters, 0.0)

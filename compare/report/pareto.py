@@ -9,7 +9,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import Any
+
+from pydantic import TypeAdapter
 
 from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
 from ..studies.row import Row
@@ -51,26 +54,12 @@ class Curve:
         return tuple(row for row in self.rows if row.measured)
 
 
-@dataclass(frozen=True)
-class CostAtError:
-    """Cost of reaching an error with a method.
-
-    Attributes:
-        label: label of the curve.
-        method: id of the method.
-        cpu_s: CPU seconds.
-        interpolated: between two settings; otherwise the cost is that of a setting at least as accurate.
-    """
-
-    label: str
-    method: str
-    cpu_s: float
-    interpolated: bool
+Cost = tuple[Curve, float]  # a method, and the CPU seconds at which it reaches an error
 
 
 def rows_of(document: dict[str, Any]) -> list[Row]:
     """Return the rows of a study's document."""
-    return [Row.parsed(row) for row in document["rows"]]
+    return TypeAdapter(list[Row]).validate_python(document["rows"])
 
 
 def curves(rows: Sequence[Row]) -> list[Curve]:
@@ -119,36 +108,33 @@ def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
     return rows_on_front
 
 
-def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> CostAtError | None:
-    """Return the least cost at which a method reaches an error; None if it does not reach it.
+def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> float | None:
+    """Return the least CPU seconds at which a method reaches an error; None if it does not reach it.
 
     The cost is interpolated in logarithms between neighbouring settings on both sides of the error, never across a
     failed setting and never beyond the ladder: if the loosest setting is already more accurate, its cost is returned.
     """
-    if error_m < bound_m:
-        return None
-    costs = [CostAtError(curve.label, curve.method, *one) for one in _ways(curve, error_m, bound_m)]
-    return min(costs, key=lambda cost: (cost.cpu_s, cost.interpolated), default=None)
+    return None if error_m < bound_m else min(_ways(curve, error_m, bound_m), default=None)
 
 
-def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float, bool]]:
-    """Yield each cost at which the error is reached: CPU seconds, whether interpolated."""
+def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[float]:
+    """Yield the CPU seconds of each setting that reaches the error, and of each place between two that does."""
     for row in curve.measured:
         if row.cpu_s and error_of(row, bound_m) <= error_m:
-            yield row.cpu_s, False
+            yield row.cpu_s
     for a, b in pairwise(curve.rows):
         if not (a.measured and b.measured and a.cpu_s and b.cpu_s):
             continue
         e, f = error_of(a, bound_m), error_of(b, bound_m)
         if 0 < min(e, f) < error_m < max(e, f):
             part = math.log(error_m / e) / math.log(f / e)
-            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True
+            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part
 
 
-def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[CostAtError]:
+def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[Cost]:
     """Return the cost of an error with every method that reaches it, the cheapest first."""
-    costs = [cost_at(curve, error_m, bound_m) for curve in curves(rows)]
-    return sorted((cost for cost in costs if cost is not None), key=lambda cost: cost.cpu_s)
+    costs = ((curve, cost_at(curve, error_m, bound_m)) for curve in curves(rows))
+    return sorted(((curve, cost) for curve, cost in costs if cost is not None), key=itemgetter(1))
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
@@ -195,7 +181,7 @@ def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
 def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
     """Yield the cheapest method at each error that is reached; errors at which it is the same run share a sentence."""
     reached = [(error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))]
-    for _, group in groupby(reached, key=lambda target: (target[1][0].label, target[1][0].cpu_s)):
+    for _, group in groupby(reached, key=lambda target: target[1][0]):
         alike = list(group)
         (first_m, costs), (last_m, _) = alike[0], alike[-1]
         if len(alike) > 1 and all(others == costs for _, others in alike):
@@ -204,20 +190,22 @@ def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
             yield from (_sentence(rows, f"At {_metres(error_m)}", costs, bound_m) for error_m, costs in alike)
 
 
-def _sentence(rows: Sequence[Row], where: str, costs: Sequence[CostAtError], bound_m: float) -> str:
-    first = costs[0]
-    head = f"{where} the cheapest method is {first.label}, with {seconds(first.cpu_s)} of CPU time"
-    paper = next((cost for cost in costs if cost.method == PAPER_METHOD), None)
+def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: float) -> str:
+    first, least_s = costs[0]
+    head = f"{where} the cheapest method is {first.label}, with {seconds(least_s)} of CPU time"
+    paper_s = next((cpu_s for curve, cpu_s in costs if curve.method == PAPER_METHOD), None)
     if first.method == PAPER_METHOD:
-        return head + (f": {_times(costs[1], first)} the next, {costs[1].label}." if len(costs) > 1 else ".")
-    if paper is not None:
-        return f"{head}: {_times(paper, first)} {PAPER_NAME}."
+        if len(costs) == 1:
+            return f"{head}."
+        second, cpu_s = costs[1]
+        return f"{head}: {_times(cpu_s / least_s)} the next, {second.label}."
+    if paper_s is not None:
+        return f"{head}: {_times(paper_s / least_s)} {PAPER_NAME}."
     best = min((error_of(row, bound_m) for row in _measured(rows) if row.method == PAPER_METHOD), default=None)
     return head + (f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else ".")
 
 
-def _times(dear: CostAtError, cheap: CostAtError) -> str:
-    ratio = dear.cpu_s / cheap.cpu_s
+def _times(ratio: float) -> str:
     if ratio < ALIKE:
         return "as cheap as"
     return f"{ratio:.2g} times cheaper than" if ratio < 100 else f"{float(f'{ratio:.2g}'):.0f} times cheaper than"

@@ -8,6 +8,8 @@ from dataclasses import asdict
 from statistics import median
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from reference import load_scene
 from reference.errors import shortened
 from reference.status import Status
@@ -22,7 +24,6 @@ from .stability_charts import LETTERS, error_growth, heat_map
 from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, tidy, words
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
-_RUN = ("scene", "method", "precision", "setting")
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 _LEAD_OF_PROGRAMS = "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
@@ -114,7 +115,8 @@ def _times(gain: float) -> str:
 
 
 def _parsed(document: dict[str, Any]) -> tuple[list[Cell], list[LongRun]]:
-    return [Cell.parsed(row) for row in document["rows"]], [LongRun.parsed(run) for run in document["long_runs"]]
+    cells, runs = TypeAdapter(list[Cell]), TypeAdapter(list[LongRun])
+    return cells.validate_python(document["rows"]), runs.validate_python(document["long_runs"])
 
 
 def page_text(document: dict[str, Any]) -> str:
@@ -132,10 +134,14 @@ def page_text(document: dict[str, Any]) -> str:
                 f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}.",
             ),
         ),
-        section("Silently wrong", _reasons(wrong)),
-        *([section("Ill-conditioned: the motion magnifies errors", _reasons(magnified))] if magnified else []),
-        section("Other failures", _reasons([cell for cell in failures if cell.status not in COUNTED])),
-        section("What each run was asked for, and what it kept", _asked(cells)),
+        section("Silently wrong", _runs(wrong, reasons=True)),
+        *(
+            [section("Ill-conditioned: the motion magnifies errors", _runs(magnified, reasons=True))]
+            if magnified
+            else []
+        ),
+        section("Other failures", _runs([cell for cell in failures if cell.status not in COUNTED], reasons=True)),
+        section("What each run was asked for, and what it kept", _runs(cells)),
         section("What the words mean", words({cell.status for cell in cells})),
         section("Scenes", _scenes(cells)),
     ]
@@ -144,7 +150,7 @@ def page_text(document: dict[str, Any]) -> str:
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
         picture = figure(error_growth(measured), caption)
         parts.append(section("Long runs", picture, findings(laws(runs))))
-    programs = document.get("programs", {})
+    programs = document["programs"]
     if programs:
         parts.append(section("Programs", _programs(programs)))
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
@@ -158,30 +164,18 @@ def page_text(document: dict[str, Any]) -> str:
     )
 
 
-def _reasons(cells: Sequence[Cell]) -> Html:
+def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:
+    """Return runs, the digits that they were asked for and kept, and on demand why they failed."""
     if not cells:
         return paragraph("None.")
-    columns = {**dict.fromkeys((*_RUN, "status"), ""), "digits": "number", "asked for": "number", "reason": "prose"}
-    rows = []
-    for cell in cells:
-        digits = "" if cell.digits is None else f"{max(cell.digits, 0):.1f}"
-        rows.append((*_run(cell), cell.status.words, digits, f"{cell.asked:.1f}", cell.reason))
-    return Table(columns, rows).html()
-
-
-def _asked(cells: Sequence[Cell]) -> Html:
-    """Return each cell's setting, the digits that it was asked for, and those that it kept."""
-    columns = {**dict.fromkeys(_RUN, ""), **dict.fromkeys(("asked for", "kept", "CPU s"), "number"), "status": ""}
+    texts, numbers = ("scene", "method", "precision", "setting", "status"), ("asked for", "kept", "CPU s")
+    columns = dict.fromkeys(texts, "") | dict.fromkeys(numbers, "number") | ({"reason": "prose"} if reasons else {})
     rows = []
     for cell in cells:
         kept = "" if cell.digits is None else f"{cell.digits:.1f}"
-        rows.append((*_run(cell), f"{cell.asked:.1f}", kept, cpu(cell.cpu_s), cell.status.words))
+        run = (cell.scene, cell.method, cell.precision, setting(cell), cell.status.words)
+        rows.append((*run, f"{cell.asked:.1f}", kept, cpu(cell.cpu_s), cell.reason)[: len(columns)])
     return Table(columns, rows).html()
-
-
-def _run(cell: Cell) -> tuple[str, ...]:
-    """Return what was run, for the columns `_RUN`."""
-    return cell.scene, cell.method, cell.precision, setting(cell)
 
 
 def _programs(programs: Mapping[str, str]) -> Html:

@@ -19,11 +19,12 @@ TEXTS = texts_of(__file__)
 
 
 def page_text(document: dict[str, Any]) -> str:
-    """Return the page as HTML; `title` of the scene and `limit_s` of a run are used if the document has them."""
+    """Return the page as HTML."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     conclusions, coarse = sentences(document), not of_digits(rows, bound_m)
     failed, lost = study_tables.failures(rows), {row.status for row in rows if row.failed}
-    programs, files = document.get("programs", {}), document.get("candidates", ())
+    limit = f"{document['limit_s']:g} CPU seconds"
+    measured = [words.format(limit=limit, repeat_s=REPEAT_S, repeats=REPEATS) for words in TEXTS["measured"]]
     parts = [
         section(
             "Main results",
@@ -34,10 +35,10 @@ def page_text(document: dict[str, Any]) -> str:
         *([section("The Pareto front", study_tables.pareto_front(rows, bound_m))] if coarse else []),
         section("Every row", study_tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed, study_tables.words(lost))] if failed else []),
-        section("How it was measured", *map(paragraph, _measured(document.get("limit_s")))),
-        section("The methods", study_tables.methods(rows, bound_m, programs, files)),
+        section("How it was measured", *map(paragraph, measured)),
+        section("The methods", study_tables.methods(rows, bound_m, document["programs"], document["candidates"])),
     ]
-    return page(f"Error against run time: {document.get('title') or document['scene']}", parts, lead=_lead(document))
+    return page(f"Error against run time: {document['title'] or document['scene']}", parts, lead=_lead(document))
 
 
 def _lead(document: dict[str, Any]) -> Html:
@@ -47,7 +48,7 @@ def _lead(document: dict[str, Any]) -> Html:
         "span": f"{document['t_end']:g} s, {reference['transits']} transits",
         "reference": f"level {reference['level']}, bound {float(reference['bound_m']):.1e} m",
         "load": study_tables.busy(rows_of(document)),
-        "machine": ", ".join(machine[key] for key in ("processor", "system") if key in machine),
+        "machine": f"{machine['processor']}, {machine['system']}",
         "versions": ", ".join(f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")),
     }
     return join([paragraph(TEXTS["lead"]), facts(details)])
@@ -72,12 +73,6 @@ def _hidden(rows: Sequence[Row]) -> str:
     unknown = {row.key for row in rows if not row.cpu_s or not (row.measured or row.failed)}
     hidden = [curve.label for curve in curves(rows) if unknown & {row.key for row in curve.rows}]
     return f" Runs without a cost or an error are of {', '.join(hidden)}." if hidden else ""
-
-
-def _measured(limit_s: float | None) -> list[str]:
-    """Return paragraphs that describe how a study measures."""
-    limit = f"{limit_s:g} CPU seconds" if limit_s else "the limit of a run"
-    return [text.format(limit=limit, repeat_s=REPEAT_S, repeats=REPEATS) for text in TEXTS["measured"]]
 
 
 REPORT = Report("study.json", study_tables.text_table, page_text)

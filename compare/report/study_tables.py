@@ -22,7 +22,7 @@ from ..studies.stability import Cell
 from ..studies.study import ObservedOrder, orders
 from ..studies.users_program import FILE
 from .page import Html, Table, strong
-from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
+from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, sentences
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
@@ -36,21 +36,17 @@ TEXTS = texts_of(__file__)  # above the tables
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
     """Return the cost of each error with each method, sorted by the cost at the smallest error that is reached."""
     placed = []
-    least = [next((cost.cpu_s for cost in costs_at(rows, error_m, bound_m)), None) for error_m in TARGETS_M]
+    least = [next((cpu_s for _, cpu_s in costs_at(rows, error_m, bound_m)), None) for error_m in TARGETS_M]
     for curve in curves(rows):
         reached = [cost_at(curve, error_m, bound_m) for error_m in TARGETS_M]
         if any(reached):
-            order = [(cost is None, cost.cpu_s if cost else 0.0) for cost in reversed(reached)]
-            cells = [_cost_cell(cost, best) for cost, best in zip(reached, least, strict=True)]
+            order = [math.inf if cpu_s is None else cpu_s for cpu_s in reversed(reached)]
+            cells = [
+                strong(cpu(cpu_s)) if cpu_s == best else cpu(cpu_s) for cpu_s, best in zip(reached, least, strict=True)
+            ]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
     return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(TEXTS["costs"])
-
-
-def _cost_cell(cost: CostAtError | None, least: float | None) -> str:
-    if cost is None:
-        return ""
-    return strong(cpu(cost.cpu_s)) if cost.cpu_s == least else cpu(cost.cpu_s)
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -116,7 +112,7 @@ def advice(statuses: Collection[Status]) -> list[str]:
     return [f"{status.words}: {status.advice}" for status in Status if status in statuses and status.advice]
 
 
-def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str] = ()) -> Html:
+def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str]) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
     listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
     of_method: dict[str, ObservedOrder] = {}

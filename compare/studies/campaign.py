@@ -11,7 +11,7 @@ import json
 import os
 import platform
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
@@ -28,19 +28,16 @@ from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
 from ..methods import METHODS, library
-from .row import Record
 
 JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
 LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}  # that are always there, besides those that methods require
 DISTRIBUTIONS = {"sksundae": "scikit-sundae"}  # of modules that are called otherwise
-ONE_THREAD = {
-    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"),
-    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
-}
+# of all libraries but JAX, which `methods.diffrax` tells itself
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 
 Item = TypeVar("Item", bound=tuple[Any, ...])
-Result = TypeVar("Result", bound=Record)
+Result = TypeVar("Result", bound=Any)  # a dataclass with a status
 Counted = Callable[[int, int, str], None]
 
 
@@ -52,16 +49,14 @@ class Measurement(ABC, Generic[Item, Result]):
         recipe: what else than the items decides the results, to be written as JSON; together with machine and versions
             of libraries it must be equal for a stored result to be used again.
         patience_s: wall-clock seconds for one item, on a machine with a core for it; then its process is killed.
+        commands: of the user's programs, by the words that their items begin with; the command too must be equal.
         kind: class of the results.
     """
 
     recipe: Any
     patience_s: float
+    commands: Mapping[str, str]
     kind: ClassVar[type[Any]]
-
-    def recipe_of(self, item: Item) -> tuple[Any, ...]:
-        """Return what else decides the result of one item, beside the item itself."""
-        return ()
 
     @abstractmethod
     def measure(self, item: Item) -> Result:
@@ -93,7 +88,7 @@ def campaign(
         InputError: the journal cannot be written.
     """
     common = [JUDGED, measurement.recipe, machine()]
-    marks = {item: _mark([*common, *measurement.recipe_of(item)]) for item in items}
+    marks = {item: _mark([*common, measurement.commands.get(item[0])]) for item in items}
     stored = dict(_stored(journal_path, measurement.kind))
     results = {item: stored[mark, item] for item, mark in marks.items() if (mark, item) in stored}
     groups: dict[tuple[Any, ...], list[Item]] = {}
@@ -174,9 +169,9 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
 
 @contextmanager
 def single_thread() -> Iterator[None]:
-    """Have processes that are started meanwhile use one thread in every library; the user's own XLA_FLAGS stay."""
+    """Have processes that are started meanwhile use one thread in every library."""
     before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update({name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not before[name]})
+    os.environ.update(ONE_THREAD)
     try:
         yield
     finally:

@@ -22,7 +22,7 @@ from ..observed.least_squares import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, campaign
 from .measure import OnScene, timed
-from .row import FAILURES, Record, failure
+from .row import FAILURES, failure
 from .study_plan import Item
 
 SCENE = "paris_30d"
@@ -36,7 +36,7 @@ PARTS = 24  # points of the fitted curve, equally far apart in log t
 
 
 @dataclass(frozen=True)
-class LongRun(Record):
+class LongRun:
     """A method's errors over a long run.
 
     Attributes:
@@ -100,7 +100,7 @@ def long_runs(
         scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL, grid=True
     )
     recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
-    runs = _LongRuns(recipe, PATIENCE_S, scene, golden.path)
+    runs = _LongRuns(recipe, PATIENCE_S, {}, scene, golden.path)
     return campaign(runs, items, journal_path=journal_path, report=report)
 
 

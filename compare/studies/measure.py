@@ -75,18 +75,12 @@ class Bench:
     def _measured(self, base: Row, method: Method) -> Row:
         times = self.truth.times
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
-        started = _spent_s()
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
-        probe = method.prepare(Problem.of(self.scene, base.formulation, probe_times), base.setting)
-        compile_s = _spent_s() - started
-        probe_outcome, probe_s = timed(probe)
-        base = replace(base, compile_s=compile_s)
-        if probe_outcome.status != Status.OK:
-            return self._row_of(base, probe_outcome, probe_s)
-        probe_s = min(probe_s, timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
+        base, outcome, costs_s = self._run(base, method, probe_times, repeats=2)
+        probe_s = min(costs_s)  # the first run warms up
         expected_s, rows = probe_s * float(times[-1] / probe_times[-1]), min(len(times), longest)
-        if rows <= len(probe_times) or probe_s > self.limit_s:
-            return self._finished(base, method, probe_outcome, [probe_s], probe_times, expected_s)
+        if outcome.status != Status.OK or rows <= len(probe_times) or probe_s > self.limit_s:
+            return self._finished(base, method, outcome, [probe_s], probe_times, expected_s)
         if expected_s > self.limit_s:
             part = times[: max(2 * len(probe_times), int(self.limit_s / 4 / expected_s * len(times)))]
             if len(part) < rows:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Self, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -36,18 +36,7 @@ def failure(error: Exception) -> tuple[Status, str]:
 
 
 @dataclass(frozen=True)
-class Record:
-    """A result with a status, among other fields; `dataclasses.asdict` makes its JSON document."""
-
-    @classmethod
-    def parsed(cls, document: dict[str, Any]) -> Self:
-        """Read a result from its JSON document; keys that it does not have are left out."""
-        values = {field.name: document[field.name] for field in fields(cls) if field.name in document}
-        return cls(**values | {"status": Status(values["status"])})
-
-
-@dataclass(frozen=True)
-class Row(Record):
+class Row:
     """One method at one setting on a scene: status, errors and cost.
 
     Attributes:
@@ -144,11 +133,6 @@ class GridTruth:
         t = self.golden.transits["t"]
         return np.asarray(t[t < self.times[-1]])
 
-    @cached_property
-    def transits_rounded_by(self) -> Array:
-        """Distance of the doubles in `transits` from the printed times, in s."""
-        return difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])
-
     def position_errors(self, outcome: Outcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         columns = [_column(outcome, name) for name in "xyz"]
@@ -173,7 +157,7 @@ class GridTruth:
         ahead, behind = (
             np.asarray(acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]) for dt in (nudge, -nudge)
         )
-        away = self.transits_rounded_by
+        away = difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])  # of the doubles, in s
         with np.errstate(divide="ignore", invalid="ignore"):
             errors_s = np.abs(away - vx / (a[:, 0] * k.length))
             curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))

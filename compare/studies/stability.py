@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from . import users_program
 from .campaign import Counted, Measurement, campaign
 from .character import Character, character, reason_of
 from .measure import Bench
-from .row import GridTruth, Record, Row
+from .row import GridTruth, Row
 from .study_plan import declared, on_doubles
 
 LIMIT_S = 3.0  # CPU seconds of a cell
@@ -45,7 +44,7 @@ Problems = dict[str, tuple[Scene, Path, Character]]  # each scene, the folder of
 
 
 @dataclass(frozen=True)
-class Cell(Record):
+class Cell:
     """A method on a scene.
 
     Attributes:
@@ -136,7 +135,7 @@ def stability(
     solved = [item for item in items if item[-1] in problems]
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
     recipe = [limit_s, SWINGS, orders]  # orders decide the digits asked for
-    cells = _Cells(recipe, PATIENCE * limit_s, problems, limit_s, commands)
+    cells = _Cells(recipe, PATIENCE * limit_s, commands, problems, limit_s)
     measured = campaign(cells, solved, journal_path=journal_path, report=report)
     finished = dict(zip(solved, measured, strict=True))
     return [finished.get(item) or cells.failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
@@ -159,12 +158,8 @@ class _Cells(Measurement[Item, Cell]):
 
     problems: Problems
     limit_s: float
-    commands: Mapping[str, str]
 
     kind = Cell
-
-    def recipe_of(self, item: Item) -> tuple[Any, ...]:
-        return (self.commands.get(item[0]),)
 
     def measure(self, item: Item) -> Cell:
         name, formulation, setting, scene_id = item
@@ -176,7 +171,7 @@ class _Cells(Measurement[Item, Cell]):
         if name in self.commands:
             wrong_m = WRONG * 10**-users_program.DIGITS * amplitude
             row, since = users_program.measured(name, self.commands[name], step, scene, golden, self.limit_s, wrong_m)
-            cell = _judged(item, row, traits, amplitude, self.limit_s)
+            cell = self._judged(item, row, traits, amplitude)
             if cell.status != Status.SILENTLY_WRONG or since is None:
                 return cell
             return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)
@@ -184,7 +179,7 @@ class _Cells(Measurement[Item, Cell]):
         used = step if method.setting == "step" else setting
         truth = GridTruth(golden, float(scene.exact.t_end))
         row = Bench(scene, truth, self.limit_s, repeats=1, transits=False).row(method, formulation, used)
-        return _judged(item, row, traits, amplitude, self.limit_s)
+        return self._judged(item, row, traits, amplitude)
 
     def failed(self, item: Item, status: Status, reason: str) -> Cell:
         method, formulation, setting, scene = item
@@ -193,31 +188,17 @@ class _Cells(Measurement[Item, Cell]):
         asked, precision = digits_asked(method, setting), _precision(method, formulation)
         return Cell(scene, method, precision, status, None, asked, None, reason, setting=used, kind=kind)
 
-
-def _judged(item: Item, row: Row, traits: Character, amplitude: float, limit_s: float) -> Cell:
-    """Return the cell of a run, whose error in m is judged as a part of the amplitude in m."""
-    method, formulation, setting, scene = item
-    requested = digits_asked(method, setting)
-    digits = None if row.error_m is None else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
-    status = row.status
-    if status == Status.EXTRAPOLATED:
-        status, digits = Status.OUT_OF_TIME, None
-    elif status == Status.OK and digits is not None and digits < requested - math.log10(WRONG):
-        status = Status.ILL_CONDITIONED if digits >= requested - traits.digits_lost else Status.SILENTLY_WRONG
-    return Cell(
-        scene,
-        method,
-        _precision(method, formulation),
-        status,
-        digits,
-        requested,
-        row.cpu_s,
-        reason_of(row, status, traits, digits, requested, limit_s),
-        row.steps,
-        setting=row.setting,
-        kind=row.kind,
-        load=row.load,
-    )
+    def _judged(self, item: Item, row: Row, traits: Character, amplitude: float) -> Cell:
+        """Return the cell of a run, whose error in m is judged as a part of the amplitude in m."""
+        requested = digits_asked(item[0], item[2])
+        digits = None if row.error_m is None else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
+        status = row.status
+        if status == Status.EXTRAPOLATED:
+            status, digits = Status.OUT_OF_TIME, None
+        elif status == Status.OK and digits is not None and digits < requested - math.log10(WRONG):
+            status = Status.ILL_CONDITIONED if digits >= requested - traits.digits_lost else Status.SILENTLY_WRONG
+        cell = self.failed(item, status, reason_of(row, status, traits, digits, requested, self.limit_s))
+        return replace(cell, digits=digits, cpu_s=row.cpu_s, steps=row.steps, setting=row.setting, load=row.load)
 
 
 def digits_asked(method: str, setting: float) -> float:

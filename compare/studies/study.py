@@ -87,12 +87,8 @@ class _MethodRuns(OnScene[Item, Row]):
     """Runs of methods and of programs on a scene, with their costs and errors."""
 
     limit_s: float
-    commands: Mapping[str, str]
 
     kind = Row
-
-    def recipe_of(self, item: Item) -> tuple[Any, ...]:
-        return (self.commands.get(item[0]),)
 
     def measure(self, item: Item) -> Row:
         name, formulation, setting = item
@@ -150,10 +146,10 @@ def study(
     runs = _MethodRuns(
         [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
         PATIENCE * limit_s,
+        commands,
         problem,
         golden.path,
         limit_s,
-        commands,
     )
     rows = campaign(
         runs, list(items or plan(requested, methods, formulations)), journal_path=journal_path, report=report

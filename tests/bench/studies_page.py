@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from textwrap import wrap
 from typing import Any
 
+from pydantic import TypeAdapter
 from scipy.stats import kendalltau
 
 from compare.methods import METHODS
@@ -194,7 +195,7 @@ def _results(name: str, kept: Documents) -> Sequence[Row | Cell]:
 def cells(document: Document) -> list[Cell]:
     """Return the cells of a study of stability."""
     empty = {"digits": None, "cpu_s": None, "reason": ""}
-    return [Cell.parsed({**empty, **row}) for row in document["rows"]]
+    return TypeAdapter(list[Cell]).validate_python([{**empty, **row} for row in document["rows"]])
 
 
 def _paris(kept: Documents) -> Iterator[str]:
@@ -472,10 +473,10 @@ def _folded(command: str, width: int = 118) -> Iterator[str]:
 
 
 def _cost(curve: Curve, error_m: float) -> float:
-    found = cost_at(curve, error_m)
-    if found is None:
+    cpu_s = cost_at(curve, error_m)
+    if cpu_s is None:
         raise NotSoError(f"{curve.label} does not reach {error_m} m")
-    return found.cpu_s
+    return cpu_s
 
 
 def _best(curve: Curve) -> float:
@@ -484,7 +485,7 @@ def _best(curve: Curve) -> float:
 
 def _costs(curve: Curve, bound_m: float, orders: dict[tuple[str, str], Document]) -> str:
     found = [cost_at(curve, error_m) for error_m in TARGETS_M]
-    figures = [_short(one.cpu_s) if one else "–" for one in found]
+    figures = [_short(cpu_s) if cpu_s else "–" for cpu_s in found]
     label = curve.label if "(" in curve.label else f"{curve.label} ({curve.rows[0].formulation})"
     best, order = _best(curve), orders.get((curve.method, curve.rows[0].formulation))
     figures.append(f"below {bound_m:.1e}" if best <= bound_m else f"{best:.1e}")

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 import signal
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from compare.studies.campaign import Measurement
-from compare.studies.row import Record
 from reference.status import Status
 
 
 @dataclass(frozen=True)
-class Answer(Record):
+class Answer:
     """A word that a child process sent, and what it knows of itself."""
 
     text: str
@@ -28,6 +28,7 @@ class Answers(Measurement[tuple[str, str], Answer]):
 
     recipe: Any = "one"
     patience_s: float = 2.0
+    commands: Mapping[str, str] = field(default_factory=dict)
     offset: int = 7
 
     kind = Answer

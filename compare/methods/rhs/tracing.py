@@ -28,9 +28,11 @@ def kepler(x, y):
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from operator import add, mul, neg, sub, truediv
+from types import SimpleNamespace
 from typing import Any
 
 from reference.model.algebra import plus, product
@@ -134,16 +136,9 @@ def _is(value: Any, number: int) -> bool:
     return isinstance(value, int | Fraction) and value == number
 
 
-class RecordingFunctions:
-    """sqrt, sin, cos and atan2 of traced numbers."""
-
-    def __init__(self, tape: Tape) -> None:
-        self._tape = tape
-
-    def __getattr__(self, name: str) -> Callable[..., TracedNumber]:
-        if name not in FUNCTIONS:
-            raise TracingError(f"got the function {name}, expected one of {', '.join(FUNCTIONS)}")
-        return lambda *values: self._tape.record(name, *values)
+def recording(tape: Tape) -> SimpleNamespace:
+    """Return sqrt, sin, cos and atan2 of traced numbers, as attributes."""
+    return SimpleNamespace(**{name: functools.partial(tape.record, name) for name in FUNCTIONS})
 
 
 def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str]) -> StraightLine:
@@ -156,17 +151,18 @@ def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str])
         inputs: names of the numbers, in order; any identifiers but t0, t1, …
 
     Raises:
-        TracingError: the function did something else.
+        TracingError: the function did something else with a number.
+        AttributeError: it called another function of `functions`.
     """
     tape = Tape()
-    outputs = function([TracedNumber(tape, name) for name in inputs], RecordingFunctions(tape))
+    outputs = function([TracedNumber(tape, name) for name in inputs], recording(tape))
     return tape.program(inputs, outputs)
 
 
 def differentiated(program: StraightLine, variables: Sequence[str]) -> StraightLine:
     """Return the program of the Jacobian: ∂ output / ∂ variable, row by row, shape (outputs, variables) flattened."""
     tape = Tape()
-    functions = RecordingFunctions(tape)
+    functions = recording(tape)
     values: dict[str, Any] = {name: TracedNumber(tape, name) for name in program.inputs}
     slopes: dict[str, list[Any]] = {v: [int(v == u) for u in variables] for v in variables}
     none = [0] * len(variables)

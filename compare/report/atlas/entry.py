@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -189,9 +190,8 @@ def _asked(row: dict[str, Any]) -> MethodResult:
 def _least(rows: Sequence[dict[str, Any]]) -> list[MethodResult]:
     """Return the most accurate run of each method and formulation, the best first."""
     best: dict[str, MethodResult] = {}
-    for row in rows:
+    right = (row for row in rows if row["status"] == Status.OK and row.get("error_m") is not None)
+    for row in sorted(right, key=itemgetter("error_m")):
         name = f"{row['method']} {row.get('formulation', '')}".strip()
-        error = row.get("error_m")
-        if row["status"] == Status.OK and error is not None and error < (best[name].error_m if name in best else 1e300):
-            best[name] = MethodResult(name, Status.OK, error_m=error, cpu_s=row.get("cpu_s"))
-    return sorted(best.values(), key=lambda result: result.error_m or 0.0)
+        best.setdefault(name, MethodResult(name, Status.OK, error_m=row["error_m"], cpu_s=row.get("cpu_s")))
+    return list(best.values())

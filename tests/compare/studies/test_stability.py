@@ -16,7 +16,7 @@ from compare.report.stability_page import document_of, headlines, page_text, tex
 from compare.studies.character import Character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.row import Row
-from compare.studies.stability import Cell, _judged, cut, default_scenes, digits_asked, stability
+from compare.studies.stability import Cell, _Cells, cut, default_scenes, digits_asked, stability
 from reference import load_scene
 from reference.scenes.shipped import data_root
 from reference.status import Status
@@ -80,7 +80,7 @@ def judged(digits: float, magnified: float) -> Cell:
     """The cell of a run asked for 9 digits that kept so many, on a motion that magnifies an error so many times."""
     traits = Character(0.4, 0.0, 1.0, magnified, 9.0, 0.001, 0.01, 600.0)
     row = Row("scipy_dop853", "space", 1e-9, "tolerance", "binary64", Status.OK, "", 0.01 * 10**-digits, load=0.5)
-    return _judged(("scipy_dop853", "space", 1e-9, "x"), row, traits, 0.01, 3.0)
+    return _Cells([], 1.0, {}, {}, 3.0)._judged(("scipy_dop853", "space", 1e-9, "x"), row, traits, 0.01)
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,11 @@ from sampled import one_in
 
 import compare.studies.measure as measure
 from compare.methods import METHODS, Problem
-from compare.report.pareto import front
+from compare.report.pareto import front, rows_of
 from compare.report.study_tables import transit_error
 from compare.studies import users_program
 from compare.studies.measure import Bench
-from compare.studies.row import GridTruth, Row
+from compare.studies.row import GridTruth
 from compare.studies.study import plan, study
 from compare.studies.study_plan import bits_of, precision_items, precision_scene
 from compare.truth import golden_of
@@ -152,7 +152,7 @@ def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path
     assert measured[0] == measured[1]  # all but what they cost
     best = min(row.error_m for row in again.rows)
     assert front(again.rows)[-1].error_m == best  # how many are on it depends on what they cost
-    assert Row.parsed(json.loads(json.dumps(vars(again.rows[0])))) == again.rows[0]
+    assert rows_of(json.loads(json.dumps(again.document()))) == again.rows
 
 
 def test_the_command_writes_a_report_and_one_json_document(foucault, tmp_path: Path) -> None:

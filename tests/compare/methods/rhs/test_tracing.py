@@ -83,7 +83,6 @@ def test_fractions_become_the_nearest_double():
         lambda s, _: (s[0] if s[0] > 0 else -s[0],),
         lambda s, _: (s[0] or 1,),
         lambda s, _: (s[0] ** 0.5,),
-        lambda s, f: (f.tan(s[0]),),
         lambda s, _: (s[0] + "1",),
         lambda s, _: (math.sin(s[0]),),
     ],
@@ -91,6 +90,11 @@ def test_fractions_become_the_nearest_double():
 def test_what_cannot_be_straight_line_code_is_refused(function):
     with pytest.raises(TracingError):
         record(function, ["a"])
+
+
+def test_a_function_that_straight_line_code_does_not_have_is_named():
+    with pytest.raises(AttributeError, match="'tan'"):
+        record(lambda s, f: (f.tan(s[0]),), ["a"])
 
 
 @pytest.mark.parametrize("formulation", TRACED)
