@@ -18,7 +18,7 @@ from reference.model.algebra import product
 from reference.model.force import tension
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, Motion, Order
+from .approximation import Motion
 from .case import Case, PlumbAxes, below, hung
 
 
@@ -76,10 +76,6 @@ APPROXIMATIONS = (
         title="the full system, linearised about its rest position, with every centrifugal term",
         where="linearisation of Mathar (43) at (46); 'exact for the linear system' in the third source paper",
         drops="second and higher powers of the displacement from the rest position",
-        orders=(
-            Order("amplitude", 2, (0.1, 0.2, 0.4, 0.8), ("site.equatorial_radius=0", "site.rotation_rate=0.02")),
-            CUBE_IN_AMPLITUDE,
-        ),
         refuses=_refused,
         path=_path,
     ),

@@ -9,7 +9,7 @@ import numpy as np
 from reference import Scene
 from reference.numbers.precision import Array
 
-from .approximation import Motion, Order
+from .approximation import Motion
 from .case import Case, lowest_point, under_gravity, without_drag
 
 _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
@@ -64,10 +64,6 @@ APPROXIMATIONS = (
         title="plane pendulum without the Foucault effect",
         where="Mathar section VII and figure 7 (Ω = 0): period 4 sqrt(l/g) K(sin(φ0/2))",
         drops="Ω",
-        orders=(
-            Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),
-            Order("rotation_rate", 1, (1e-5, 2e-5, 4e-5, 8e-5), ("site.equatorial_radius=0",)),
-        ),
         refuses=_refused,
         path=_path,
         rest=lowest_point,

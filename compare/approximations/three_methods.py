@@ -12,7 +12,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion
+from .approximation import Motion
 from .case import Case, hung, lowest_point, swinging
 
 
@@ -67,7 +67,6 @@ def _complex_variable(case: Case, times: Array) -> Array:
 _motion = partial(
     Motion,
     drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
-    orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     refuses=swinging,
     rest=lowest_point,
 )
