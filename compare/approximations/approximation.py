@@ -24,17 +24,21 @@ class Approximation:
         title: its description in one line.
         where: source paper and equation numbers.
         drops: terms and effects that it leaves out.
-        refuses: `refuses(scene)`, the reason why a scene is outside its domain, or None.
+        needs: what its domain needs: each gives the reason why a scene is outside of it, or None.
     """
 
     id: str
     title: str
     where: str
     drops: str
-    refuses: Callable[[Scene], str | None] = lambda scene: None
+    needs: tuple[Callable[[Scene], str | None], ...] = ()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.id}: {self.title})"
+
+    def refuses(self, scene: Scene) -> str | None:
+        """Return the first reason why a scene is outside its domain, or None."""
+        return next(filter(None, (need(scene) for need in self.needs)), None)
 
     def check(self, scene: Scene) -> None:
         """Raise InputError if the scene is outside the domain in which the formulas have a meaning."""

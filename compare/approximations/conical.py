@@ -10,7 +10,7 @@ from reference import Scene
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, lowest_point, swinging
+from .case import SWINGING, Case, lowest_point
 
 _CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
 
@@ -30,10 +30,7 @@ def _path(case: Case, times: Array) -> Array:
     return np.column_stack((place.real, place.imag, still + z, speed.real, speed.imag, still))
 
 
-def _refused(scene: Scene) -> str | None:
-    reason = swinging(scene)
-    if reason:
-        return reason
+def _on_a_circle(scene: Scene) -> str | None:
     case = Case.of_scene(scene)
     radius, omega = _circle(case)
     x, y, _ = case.position
@@ -52,7 +49,7 @@ APPROXIMATIONS = (
         title="conical pendulum without the Foucault effect",
         where="Mathar section III, limit of Ω to 0, and [23]: angular velocity sqrt(g/(l cos φ))",
         drops="Ω",
-        refuses=_refused,
+        needs=(*SWINGING, _on_a_circle),
         path=_path,
         rest=lowest_point,
     ),

@@ -15,7 +15,7 @@ from reference.model.constants import Vector
 
 from ..observed.swing_plane import frequency, precession_period
 from .approximation import Quantity
-from .case import Case, at_rest, released_at_rest, swinging, under_gravity
+from .case import RELEASED_AT_REST, SWINGING, Case, at_rest, under_gravity
 from .mathar import slow_down
 
 
@@ -53,13 +53,13 @@ def _spherical(case: Case) -> Any:
 
 def _turning(scene: Scene) -> str | None:
     still = not scene.exact.rotation_rate or not scene.exact.latitude
-    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else swinging(scene)
+    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else None
 
 
-_frequency = partial(Quantity, refuses=swinging, truth=frequency, unit="Hz")
+_frequency = partial(Quantity, needs=SWINGING, truth=frequency, unit="Hz")
 _precession = partial(
     Quantity,
-    refuses=_turning,
+    needs=(_turning, *SWINGING),
     truth=precession_period,
     unit="s",
 )
@@ -70,7 +70,7 @@ _SWING = (
         title="gravity and centrifugal force at the suspension",
         where="Gastebois 4.2; Mathar (48)",
         drops="the cord: the bob is nearer to the axis than the suspension",
-        refuses=under_gravity,
+        needs=(under_gravity,),
         formula=lambda case: case.apparent_gravity,
         truth=lambda scene: Case.of_scene(scene).pull_at_rest,
         unit="m/s²",
@@ -87,7 +87,7 @@ _SWING = (
         title="frequency of the plane pendulum of finite amplitude",
         where="Mathar section VII, frequency 2",
         drops="Ω and the centrifugal force",
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         formula=planar,
     ),
     _frequency(
@@ -109,7 +109,7 @@ _SWING = (
         title="harmonic frequency on a turntable with g', slowed down by the amplitude, 2K/π",
         where="Mathar section VII, frequency 5",
         drops="the centrifugal gradient; the effects of the ellipse and of Ω cos φ at finite amplitude",
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         formula=anharmonic,
     ),
     _precession(
@@ -131,7 +131,7 @@ _SWING = (
         title="precession period with the drift of the spherical pendulum, T_p/sin λ_a (1 + 3/8 r0²/L0²)",
         where="Gastebois 6.3",
         drops="the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
-        refuses=lambda scene: _turning(scene) or at_rest(scene),
+        needs=(_turning, *SWINGING, at_rest),
         formula=_spherical,
     ),
 )
@@ -176,20 +176,18 @@ def triangle(case: Case) -> Any:
 
 
 def _pulled(scene: Scene) -> str | None:
-    return under_gravity(scene) or (
-        None if Case.of_scene(scene).apparent_gravity else "Gravity and centrifugal force cancel: there is no triangle"
-    )
+    pulled = Case.of_scene(scene).apparent_gravity
+    return None if pulled else "Gravity and centrifugal force cancel: there is no triangle"
 
 
 def _not_at_a_pole(scene: Scene) -> str | None:
-    if abs(scene.exact.latitude) == 90:
-        return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude"
-    return under_gravity(scene)
+    pole = abs(scene.exact.latitude) == 90
+    return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude" if pole else None
 
 
 _rest_angle = partial(
     Quantity,
-    refuses=under_gravity,
+    needs=(under_gravity,),
     truth=lambda scene: Case.of_scene(scene).rest_angle,
     unit="rad",
 )
@@ -208,7 +206,7 @@ _REST = (
             title=f"rest position by the series up to {name}",
             where=f"Mathar (47) up to {name}",
             drops=f"Ω to the power {2 * terms + 2} and beyond",
-            refuses=_not_at_a_pole,
+            needs=(_not_at_a_pole, under_gravity),
             formula=partial(_series, terms=terms),
         )
         for terms, name in enumerate(("Ω²", "Ω⁴", "Ω⁶"), start=1)
@@ -218,7 +216,7 @@ _REST = (
         title="rest position by the triangle of forces",
         where="Mathar (48)-(50)",
         drops="the cord: N + h stands for N + h - l, the distance of the bob",
-        refuses=_pulled,
+        needs=(under_gravity, _pulled),
         formula=triangle,
     ),
 )

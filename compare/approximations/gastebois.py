@@ -22,7 +22,7 @@ from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, hung, integrated, released_at_rest, swinging
+from .case import RELEASED_AT_REST, SWINGING, Case, hung, integrated
 
 Pair = Sequence[Any]
 
@@ -139,7 +139,7 @@ APPROXIMATIONS = (
         title="small angles about the tilted plumb line, any release",
         where="Gastebois 5, 6.1, with g_a and λ_a of 4.2; 7.3",
         drops=_DROPS,
-        refuses=swinging,
+        needs=SWINGING,
         path=_any_release,
         rest=hanging,
     ),
@@ -148,7 +148,7 @@ APPROXIMATIONS = (
         title="small angles, launched so that the swing stays in a plane of the turning axes",
         where="Gastebois 6.2",
         drops=_DROPS + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
-        refuses=swinging,
+        needs=SWINGING,
         path=partial(_ellipse, sense=0),
         rest=hanging,
     ),
@@ -157,7 +157,7 @@ APPROXIMATIONS = (
         title="small angles, released at rest: a thin ellipse in turning axes",
         where="Gastebois 6.3",
         drops=_DROPS,
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         path=partial(_ellipse, sense=1),
         rest=hanging,
     ),

@@ -23,7 +23,7 @@ from reference.model.constants import Constants
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, hung, integrated, lowest_point, released_at_rest, swinging, underneath
+from .case import RELEASED_AT_REST, SWINGING, Case, hung, integrated, lowest_point, underneath
 from .gastebois import oscillation, turntable_frequency
 
 VARIABLES = ("x", "y", "vx", "vy")
@@ -100,7 +100,7 @@ def _without(*items: Item, **fields: Any) -> Motion:
     names = ", ".join(str(item) for item in items)
     return Motion(
         where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
-        refuses=partial(underneath, law="(43)"),
+        needs=(partial(underneath, law="(43)"),),
         path=partial(_path, items=frozenset(items)),
         rest=lowest_point if 1 in items or VARIANT in items else None,
         **fields,
@@ -185,7 +185,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable",
         where="Mathar (51)-(52)",
         drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
-        refuses=swinging,
+        needs=SWINGING,
         path=partial(_harmonic, apparent=False, about_rest=False),
         rest=lowest_point,
     ),
@@ -194,7 +194,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable, apparent gravity",
         where="Mathar (51)-(52) with g' of (48), section VII",
         drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
-        refuses=swinging,
+        needs=SWINGING,
         path=partial(_harmonic, about_rest=False),
         rest=lowest_point,
     ),
@@ -203,7 +203,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable, about the rest position",
         where="Mathar (51)-(52) with g' of (48), about the point of section V",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
-        refuses=swinging,
+        needs=SWINGING,
         path=_harmonic,
     ),
     Motion(
@@ -211,7 +211,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable, about the rest position, with the slow-down of the plane pendulum",
         where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         path=partial(_harmonic, slowed=True),
     ),
 )  # fmt: skip

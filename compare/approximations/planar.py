@@ -50,12 +50,12 @@ def _path(case: Case, times: Array) -> Array:
     return np.column_stack((place.real, place.imag, -length * cosine, speed.real, speed.imag, length * sine * rate))
 
 
-def _refused(scene: Scene) -> str | None:
+def _released(scene: Scene) -> str | None:
     if not scene.exact.at_rest:
         return "The formula is for a release at rest: leave out the velocity"
     if scene.exact.angles is not None and scene.exact.angles[0] == 180:
         return "The bob stands upright: give release.angle below 180"
-    return without_drag(scene) or under_gravity(scene)
+    return None
 
 
 APPROXIMATIONS = (
@@ -64,7 +64,7 @@ APPROXIMATIONS = (
         title="plane pendulum without the Foucault effect",
         where="Mathar section VII and figure 7 (Ω = 0): period 4 sqrt(l/g) K(sin(φ0/2))",
         drops="Ω",
-        refuses=_refused,
+        needs=(_released, without_drag, under_gravity),
         path=_path,
         rest=lowest_point,
     ),

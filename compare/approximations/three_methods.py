@@ -13,7 +13,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, hung, lowest_point, swinging
+from .case import SWINGING, Case, hung, lowest_point
 
 
 def _rates(case: Case) -> tuple[float, float]:
@@ -67,7 +67,7 @@ def _complex_variable(case: Case, times: Array) -> Array:
 _motion = partial(
     Motion,
     drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
-    refuses=swinging,
+    needs=SWINGING,
     rest=lowest_point,
 )
 
