@@ -14,13 +14,12 @@ from collections.abc import Mapping
 
 from reference.system.imports import Registry
 
-from .approximation import Approximation, Motion, Order, Quantity
+from .approximation import Approximation, Motion, Quantity
 
 __all__ = [
     "APPROXIMATIONS",
     "Approximation",
     "Motion",
-    "Order",
     "Quantity",
     "motions",
     "quantities",

@@ -1,10 +1,10 @@
-"""Declaration of an approximation: its source, dropped terms, order of its error, and formula."""
+"""Declaration of an approximation: its source, dropped terms and formula."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,31 +13,6 @@ from reference import InputError, Scene, UnreachableError
 from reference.numbers.precision import Array
 
 from .case import Case
-
-Against = Literal["amplitude", "rotation_rate", "length"]
-
-
-@dataclass(frozen=True)
-class Order:
-    """A statement of theory, error proportional to `against` ** `power`, which a test measures.
-
-    Attributes:
-        against: quantity that is varied: the displacement from the rest position in m, Ω in rad/s, or the length in m.
-        power: the exponent; None where the approximation is exact and only rounding errors remain.
-        values: values of `against` at which the error is measured.
-        setting: `section.key=value` replacements that make this error the largest one.
-        amplitude: fixed displacement from the rest position in m, released at rest; None: as the scene says.
-    """
-
-    against: Against
-    power: int | None
-    values: tuple[float, ...]
-    setting: tuple[str, ...] = ()
-    amplitude: float | None = None
-
-
-CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",))
-SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), ("release.x=3e-3", "release.y=4e-3"))
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -49,19 +24,21 @@ class Approximation:
         title: its description in one line.
         where: source paper and equation numbers.
         drops: terms and effects that it leaves out.
-        orders: how its error grows with amplitude, rotation rate or length.
-        refuses: `refuses(scene)`, the reason why a scene is outside its domain, or None.
+        needs: what its domain needs: each gives the reason why a scene is outside of it, or None.
     """
 
     id: str
     title: str
     where: str
     drops: str
-    orders: tuple[Order, ...]
-    refuses: Callable[[Scene], str | None] = lambda scene: None
+    needs: tuple[Callable[[Scene], str | None], ...] = ()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.id}: {self.title})"
+
+    def refuses(self, scene: Scene) -> str | None:
+        """Return the first reason why a scene is outside its domain, or None."""
+        return next(filter(None, (need(scene) for need in self.needs)), None)
 
     def check(self, scene: Scene) -> None:
         """Raise InputError if the scene is outside the domain in which the formulas have a meaning."""
@@ -118,13 +95,11 @@ class Quantity(Approximation):
         formula: `formula(case)`, an mpf, without checks of the scene; see `value`.
         truth: `truth(scene)`, the number in the full model, from the reference.
         unit: unit of both.
-        relative: whether `orders` describe the relative error, or the error in `unit`.
     """
 
     formula: Callable[[Case], Any]
     truth: Callable[[Scene], Any]
     unit: str
-    relative: bool = True
 
     def value(self, scene: Scene) -> Any:
         """Return the approximate number as an mpf in `unit`.

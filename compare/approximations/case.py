@@ -176,14 +176,9 @@ def underneath(scene: Scene, law: str = "The formula") -> str | None:
     return f"{law} holds below the suspension only: give release.angle below 90" if high else None
 
 
-def below(scene: Scene) -> str | None:
-    """Return a reason to refuse a scene with drag or a release that is not below the suspension, or None."""
-    return underneath(scene) or without_drag(scene)
-
-
 def at_rest(scene: Scene) -> str | None:
-    """Return a reason to refuse drag or a release that is not at rest below the suspension, or None."""
-    return below(scene) or (None if scene.exact.at_rest else "It is for a release at rest: leave out vx and vy")
+    """Return a reason to refuse a release with a velocity, or None."""
+    return None if scene.exact.at_rest else "It is for a release at rest: leave out vx and vy"
 
 
 def under_gravity(scene: Scene) -> str | None:
@@ -191,11 +186,5 @@ def under_gravity(scene: Scene) -> str | None:
     return None if scene.exact.gravity else "Without gravity nothing pulls the bob back: give site.gravity above 0"
 
 
-def swinging(scene: Scene) -> str | None:
-    """Return a reason to refuse drag, a release that is not below the suspension, or no gravity, or None."""
-    return below(scene) or under_gravity(scene)
-
-
-def released_at_rest(scene: Scene) -> str | None:
-    """Return the same, or a reason to refuse a release with a velocity."""
-    return at_rest(scene) or under_gravity(scene)
+SWINGING = (underneath, without_drag, under_gravity)
+RELEASED_AT_REST = (underneath, without_drag, at_rest, under_gravity)

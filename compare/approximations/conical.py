@@ -9,18 +9,10 @@ import numpy as np
 from reference import Scene
 from reference.numbers.precision import Array
 
-from .approximation import Motion, Order
-from .case import Case, lowest_point, swinging
+from .approximation import Motion
+from .case import SWINGING, Case, lowest_point
 
 _CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
-
-_CIRCLE = (  # cos φ = 0.8, angular velocity 1 rad/s
-    "pendulum.length=12.25",
-    "site.gravity=9.8",
-    "release.x=7.35",
-    "release.y=0",
-    "release.vy=7.35",
-)
 
 
 def _circle(case: Case) -> tuple[Any, Any]:
@@ -38,10 +30,7 @@ def _path(case: Case, times: Array) -> Array:
     return np.column_stack((place.real, place.imag, still + z, speed.real, speed.imag, still))
 
 
-def _refused(scene: Scene) -> str | None:
-    reason = swinging(scene)
-    if reason:
-        return reason
+def _on_a_circle(scene: Scene) -> str | None:
     case = Case.of_scene(scene)
     radius, omega = _circle(case)
     x, y, _ = case.position
@@ -60,11 +49,7 @@ APPROXIMATIONS = (
         title="conical pendulum without the Foucault effect",
         where="Mathar section III, limit of Ω to 0, and [23]: angular velocity sqrt(g/(l cos φ))",
         drops="Ω",
-        orders=(
-            Order("amplitude", None, (7.35,), ("site.rotation_rate=0", *_CIRCLE)),
-            Order("rotation_rate", 1, (1e-5, 2e-5, 4e-5, 8e-5), ("site.equatorial_radius=0", *_CIRCLE)),
-        ),
-        refuses=_refused,
+        needs=(*SWINGING, _on_a_circle),
         path=_path,
         rest=lowest_point,
     ),

@@ -14,18 +14,9 @@ from reference import Scene
 from reference.model.constants import Vector
 
 from ..observed.swing_plane import frequency, precession_period
-from .approximation import Order, Quantity
-from .case import Case, at_rest, released_at_rest, swinging, under_gravity
+from .approximation import Quantity
+from .case import RELEASED_AT_REST, SWINGING, Case, at_rest, under_gravity
 from .mathar import slow_down
-
-_STILL = ("site.rotation_rate=0",)
-_SQUARE_IN_AMPLITUDE = Order("amplitude", 2, (1.0, 2.0, 4.0, 8.0), _STILL)
-_EXACT = Order("amplitude", None, (1.0, 8.0, 40.0), _STILL)
-_SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-2)
-_CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
-_AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
-_SMALL = 1e-2
-_SQUARE_AT_POLE = Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)
 
 
 def harmonic(case: Case) -> Any:
@@ -62,16 +53,11 @@ def _spherical(case: Case) -> Any:
 
 def _turning(scene: Scene) -> str | None:
     still = not scene.exact.rotation_rate or not scene.exact.latitude
-    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else swinging(scene)
+    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else None
 
 
-_frequency = partial(Quantity, refuses=swinging, truth=frequency, unit="Hz")
-_precession = partial(
-    Quantity,
-    refuses=_turning,
-    truth=precession_period,
-    unit="s",
-)
+_frequency = partial(Quantity, needs=SWINGING, truth=frequency, unit="Hz")
+_precession = partial(Quantity, needs=(_turning, *SWINGING), truth=precession_period, unit="s")
 
 _SWING = (
     Quantity(
@@ -79,8 +65,7 @@ _SWING = (
         title="gravity and centrifugal force at the suspension",
         where="Gastebois 4.2; Mathar (48)",
         drops="the cord: the bob is nearer to the axis than the suspension",
-        orders=(Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4)), Order("length", 1, (10, 20, 40, 80))),
-        refuses=under_gravity,
+        needs=(under_gravity,),
         formula=lambda case: case.apparent_gravity,
         truth=lambda scene: Case.of_scene(scene).pull_at_rest,
         unit="m/s²",
@@ -90,7 +75,6 @@ _SWING = (
         title="harmonic frequency sqrt(g/l)/2π",
         where="Mathar section VII, frequency 1",
         drops="the amplitude, Ω, the centrifugal force",
-        orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
         formula=harmonic,
     ),
     _frequency(
@@ -98,8 +82,7 @@ _SWING = (
         title="frequency of the plane pendulum of finite amplitude",
         where="Mathar section VII, frequency 2",
         drops="Ω and the centrifugal force",
-        orders=(_EXACT, _CENTRIFUGAL),
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         formula=planar,
     ),
     _frequency(
@@ -107,7 +90,6 @@ _SWING = (
         title="harmonic frequency on a turntable, sqrt(g/l + (Ω sin φ)²)/2π",
         where="Mathar section VII, frequency 3",
         drops="the amplitude, the centrifugal force",
-        orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
         formula=lambda case: turntable(case, case.gravity),
     ),
     _frequency(
@@ -115,7 +97,6 @@ _SWING = (
         title="harmonic frequency on a turntable, with the apparent gravity g' of (48)",
         where="Mathar section VII, frequency 4",
         drops="the amplitude, the centrifugal gradient",
-        orders=(_SQUARE_IN_AMPLITUDE, _SQUARE_IN_RATE),
         formula=lambda case: turntable(case, case.apparent_gravity),
     ),
     _frequency(
@@ -123,8 +104,7 @@ _SWING = (
         title="harmonic frequency on a turntable with g', slowed down by the amplitude, 2K/π",
         where="Mathar section VII, frequency 5",
         drops="the centrifugal gradient; the effects of the ellipse and of Ω cos φ at finite amplitude",
-        orders=(_EXACT, _SQUARE_IN_RATE),
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         formula=anharmonic,
     ),
     _precession(
@@ -132,7 +112,6 @@ _SWING = (
         title="precession period T_p/sin λ",
         where="Gastebois 4.1",
         drops="the centrifugal force, the amplitude",
-        orders=(Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), _SQUARE_AT_POLE),
         formula=lambda case: abs(2 * case.ctx.pi / case.turn),
     ),
     _precession(
@@ -140,10 +119,6 @@ _SWING = (
         title="precession period T_p/sin λ_a, with the tilt of the plumb line",
         where="Gastebois 4.2, 6.3",
         drops="the centrifugal gradient, the amplitude",
-        orders=(
-            Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ("site.equatorial_radius=0",), _SMALL),
-            _SQUARE_AT_POLE,
-        ),
         formula=_over_tilted_sine,
     ),
     _precession(
@@ -151,8 +126,7 @@ _SWING = (
         title="precession period with the drift of the spherical pendulum, T_p/sin λ_a (1 + 3/8 r0²/L0²)",
         where="Gastebois 6.3",
         drops="the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
-        orders=(Order("amplitude", 4, (4.0, 8.0, 16.0), _AT_POLE),),
-        refuses=lambda scene: _turning(scene) or at_rest(scene),
+        needs=(_turning, *SWINGING, at_rest),
         formula=_spherical,
     ),
 )
@@ -197,27 +171,16 @@ def triangle(case: Case) -> Any:
 
 
 def _pulled(scene: Scene) -> str | None:
-    return under_gravity(scene) or (
-        None if Case.of_scene(scene).apparent_gravity else "Gravity and centrifugal force cancel: there is no triangle"
-    )
+    pulled = Case.of_scene(scene).apparent_gravity
+    return None if pulled else "Gravity and centrifugal force cancel: there is no triangle"
 
 
 def _not_at_a_pole(scene: Scene) -> str | None:
-    if abs(scene.exact.latitude) == 90:
-        return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude"
-    return under_gravity(scene)
+    pole = abs(scene.exact.latitude) == 90
+    return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude" if pole else None
 
 
-_rest_angle = partial(
-    Quantity,
-    refuses=under_gravity,
-    truth=lambda scene: Case.of_scene(scene).rest_angle,
-    unit="rad",
-    relative=False,
-)
-
-_RATES = (5e-5, 1e-4, 2e-4)
-_FAST, _SMALL_BODY = (4e-3, 8e-3, 1.6e-2), ("site.equatorial_radius=300",)  # where l is a large part of N + h
+_rest_angle = partial(Quantity, needs=(under_gravity,), truth=lambda scene: Case.of_scene(scene).rest_angle, unit="rad")
 
 _REST = (
     _rest_angle(
@@ -225,7 +188,6 @@ _REST = (
         title="rest position by the equation of forces",
         where="Mathar (46); (45) is the same in y",
         drops="nothing",
-        orders=(Order("rotation_rate", None, _RATES), Order("length", None, (1, 67, 10000))),
         formula=_equation,
     ),
     *(
@@ -234,8 +196,7 @@ _REST = (
             title=f"rest position by the series up to {name}",
             where=f"Mathar (47) up to {name}",
             drops=f"Ω to the power {2 * terms + 2} and beyond",
-            orders=tuple(Order("rotation_rate", 2 * terms + 2, *of) for of in ((_RATES,), (_FAST, _SMALL_BODY))),
-            refuses=_not_at_a_pole,
+            needs=(_not_at_a_pole, under_gravity),
             formula=partial(_series, terms=terms),
         )
         for terms, name in enumerate(("Ω²", "Ω⁴", "Ω⁶"), start=1)
@@ -245,8 +206,7 @@ _REST = (
         title="rest position by the triangle of forces",
         where="Mathar (48)-(50)",
         drops="the cord: N + h stands for N + h - l, the distance of the bob",
-        orders=(Order("rotation_rate", 2, _RATES), Order("length", 1, (10, 20, 40, 80))),
-        refuses=_pulled,
+        needs=(under_gravity, _pulled),
         formula=triangle,
     ),
 )

@@ -21,8 +21,8 @@ from reference import Scene, UnreachableError
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, Motion, Order
-from .case import Case, hung, integrated, released_at_rest, swinging
+from .approximation import Motion
+from .case import RELEASED_AT_REST, SWINGING, Case, hung, integrated
 
 Pair = Sequence[Any]
 
@@ -123,7 +123,6 @@ def _ellipse(case: Case, times: Array, sense: int) -> Array:
     return _rows(case, release * (x + 1j * y), release * (vx + 1j * vy))
 
 
-_SQUARE_IN_RATE = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 1e-3)
 _DROPS = "the centrifugal gradient, powers of the angle beyond the first (so the slow-down and the spherical drift)"
 
 APPROXIMATIONS = (
@@ -132,10 +131,6 @@ APPROXIMATIONS = (
         title="any amplitude in uniform apparent gravity",
         where="Gastebois 7.2, with g_a and λ_a of 4.2",
         drops="the centrifugal gradient: Ω² times distances of the order of l",
-        orders=(
-            Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),
-            Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 0.5),
-        ),
         path=_any_amplitude,
         rest=hanging,
     ),
@@ -144,8 +139,7 @@ APPROXIMATIONS = (
         title="small angles about the tilted plumb line, any release",
         where="Gastebois 5, 6.1, with g_a and λ_a of 4.2; 7.3",
         drops=_DROPS,
-        orders=(_SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
-        refuses=swinging,
+        needs=SWINGING,
         path=_any_release,
         rest=hanging,
     ),
@@ -154,8 +148,7 @@ APPROXIMATIONS = (
         title="small angles, launched so that the swing stays in a plane of the turning axes",
         where="Gastebois 6.2",
         drops=_DROPS + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
-        orders=(Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4), ("site.equatorial_radius=0",)), CUBE_IN_AMPLITUDE),
-        refuses=swinging,
+        needs=SWINGING,
         path=partial(_ellipse, sense=0),
         rest=hanging,
     ),
@@ -164,8 +157,7 @@ APPROXIMATIONS = (
         title="small angles, released at rest: a thin ellipse in turning axes",
         where="Gastebois 6.3",
         drops=_DROPS,
-        orders=(_SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         path=partial(_ellipse, sense=1),
         rest=hanging,
     ),

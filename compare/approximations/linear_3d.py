@@ -18,8 +18,8 @@ from reference.model.algebra import product
 from reference.model.force import tension
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, Motion, Order
-from .case import Case, PlumbAxes, below, hung
+from .approximation import Motion
+from .case import Case, PlumbAxes, hung, underneath, without_drag
 
 
 def plumb_line(case: Case) -> PlumbAxes:
@@ -58,10 +58,7 @@ def _path(case: Case, times: Array) -> Array:
     return plumb.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))
 
 
-def _refused(scene: Scene) -> str | None:
-    reason = below(scene)
-    if reason:
-        return reason
+def _stable(scene: Scene) -> str | None:
     case = Case.of_scene(scene)
     try:
         a, b, _ = stiffness(case)
@@ -76,11 +73,7 @@ APPROXIMATIONS = (
         title="the full system, linearised about its rest position, with every centrifugal term",
         where="linearisation of Mathar (43) at (46); 'exact for the linear system' in the third source paper",
         drops="second and higher powers of the displacement from the rest position",
-        orders=(
-            Order("amplitude", 2, (0.1, 0.2, 0.4, 0.8), ("site.equatorial_radius=0", "site.rotation_rate=0.02")),
-            CUBE_IN_AMPLITUDE,
-        ),
-        refuses=_refused,
+        needs=(underneath, without_drag, _stable),
         path=_path,
     ),
 )

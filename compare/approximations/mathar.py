@@ -22,15 +22,13 @@ from reference.model.algebra import Functions, State, dot, minus, plus, product
 from reference.model.constants import Constants
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Order
-from .case import Case, hung, integrated, lowest_point, released_at_rest, swinging, underneath
+from .approximation import Motion
+from .case import RELEASED_AT_REST, SWINGING, Case, hung, integrated, lowest_point, underneath
 from .gastebois import oscillation, turntable_frequency
 
 VARIABLES = ("x", "y", "vx", "vy")
 VARIANT = "variant of item 1"
 Item = int | str
-
-_ON_AXIS = ("site.equatorial_radius=0",)  # R = 0: the rest position stays below the suspension
 
 
 def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
@@ -102,17 +100,11 @@ def _without(*items: Item, **fields: Any) -> Motion:
     names = ", ".join(str(item) for item in items)
     return Motion(
         where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
-        refuses=partial(underneath, law="(43)"),
+        needs=(partial(underneath, law="(43)"),),
         path=partial(_path, items=frozenset(items)),
         rest=lowest_point if 1 in items or VARIANT in items else None,
         **fields,
     )
-
-
-_CORIOLIS = (
-    Order("amplitude", 2, (0.5, 1.0, 2.0, 4.0), (*_ON_AXIS, "site.rotation_rate=1e-3")),
-    Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4, 8e-4), _ON_AXIS),
-)
 
 
 def slow_down(case: Case) -> Any:
@@ -139,72 +131,61 @@ def _harmonic(case: Case, times: Array, apparent: bool = True, about_rest: bool 
     return hung(z.real, z.imag + float(centre), rate.real, rate.imag, case.length)
 
 
-_ABOUT_REST = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-3)
-
 APPROXIMATIONS = (
     _without(
         1,
         id="mathar_item_1",
         title="Mathar's equations without the terms in Ω²",
         drops="β of (35), (41): centrifugal force, tilted plumb line; RΩ² is 2.3e-3 of g, not Ω² = 5e-9 as printed",
-        orders=(SQUARE_IN_RATE,),
     ),
     _without(
         VARIANT,
         id="mathar_item_1_variant",
         title="Mathar's equations without the terms in Ω², gravity less RΩ² cos φ",
         drops="β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line is left out",
-        orders=(SQUARE_IN_RATE,),
     ),
     _without(
         2,
         id="mathar_item_2",
         title="Mathar's equations without the off-diagonal elements -xy",
         drops="the matrix elements -xy of (43)",
-        orders=(CUBE_IN_AMPLITUDE,),
     ),
     _without(
         3,
         id="mathar_item_3",
         title="Mathar's equations with gravity alone in β0",
         drops="the velocities in (33), (39): the centripetal pull of the cord",
-        orders=(CUBE_IN_AMPLITUDE,),
     ),
     _without(
         4,
         id="mathar_item_4",
         title="Mathar's equations without Ω cos φ",
         drops="the terms with cos φ of (34), (40): the Coriolis force of the north component of Ω",
-        orders=_CORIOLIS,
     ),
     _without(
         5,
         id="mathar_item_5",
         title="Mathar's equations with z replaced by l",
         drops="the change of z along the sphere",
-        orders=(CUBE_IN_AMPLITUDE,),
     ),
     _without(
         1, 2,
         id="mathar_items_1_2",
         title="both approximations of the paper's program, foucPend -a 3",
         drops="the terms in Ω² and the off-diagonal elements -xy",
-        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     ),
     _without(
         1, 2, 3, 4, 5,
         id="mathar_items_1_to_5",
         title="Mathar's five items together",
         drops="everything that section VI names; the diagonal of (43) still holds x² + l² and y² + l²",
-        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     ),
     Motion(
         id="linear_g",
         title="harmonic pendulum on a turntable",
         where="Mathar (51)-(52)",
         drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
-        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
-        refuses=swinging,
+        needs=SWINGING,
         path=partial(_harmonic, apparent=False, about_rest=False),
         rest=lowest_point,
     ),
@@ -213,8 +194,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable, apparent gravity",
         where="Mathar (51)-(52) with g' of (48), section VII",
         drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
-        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
-        refuses=swinging,
+        needs=SWINGING,
         path=partial(_harmonic, about_rest=False),
         rest=lowest_point,
     ),
@@ -223,8 +203,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable, about the rest position",
         where="Mathar (51)-(52) with g' of (48), about the point of section V",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
-        orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
-        refuses=swinging,
+        needs=SWINGING,
         path=_harmonic,
     ),
     Motion(
@@ -232,8 +211,7 @@ APPROXIMATIONS = (
         title="harmonic pendulum on a turntable, about the rest position, with the slow-down of the plane pendulum",
         where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",
-        orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
-        refuses=released_at_rest,
+        needs=RELEASED_AT_REST,
         path=partial(_harmonic, slowed=True),
     ),
 )  # fmt: skip

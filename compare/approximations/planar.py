@@ -9,7 +9,7 @@ import numpy as np
 from reference import Scene
 from reference.numbers.precision import Array
 
-from .approximation import Motion, Order
+from .approximation import Motion
 from .case import Case, lowest_point, under_gravity, without_drag
 
 _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
@@ -50,12 +50,12 @@ def _path(case: Case, times: Array) -> Array:
     return np.column_stack((place.real, place.imag, -length * cosine, speed.real, speed.imag, length * sine * rate))
 
 
-def _refused(scene: Scene) -> str | None:
+def _released(scene: Scene) -> str | None:
     if not scene.exact.at_rest:
         return "The formula is for a release at rest: leave out the velocity"
     if scene.exact.angles is not None and scene.exact.angles[0] == 180:
         return "The bob stands upright: give release.angle below 180"
-    return without_drag(scene) or under_gravity(scene)
+    return None
 
 
 APPROXIMATIONS = (
@@ -64,11 +64,7 @@ APPROXIMATIONS = (
         title="plane pendulum without the Foucault effect",
         where="Mathar section VII and figure 7 (Ω = 0): period 4 sqrt(l/g) K(sin(φ0/2))",
         drops="Ω",
-        orders=(
-            Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),
-            Order("rotation_rate", 1, (1e-5, 2e-5, 4e-5, 8e-5), ("site.equatorial_radius=0",)),
-        ),
-        refuses=_refused,
+        needs=(_released, without_drag, under_gravity),
         path=_path,
         rest=lowest_point,
     ),

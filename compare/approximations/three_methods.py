@@ -12,8 +12,8 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion
-from .case import Case, hung, lowest_point, swinging
+from .approximation import Motion
+from .case import SWINGING, Case, hung, lowest_point
 
 
 def _rates(case: Case) -> tuple[float, float]:
@@ -67,8 +67,7 @@ def _complex_variable(case: Case, times: Array) -> Array:
 _motion = partial(
     Motion,
     drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
-    orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
-    refuses=swinging,
+    needs=SWINGING,
     rest=lowest_point,
 )
 

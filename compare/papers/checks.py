@@ -197,11 +197,10 @@ class PrintedNumber(Check):
         """Return how the numeral follows from a value: "equal", "rounded", "cut off", or "" if it does not."""
         if value == self.number:
             return "equal"
-        signed = value / self.unit
-        if MP.nint(signed) * self.unit == self.number or abs(signed - self.number / self.unit) <= 0.5:
+        left = (value - self.number) / self.unit
+        if abs(left) <= 0.5:
             return "rounded"
-        towards_zero = MP.sign(signed) * MP.floor(abs(signed))
-        return "cut off" if abs(towards_zero - self.number / self.unit) < MP.mpf("1e-30") else ""
+        return "cut off" if 0 < left * MP.sign(value) < 1 else ""
 
     def row(self) -> JudgedRow:
         """Judge the number: equal, reproduced, near enough for an "about", or a misprint."""

@@ -67,7 +67,11 @@ def lines(options: Options) -> Iterator[str]:
         InputError: a package that is needed is not installed, or --exact would print too many snapshots.
         IntegrationError, UnreachableError: the run failed.
     """
-    yield from _comments(options)
+    mode = "--exact" if options.exact else f"-R {options.order} -a {options.bits}"
+    yield f"# foucault pend {options.printed}"
+    yield f"# {mode}"
+    yield f"# columns: {COLUMNS}"
+    yield "# transits of xdot = 0: # P count t/s frequency/Hz"
     count = 0
     for times, states, zeros in _exact(options) if options.exact else _integrated(options):
         snapshots = snapshots_of(options.scene, times, states)
@@ -85,23 +89,30 @@ def _texts(rows: Array) -> Iterator[str]:
         yield _SNAPSHOT % tuple(row)
 
 
-def _comments(options: Options) -> Iterator[str]:
-    mode = "--exact" if options.exact else f"-R {options.order} -a {options.bits}"
-    yield f"# foucault pend {options.printed}"
-    yield f"# {mode}"
-    yield f"# columns: {COLUMNS}"
-    yield "# transits of xdot = 0: # P count t/s frequency/Hz"
-
-
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
-    """Yield the snapshots of each block and the transits in it."""
-    transits, first = Transits(), 0
-    for times, states in blocks(options):
+    """Yield the snapshots of each block and the transits in it; a block begins where the one before it ends."""
+    method = METHODS[METHOD_OF[options.order]]
+    missing = available(method)
+    if missing is not None:
+        raise InputError("-R", method.id, "a method that is installed", f"It is {missing}.")
+    step, transits, first = float(options.step), Transits(), 0
+    problem = _problem(options, step)
+    while first < options.steps:
+        count = min(BLOCK, options.steps - first)
+        problem = replace(problem, times=np.arange(count + 1) * np.float64(step))
+        outcome = method.prepare(problem, step)()
+        states = outcome.states
+        if len(states) <= count:
+            raise IntegrationError(
+                f"{method.title} at {step:g} s fails after t = {first * step + outcome.reached_t:g} s.",
+                "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
+            )
+        index = first + np.arange(count + 1)
+        times, printed = index * np.float64(step), (index % options.skip == 0) & ((index > first) | (index == 0))
         zeros = transits.of(times, states[:, 3])
-        index = first + np.arange(len(times))
-        printed = (index % options.skip == 0) & (index >= (first + 1 if first else 0))
         yield times[printed], states[printed], zeros
-        first += len(times) - 1
+        problem = replace(problem, start=states[-1, [0, 1, 3, 4]] / problem.constants.length)
+        first += count
 
 
 def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
@@ -194,38 +205,6 @@ def _zero(times: Array, v: Array, i: int) -> float:
         return float(times[0] + (times[1] - times[0]) * v[0] / (v[0] - v[1]))
     three = slice(max(0, i - 2), max(0, i - 2) + 3)
     return parabola_zero(times[three], v[three])
-
-
-def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
-    """Yield blocks of times in s and states x, y, z, vx, vy, vz, shape (rows, 6).
-
-    The first row of a block is the last one of the block before it.
-
-    Raises:
-        InputError: numba is not installed.
-        IntegrationError: the bob reaches the height of the suspension, or the run fails otherwise.
-    """
-    method = METHODS[METHOD_OF[options.order]]
-    missing = available(method)
-    if missing is not None:
-        raise InputError("-R", method.id, "a method that is installed", f"It is {missing}.")
-    step = float(options.step)
-    problem = _problem(options, step)
-    first = 0
-    while first < options.steps:
-        count = min(BLOCK, options.steps - first)
-        times: Array = np.arange(count + 1, dtype=np.float64) * step
-        problem = replace(problem, times=times)
-        outcome = method.prepare(problem, step)()
-        states = outcome.states
-        if len(states) <= count:
-            raise IntegrationError(
-                f"{method.title} at {step:g} s fails after t = {first * step + outcome.reached_t:g} s.",
-                "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
-            )
-        yield np.asarray((first + np.arange(count + 1)) * step, dtype=np.float64), states
-        problem = replace(problem, start=states[-1, [0, 1, 3, 4]] / problem.constants.length)
-        first += count
 
 
 def _problem(options: Options, step: float) -> Problem:

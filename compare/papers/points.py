@@ -9,7 +9,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
 import numpy as np
 
@@ -30,6 +30,8 @@ SEED = 20231117  # of the random numbers: the points are the same in every run
 class Point:
     """Numbers of one random point, exact; lengths in m, times in s, angles in radians unless stated.
 
+    Each is drawn between the two that stand with it.
+
     Attributes:
         radius, flattening, altitude, latitude: the planet's (latitude in degrees).
         length, gravity, rate: of the pendulum and of the rotation, l, g, Ω.
@@ -38,27 +40,27 @@ class Point:
         t, mass: a time and a mass.
     """
 
-    radius: Any
-    flattening: Any
-    altitude: Any
-    latitude: Any
-    length: Any
-    gravity: Any
-    rate: Any
-    cord: Any
-    azimuth: Any
-    cord_rate: Any
-    azimuth_rate: Any
-    cord_second: Any
-    azimuth_second: Any
-    x: Any
-    y: Any
-    vx: Any
-    vy: Any
-    ax: Any
-    ay: Any
-    t: Any
-    mass: Any
+    radius: Annotated[Any, 2, 3] = MP.zero
+    flattening: Annotated[Any, 0.1, 0.3] = MP.zero
+    altitude: Annotated[Any, 0.1, 0.5] = MP.zero
+    latitude: Annotated[Any, 15, 75] = MP.zero
+    length: Annotated[Any, 1, 2] = MP.zero
+    gravity: Annotated[Any, 6, 10] = MP.zero
+    rate: Annotated[Any, 0.3, 0.9] = MP.zero
+    cord: Annotated[Any, 0.4, 1.2] = MP.zero
+    azimuth: Annotated[Any, -3, 3] = MP.zero
+    cord_rate: Annotated[Any, 0.2, 0.9] = MP.zero
+    azimuth_rate: Annotated[Any, 0.2, 0.9] = MP.zero
+    cord_second: Annotated[Any, -0.9, 0.9] = MP.zero
+    azimuth_second: Annotated[Any, -0.9, 0.9] = MP.zero
+    x: Annotated[Any, 0.1, 0.6] = MP.zero
+    y: Annotated[Any, 0.1, 0.6] = MP.zero
+    vx: Annotated[Any, 0.2, 0.9] = MP.zero
+    vy: Annotated[Any, 0.2, 0.9] = MP.zero
+    ax: Annotated[Any, -0.9, 0.9] = MP.zero
+    ay: Annotated[Any, -0.9, 0.9] = MP.zero
+    t: Annotated[Any, 0.5, 2] = MP.zero
+    mass: Annotated[Any, 1.5, 3] = MP.zero
 
     @cached_property
     def phi(self) -> Any:
@@ -141,30 +143,19 @@ def _inputs(p: Point) -> Inputs:
     return replace(load_scene("paris").exact, **numbers)
 
 
-_RANGES = {
-    "radius": (2, 3), "flattening": (0.1, 0.3), "altitude": (0.1, 0.5), "latitude": (15, 75),
-    "length": (1, 2), "gravity": (6, 10), "rate": (0.3, 0.9), "cord": (0.4, 1.2), "azimuth": (-3, 3),
-    "cord_rate": (0.2, 0.9), "azimuth_rate": (0.2, 0.9), "cord_second": (-0.9, 0.9), "azimuth_second": (-0.9, 0.9),
-    "x": (0.1, 0.6), "y": (0.1, 0.6), "vx": (0.2, 0.9), "vy": (0.2, 0.9), "ax": (-0.9, 0.9), "ay": (-0.9, 0.9),
-    "t": (0.5, 2), "mass": (1.5, 3),
-}  # fmt: skip
-
-
 @cache
 def points() -> tuple[Point, ...]:
     """Return random points, the same in every run."""
-    draw = random.Random(SEED)
-    return tuple(Point(**{name: MP.mpf(draw.uniform(*ends)) for name, ends in _RANGES.items()}) for _ in range(COUNT))
+    draw, kinds = random.Random(SEED), get_type_hints(Point, include_extras=True).values()
+    return tuple(Point(*(MP.mpf(draw.uniform(*kind.__metadata__)) for kind in kinds)) for _ in range(COUNT))
 
 
 @cache
 def paris() -> Point:
     """Return the Paris pendulum at its release, Mathar VII: decimals as printed."""
     texts = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",
-             "rate": "7.292115e-5", "x": "0.3", "y": "0.4"}  # fmt: skip
-    numbers = {name: mpf(text) for name, text in texts.items()}
-    blank = dict.fromkeys(_RANGES, MP.zero) | {"mass": MP.one}
-    return Point(**(blank | numbers | {"flattening": 1 / mpf("298.257223564")}))
+             "rate": "7.292115e-5", "x": "0.3", "y": "0.4", "mass": "1"}  # fmt: skip
+    return Point(**{name: mpf(text) for name, text in texts.items()}, flattening=1 / mpf("298.257223564"))
 
 
 @cache

@@ -27,7 +27,6 @@ _NAMES = {
     "error_m": "largest error of position up to then, m",
     "plane_error_arcsec": "largest error of the swing plane, arcsec",
 }
-_MARKS = {"error_m": ((1e-3, "1 mm"), (1e-6, "1 µm")), "plane_error_arcsec": ((1.0, "1 arcsec"),)}
 
 
 def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) -> dict[str, Any]:
@@ -199,8 +198,8 @@ def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
             logarithmic(axes, "x", *ends)
         draw(axes, lines)
         low, high = axes.get_ylim()
-        for height, name in _MARKS[what]:
-            if low < height < high:
+        for name, quantity, height in LIMITS:
+            if quantity == what and low < height < high:
                 axes.axhline(height, **GUIDE)
                 axes.text(
                     0.995, height, name, transform=axes.get_yaxis_transform(), ha="right", va="bottom", color=FAINT,

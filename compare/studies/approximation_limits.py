@@ -20,9 +20,8 @@ from .row import failure
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
 SWEEP_S = 3600.0
 LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
-UNITS: dict[str, str] = {"amplitude": "m", "latitude": "degrees", "length": "m", "rotation_rate": "rad/s"}
+UNITS: dict[str, str] = {"amplitude": "m", "latitude": "degrees", "length": "m"}
 _DIGITS = 40  # of a release as it is written into a scene
-_FIELDS = {"latitude": "site.latitude", "rotation_rate": "site.rotation_rate"}
 # extra times at which limits over time are looked for, in geometric progression from the first of them in s, so that
 # a limit that is exceeded within the first swing is located inside it
 _FIRST_S, _EXTRA_TIMES = 1e-3, 400
@@ -138,7 +137,7 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
 
     Args:
         scene: to start from.
-        over: `latitude` or `rotation_rate`: that field; `length`: of the cord, with the angle of release kept;
+        over: `latitude`: that field; `length`: of the cord, with the angle of release kept;
             `amplitude`: horizontal distance of the release from the rest position in m, with its direction kept,
             and the velocity of the release in proportion.
         value: its new value.
@@ -149,7 +148,7 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
     text = repr(float(value))
     if over == "length":
         return _lengthened(scene, text)
-    return _displaced(scene, text) if over == "amplitude" else scene.with_values([f"{_FIELDS[over]}={text}"])
+    return _displaced(scene, text) if over == "amplitude" else scene.with_values([f"site.latitude={text}"])
 
 
 def _lengthened(scene: Scene, text: str) -> Scene:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import Answer, Check, Identity, Statement, section
+from ..checks import Answer, Check, Identity, Statement, component, section
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import (
     angle_state,
@@ -21,7 +21,7 @@ from ..first_principles import (
     square_speed,
 )
 from ..points import Point, paris_passage, points
-from .kinematics import alpha_0, alpha_1, alpha_2
+from .kinematics import alphas, in_powers
 
 
 def _symbols(p: Point) -> tuple[Any, ...]:
@@ -61,33 +61,21 @@ def azimuth_equation(p: Point) -> Any:
     return first + second + p.rate * (c * sp * sl - s * cp) * (p.rate * c * cl - 2 * p.cord_rate)
 
 
-def plane_alpha_0(p: Point) -> Any:
-    """Return α0 in x and y by (28)."""
-    x, y, vx, vy, square = p.x, p.y, p.vx, p.vy, p.length**2
-    return (2 * x * y * vx * vy + (square - y**2) * vx**2 + (square - x**2) * vy**2) / (square - x**2 - y**2)
-
-
-def plane_alpha_1(p: Point) -> Any:
-    """Return α1 in x and y by (29)."""
+def plane_alphas(p: Point) -> Vector:
+    """Return α0, α1, α2 in x and y by (28)-(30)."""
     x, y, vx, vy, l2, s, c, far = p.x, p.y, p.vx, p.vy, p.length**2, sin(p.phi), cos(p.phi), p.N + p.altitude
     below = l2 - x**2 - y**2
-    top = -2 * vx * s * y * l2 - 2 * vx * c * below ** MP.mpf("1.5") + 2 * vx * s * y**3 - 2 * vy * s * x**3
-    top += 2 * vx * s * y * x**2 - 2 * vx * c * x**2 * sqrt(below) - 2 * vy * c * x * y * sqrt(below)
-    top += 2 * l2 * far * c * vx - 2 * far * c * x**2 * vx - 2 * far * c * y**2 * vx
-    top += 2 * l2 * s * x * vy - 2 * s * x * y**2 * vy
-    return top / below
-
-
-def plane_alpha_2(p: Point) -> Any:
-    """Return α2 in x and y by (30)."""
-    x, y, l2, s, c, far = p.x, p.y, p.length**2, sin(p.phi), cos(p.phi), p.N + p.altitude
-    below = l2 - x**2 - y**2
     half = below ** MP.mpf("1.5")
-    top = -2 * x**2 * y**2 + y**2 * l2 + 2 * c**2 * y**4 + c**2 * x**4 + x**2 * l2 + c**2 * l2**2 - x**4 - y**4
-    top += far**2 * c**2 * l2 - 3 * y**2 * l2 * c**2 - 2 * far * c**2 * half - 2 * c**2 * l2 * x**2
-    top += 3 * c**2 * x**2 * y**2 + 2 * s * c * y * half - far**2 * c**2 * x**2 - far**2 * c**2 * y**2
-    top += -2 * far * s * c * y * l2 + 2 * s * c * far * y * x**2 + 2 * s * c * far * y**3
-    return top / below
+    zero = 2 * x * y * vx * vy + (l2 - y**2) * vx**2 + (l2 - x**2) * vy**2
+    one = -2 * vx * s * y * l2 - 2 * vx * c * half + 2 * vx * s * y**3 - 2 * vy * s * x**3
+    one += 2 * vx * s * y * x**2 - 2 * vx * c * x**2 * sqrt(below) - 2 * vy * c * x * y * sqrt(below)
+    one += 2 * l2 * far * c * vx - 2 * far * c * x**2 * vx - 2 * far * c * y**2 * vx
+    one += 2 * l2 * s * x * vy - 2 * s * x * y**2 * vy
+    two = -2 * x**2 * y**2 + y**2 * l2 + 2 * c**2 * y**4 + c**2 * x**4 + x**2 * l2 + c**2 * l2**2 - x**4 - y**4
+    two += far**2 * c**2 * l2 - 3 * y**2 * l2 * c**2 - 2 * far * c**2 * half - 2 * c**2 * l2 * x**2
+    two += 3 * c**2 * x**2 * y**2 + 2 * s * c * y * half - far**2 * c**2 * x**2 - far**2 * c**2 * y**2
+    two += -2 * far * s * c * y * l2 + 2 * s * c * far * y * x**2 + 2 * s * c * far * y**3
+    return vector(zero, one, two) / below
 
 
 def _plane_alpha(power: int) -> Any:
@@ -159,11 +147,6 @@ def beta_y(p: Point) -> Vector:
     )
 
 
-def in_powers(p: Point, beta: Vector) -> Any:
-    """Return the sum of β_i Ω^i."""
-    return sum(part * p.rate**i for i, part in enumerate(beta))
-
-
 def matrix_times(p: Point, a: Vector) -> Vector:
     """Return the left side of (42)."""
     x, y, z = p.position
@@ -215,7 +198,7 @@ def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     in_angles = section("mathar_", "Mathar III",
         Identity("20", "(20)", "K = m (α0 + α1 Ω + α2 Ω²) / 2",
-            lambda p: p.mass / 2 * (alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2),
+            lambda p: p.mass / 2 * in_powers(p, alphas(p)),
             lambda p: p.mass * square_speed(p, by_angles, *angle_state(p)[:2]) / 2),
         Identity("21", "(21)", "V = m g z = -m g l cosφ", lambda p: -p.mass * p.gravity * p.length * cos(p.cord),
             lambda p: p.mass * p.gravity * by_angles(p, p.cord, p.azimuth)[2]),
@@ -235,9 +218,10 @@ def checks() -> list[Check]:
         Statement("27_e", ", after (27)", "E = K + V in the inertial frame is not conserved",
             _energy_in_the_inertial_frame_changes,
             remark="conserved is v²/2 + g z - Ω²/2 (x² + q²), q the distance from the axis"),
-        Identity("28", "(28)", "α0 = [2xyx'y' + (l²-y²)x'² + (l²-x²)y'²] / (l²-x²-y²)", plane_alpha_0, _plane_alpha(0)),
-        Identity("29", "(29)", "α1 = [12 terms] / (l²-x²-y²)", plane_alpha_1, _plane_alpha(1)),
-        Identity("30", "(30)", "α2 = [19 terms] / (l²-x²-y²)", plane_alpha_2, _plane_alpha(2)),
+        Identity("28", "(28)", "α0 = [2xyx'y' + (l²-y²)x'² + (l²-x²)y'²] / (l²-x²-y²)",
+            component(plane_alphas, 0), _plane_alpha(0)),
+        Identity("29", "(29)", "α1 = [12 terms] / (l²-x²-y²)", component(plane_alphas, 1), _plane_alpha(1)),
+        Identity("30", "(30)", "α2 = [19 terms] / (l²-x²-y²)", component(plane_alphas, 2), _plane_alpha(2)),
         Statement("30_fast", ", after (30)",
             "the sine in (26) induces quick changes of λ if the pendulum approaches small φ",
             _azimuth_is_fast, by_run=True),

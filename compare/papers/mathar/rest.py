@@ -25,11 +25,11 @@ def _at_rest(p: Point, **changes: Any) -> Point:
     return p.but(**({"vx": MP.zero, "vy": MP.zero} | changes))
 
 
-def _right_side_of_45(p: Point) -> Any:
-    s, c, y, l2 = sin(p.phi), cos(p.phi), p.y, p.length**2
-    share = p.rate**2 / p.gravity
-    bowed = sqrt(l2 - y**2) * (y - p.R * s - 2 * y * c**2)
-    return (bowed + c * (p.R * y + (l2 - 2 * y**2) * s)) * share
+def _right_side_of_45(p: Point, y: Any, sign: int = 1) -> Any:
+    """Return it with one sign of its root or the other."""
+    s, c, l2 = sin(p.phi), cos(p.phi), p.length**2
+    bowed = sign * sqrt(l2 - y**2) * (y - p.R * s - 2 * y * c**2)
+    return (bowed + c * (p.R * y + (l2 - 2 * y**2) * s)) * p.rate**2 / p.gravity
 
 
 def _hanging(p: Point) -> Point:
@@ -39,12 +39,10 @@ def _hanging(p: Point) -> Point:
 
 def _degree_of_45() -> Answer:
     p = points()[0]
-    s, c, share = sin(p.phi), cos(p.phi), p.rate**2 / p.gravity
 
     def cleared(y: Any) -> Any:
-        """Return (45) with its root isolated and squared."""
-        isolated = y - c * (p.R * y + (p.length**2 - 2 * y**2) * s) * share
-        return isolated**2 - (p.length**2 - y**2) * ((y - p.R * s - 2 * y * c**2) * share) ** 2
+        """Return (45) without its root: the product of y - its right side, with either sign of the root."""
+        return MP.re((y - _right_side_of_45(p, y)) * (y - _right_side_of_45(p, y, -1)))
 
     def difference(order: int) -> Any:
         return sum((-1) ** k * MP.binomial(order, k) * cleared(MP.mpf(k)) for k in range(order + 1))
@@ -151,7 +149,7 @@ def _section_v() -> list[Check]:
             lambda p: _forty_four(_at_rest(p, x=MP.zero)),
             lambda p: horizontal_acceleration(_at_rest(p, x=MP.zero))[1]),
         Identity("45", "(45)", "y² = sqrt(l²-y²) (y - R sinϕ - 2y cos²ϕ) Ω²/g + cosϕ [Ry + (l²-2y²) sinϕ] Ω²/g",
-            lambda p: _hanging(p).y ** 2, lambda p: _right_side_of_45(_hanging(p)), "the left side is y",
+            lambda p: _hanging(p).y ** 2, lambda p: _right_side_of_45(p, _hanging(p).y), "the left side is y",
             lambda p: _hanging(p).y, remark="at the rest position of the reference"),
         Statement("45_degree", "(45)", "a quartic equation for y", _degree_of_45),
         Statement("45_text", ", after (45)", "deviations from the vertical < 0.1°", _below_a_tenth),
