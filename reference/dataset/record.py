@@ -113,7 +113,7 @@ def manifest_of(
     name = name or dataset_id(scene)
     options = f"{ENGINE} {run.engine}"
     if proof is not None:
-        making = Making(run.engine, proof.audited, proof.confirmed, proof.function is not None, tables)
+        making = Making(run.engine, proof.audited, proof.confirmed, proof.enclosure.function is not None, tables)
         options = making.options_for(scene, name)
     end = grid.rows[-1][0]
     return Manifest.model_construct(
@@ -242,13 +242,11 @@ def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
 
 
 def _enclosure(proof: Proof) -> EnclosureRecord:
-    radii = {
-        "position_radius_m": proof.position_radius,
-        "velocity_radius_m_s": proof.velocity_radius,
-        "transit_radius_s": proof.transit_radius,
-    }
-    same = {name: getattr(proof, name) for name in EnclosureRecord.model_fields if name not in radii}
-    return EnclosureRecord.model_validate(same | radii)
+    made = proof.enclosure
+    said = {"method": made.method, "prec": made.bits, "order": made.order, "steps": made.steps}
+    said |= {"position_radius_m": made.position_radius, "velocity_radius_m_s": made.velocity_radius}
+    said |= {"transit_radius_s": proof.transit_radius, "agreement_bits": proof.agreement_bits}
+    return EnclosureRecord.model_validate(said)
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -34,13 +33,7 @@ WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` le
 
 
 def solve_enclosed(
-    scene: Scene,
-    times: tuple[Fraction, ...],
-    engine: str,
-    report: Report | None,
-    audit: bool = False,
-    confirm: Confirmation = "none",
-    function: bool = False,
+    scene: Scene, engine: str, report: Report | None, audit: bool, confirm: Confirmation, function: bool
 ) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
@@ -59,7 +52,7 @@ def solve_enclosed(
     need_flint()
     from .. import enclosure
 
-    problem = ProofTask(scene, times, engine, run_pilot(scene.exact, times), function)
+    problem = ProofTask(scene, engine, run_pilot(scene.exact, tuple(scene.exact.grid)), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
         confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
     with ExitStack() as meanwhile:
@@ -113,7 +106,7 @@ def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None
     scene, pilot = problem.scene, problem.pilot
     bits = prec or first_prec(scene, pilot, AUTO)
     check_reach(pilot.steps // (SAMPLED if confirm == "sampled" else 1), bits, scene.run.digits, WITHOUT)
-    return confirming_plan(scene, problem.times, pilot, bits)
+    return confirming_plan(scene, tuple(scene.exact.grid), pilot, bits)
 
 
 def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Run:
@@ -163,9 +156,9 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
     lacking, _ = passages_lacking(decided, witness, decimals, solution.scene.run.digits)
     missing = max(lacking, bits_lacking(gaps, decimals))
     if solution.zeros is None or witness.transits is None or solution.possible:
-        return CrossCheck.of(witness, gaps, None), missing
+        return CrossCheck.by(witness, gaps, None), missing
     if witness.directions != solution.directions:
-        return CrossCheck.of(witness, gaps, None), max(missing, witness.plan.number.prec // 2)
+        return CrossCheck.by(witness, gaps, None), max(missing, witness.plan.number.prec // 2)
     apart = solution.zeros.distance(witness.transits.only(TRANSITS)).largest()
     missing = max(missing, bits_lacking(apart, transit_decimals(solution)))
-    return CrossCheck.of(witness, gaps, apart["t"]), missing
+    return CrossCheck.by(witness, gaps, apart["t"]), missing

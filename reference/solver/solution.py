@@ -28,36 +28,8 @@ SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the gr
 
 
 @dataclass(frozen=True)
-class CrossCheck:
-    """A run that checks the published numbers, and its largest disagreement with them, in m, m/s and s."""
-
-    formulation: str
-    number: str
-    order: int
-    steps: int
-    position_m: Fraction
-    velocity_m_s: Fraction
-    transit_s: Fraction | None
-    cpu_s: float
-
-    @classmethod
-    def of(cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None) -> CrossCheck:
-        """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
-        return cls(
-            formulation=witness.plan.formulation,
-            number=str(witness.plan.number),
-            order=witness.order,
-            steps=witness.steps,
-            position_m=max(gaps[name] for name in POSITION),
-            velocity_m_s=max(gaps[name] for name in VELOCITY),
-            transit_s=transit_s,
-            cpu_s=witness.cpu_s,
-        )
-
-
-@dataclass(frozen=True)
 class Source:
-    """The run that published numbers come from: engine, formulation, number type, order, steps, cost."""
+    """A run that numbers come from: engine, formulation, number type, order, steps, cost."""
 
     engine: str
     formulation: str
@@ -75,27 +47,37 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Proof:
-    """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
+class CrossCheck(Source):
+    """A run that checks the published numbers, and its largest disagreement with them, in m, m/s and s."""
 
-    `proved`, `function` and `sections` are what trusted code returned, and compares with what is written; `audited`:
-    FLINT alone proves it too;
-    `confirmed`: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
-    transit, or a sample: a tenth of the grid's intervals, each from its first row.
+    position_m: Fraction
+    velocity_m_s: Fraction
+    transit_s: Fraction | None
+
+    @classmethod
+    def by(cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None) -> CrossCheck:
+        """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
+        position_m, velocity_m_s = (max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY))
+        return cls(**vars(Source.of(witness)), position_m=position_m, velocity_m_s=velocity_m_s, transit_s=transit_s)
+
+
+@dataclass(frozen=True)
+class Proof:
+    """A proof, and what stands beside it.
+
+    Attributes:
+        enclosure: the `Enclosure`: method, size, largest radii in m and m/s, and what trusted code returned, which it
+            compares with what is written.
+        transit_radius: the largest radius of a transit's time in s.
+        agreement_bits: bits to which its run agrees with it.
+        audited: whether FLINT alone proves it too.
+        confirmed: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
+            transit, or a sample: a tenth of the grid's intervals, each from its first row.
     """
 
-    method: str
-    prec: int
-    order: int
-    steps: int
-    position_radius: Fraction
-    velocity_radius: Fraction
+    enclosure: Any = field(repr=False)
     transit_radius: Fraction | None
     agreement_bits: int
-    cpu_s: dict[str, float]
-    proved: Any = field(default=None, repr=False)
-    function: Any = field(default=None, repr=False)
-    sections: Any = field(default=None, repr=False)
     audited: bool = False
     confirmed: Confirmation = "none"
 
@@ -179,7 +161,7 @@ class Solution(GridColumns):
     @cached_property
     def function(self) -> GoldenFunction | None:
         """The golden function, if it was asked for."""
-        made = self.proof and self.proof.function
+        made = self.proof and self.proof.enclosure.function
         return GoldenFunction.of(made.facts, made.bounds, made.data) if made else None
 
     def at(self, t: npt.ArrayLike) -> States:
