@@ -186,12 +186,13 @@ def _generate_ranges(
         InputError: an input, a width, or the folder.
         UnreachableError: the box is too wide; nothing is written.
     """
-    from ..dataset.place import GOLDEN
-    from ..dataset.ranges import check_ranges_target, period_texts, ranges_id, write_ranges
+    from ..dataset.place import GOLDEN, RANGES
+    from ..dataset.ranges import period_texts, ranges_id, write_ranges
+    from ..dataset.write import check_target
     from ..solver.solve import solve
 
     if out is not None:
-        check_ranges_target(out)
+        check_target(out, RANGES)
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         ranges = solve(scene, uncertain=widths, level=level, engine=engine, report=report)

@@ -75,10 +75,9 @@ def command(
             "SCENE", "nothing", "a scene's id or the path of a TOML file", "`foucault scenes` lists the ids."
         )
     scene = load_scene(scene_word, set_ or ())
-    flags = flag_meanings(scene.flags)
     document: dict[str, Any] = {
         **scene.model_dump(exclude_none=True),
-        "flag_meanings": flags,
+        "flag_meanings": flag_meanings(scene.flags),
         "derived": _derived(scene),
         "motion": _motion(scene),
     }
@@ -99,43 +98,41 @@ def command(
     if as_json:
         emit(document)
         return
+    for line in _told(scene, document):
+        typer.echo(line)
+
+
+def _told(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
+    """Yield the lines that tell people what a document on a scene holds."""
     from ..dataset.sheets import scene_inputs
 
-    typer.echo(f"{scene.id}: {scene.title}")
-    if scene.source:
-        typer.echo(f"source: {scene.source}")
-    for flag, meaning in flags.items():
-        typer.echo(f"{flag}: {meaning}")
-    typer.echo(f"inputs are read as: {scene.inputs}")
-    for section, table in scene_inputs(scene).items():
-        typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
-    if scene.uncertain:
-        typer.echo("[uncertain] " + ", ".join(f"{key} = {width}" for key, width in scene.uncertain.items()))
-    typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
-    typer.echo(_motion_line(document["motion"]))
-    if proved:
+    yield f"{scene.id}: {scene.title}"
+    yield from [f"source: {scene.source}"] * bool(scene.source)
+    yield from (f"{flag}: {meaning}" for flag, meaning in document["flag_meanings"].items())
+    yield f"inputs are read as: {scene.inputs}"
+    uncertain = {"uncertain": scene.uncertain} if scene.uncertain else {}
+    for section, table in {**scene_inputs(scene), **uncertain, "derived": document["derived"]}.items():
+        yield f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items())
+    yield _motion_line(document["motion"])
+    if "proved" in document:
         from .proved import swing_line
 
-        typer.echo(swing_line(document["proved"]))
-    if widths:
+        yield swing_line(document["proved"])
+    if "ranges" in document:
         from .proved import ranges_lines
 
-        for line in ranges_lines(document["ranges"]):
-            typer.echo(line)
-    if sensitivity:
-        lost = document["digits_lost"]
-        typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
-        typer.echo(f"  the inputs have to be right to n + {lost:.1f}")
-    if equations:
+        yield from ranges_lines(document["ranges"])
+    if (lost := document.get("digits_lost")) is not None:
+        yield f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result"
+        yield f"  the inputs have to be right to n + {lost:.1f}"
+    if "equations" in document:
         form, where = document["formulation"], f"{document['engine']}, {document['number']}"
-        typer.echo(f"compiled by generate ({where}; {form} form: {FORMS[form]}):")
-        for line in document["equations"]:
-            typer.echo(f"  {line}")
-        typer.echo("left out:")
-        for line in document["left_out"] or ["nothing"]:
-            typer.echo(f"  {line}")
+        yield f"compiled by generate ({where}; {form} form: {FORMS[form]}):"
+        yield from (f"  {line}" for line in document["equations"])
+        yield "left out:"
+        yield from (f"  {line}" for line in document["left_out"] or ["nothing"])
         if document["confirmed"]:
-            typer.echo(f"of the proof heyoka confirms: {document['confirmed']}")
+            yield f"of the proof heyoka confirms: {document['confirmed']}"
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:

@@ -115,6 +115,7 @@ def manifest_of(
     if proof is not None:
         making = Making(run.engine, proof.audited, proof.confirmed, proof.enclosure.function is not None, tables)
         options = making.options_for(scene, name)
+    of_transits = column_bounds(solution.transits, transits.decimals) if transits.rows else {}
     end = grid.rows[-1][0]
     return Manifest.model_construct(
         schema_version=3,
@@ -127,7 +128,7 @@ def manifest_of(
         level=scene.run.level,
         digits=scene.run.digits,
         decimals={"grid": grid.decimals, "transits": transits.decimals},
-        bounds=_bounds(solution, grid, transits),
+        bounds=bounds_of(column_bounds(solution.grid, grid.decimals), of_transits),
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
         transits=completeness(scene, solution.zeros is None, bool(solution.possible)),
         possible=_possible(solution.possible, end),
@@ -210,15 +211,6 @@ def command(scene: Scene, name: str, options: str) -> str:
     parts += ["--uncertain", "none"] if shipped is not scene and shipped.uncertain else []
     changed += [f"inputs={scene.inputs}"] if f".{scene.inputs}" in name else []
     return " ".join([*parts, *(word for change in changed for word in ("--set", change))])
-
-
-def _bounds(solution: Solution, grid: Sheet, transits: Sheet) -> Bounds:
-    of_grid = column_bounds(solution.grid, grid.decimals)
-    of_transits = {}
-    if transits.rows:
-        largest = max((row[-1] for row in transits.rows), key=Fraction)
-        of_transits = column_bounds(solution.transits, transits.decimals) | {"t": largest}
-    return bounds_of(of_grid, of_transits)
 
 
 def bounds_of(grid: dict[str, str], transits: dict[str, str]) -> Bounds:

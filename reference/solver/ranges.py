@@ -62,8 +62,7 @@ class Intervals(Framed):
         return data_frame({f"{name}_{word}": of(name) for name in self.columns for word, of in ends})
 
 
-@dataclass(frozen=True)
-class ZeroRanges:
+class ZeroRanges(NamedTuple):
     """The transits of a box, or the passages of one of its sections.
 
     Attributes:
@@ -74,7 +73,7 @@ class ZeroRanges:
     """
 
     table: Intervals
-    directions: list[int] = field(repr=False)
+    directions: list[int]
     possible: Undecided
 
     @classmethod

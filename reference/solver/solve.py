@@ -109,13 +109,12 @@ def solve(
         InputError: a field of the scene is wrong.
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
+    proving = {"audit": audit, "confirm": confirm != "none", "function": function}
     if uncertain is not None:
-        wanted: dict[str, Any] = {"digits": digits, "audit": audit, "function": function}
-        wanted["confirm"] = confirm != "none"
-        for wish in (name for name, asked in wanted.items() if asked):
-            raise InputError(
-                wish, wanted[wish], "nothing together with uncertain", "Intervals have the digits they support."
-            )
+        for wish, asked in {"digits": digits, **proving}.items():
+            if asked:
+                advice = "Intervals have the digits they support."
+                raise InputError(wish, asked, "nothing together with uncertain", advice)
         if level not in (None, "enclosed"):
             raise InputError("level", level, "enclosed, together with uncertain", "Ranges are proved, or refused.")
         level = "enclosed"
@@ -127,7 +126,7 @@ def solve(
     engine = checked(engine)
     if confirm not in CONFIRMATIONS:
         raise InputError("confirm", confirm, in_words(CONFIRMATIONS))
-    for wish, asked in (("audit", audit), ("confirm", confirm != "none"), ("function", function)):
+    for wish, asked in proving.items():
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
