@@ -16,17 +16,16 @@ from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import WORTH_A_PROCESS, expected_s, in_background, reports, run, send_run, slowest
 from ..errors import IntegrationError
-from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..system.workers import Emit
-from .agreement import bits_lacking, passages_lacking
+from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, guarded, proved
-from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, tables_of, transit_decimals
+from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, tables_of, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
@@ -148,17 +147,15 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
 
     `grid` are the solution's rows that the run has.
     """
-    gaps = grid.distance(witness.grid.only(GRID)).largest()
-    decimals = grid_decimals(solution)
-    decided = {
-        w: (p.table, p.directions) for w, p in solution.sections.items() if w in witness.passages and not p.possible
-    }
-    lacking, _ = passages_lacking(decided, witness, decimals, solution.scene.run.digits)
-    missing = max(lacking, bits_lacking(gaps, decimals))
-    if solution.zeros is None or witness.transits is None or solution.possible:
-        return CrossCheck.by(witness, gaps, None), missing
-    if witness.directions != solution.directions:
-        return CrossCheck.by(witness, gaps, None), max(missing, witness.plan.number.prec // 2)
-    apart = solution.zeros.distance(witness.transits.only(TRANSITS)).largest()
-    missing = max(missing, bits_lacking(apart, transit_decimals(solution)))
-    return CrossCheck.by(witness, gaps, apart["t"]), missing
+    gaps, late = grid.distance(witness.grid).largest(), None
+    missing = [bits_lacking(gaps, grid_decimals(solution))]
+    for word, passages in solution.sections.items():
+        if word in witness.passages and not passages.possible:
+            ones = passages.table, passages.directions
+            missing.append(zeros_lacking(ones, witness.passages[word], section_decimals(solution), witness)[0])
+    if solution.zeros is not None and witness.transits is not None and not solution.possible:
+        ones, others = (solution.zeros, solution.directions), (witness.transits, witness.directions)
+        lacking, apart = zeros_lacking(ones, others, transit_decimals(solution), witness)
+        missing.append(lacking)
+        late = None if apart is None else apart.largest()["t"]
+    return CrossCheck.by(witness, gaps, late), max(missing)
