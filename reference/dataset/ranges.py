@@ -15,8 +15,8 @@ from ..errors import DatasetError, FoucaultError, InputError
 from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..scenes.scene import parse_scene
-from ..solver.ranges import Ends, Intervals, Ranges, ZeroRanges
-from ..solver.solution import exact_decimals
+from ..solver.ranges import Ends, Intervals, Ranges
+from ..solver.solution import Passages, exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
 from .place import MAX_ID, RANGES, dataset_id, golden_folder
@@ -136,8 +136,8 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
 
 def _zeros(
     rows: Sequence[Sequence[str]], columns: tuple[str, ...], possible: Sequence[Mapping[str, str]]
-) -> ZeroRanges:
-    return ZeroRanges(
+) -> Passages[Intervals]:
+    return Passages(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
         tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in possible),

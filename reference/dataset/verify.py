@@ -14,7 +14,7 @@ from ..scenes.shipped import golden_root, seals
 from ..solver.solve import solve
 from .checks import function, motion, physics, scene_check
 from .files import Files, read_files, read_manifest
-from .manifest import MANIFEST, Content, FileRecord, Manifest, differences
+from .manifest import MANIFEST, Content, Manifest, differences
 from .record import AUDIT, Making, generator
 from .render import render
 
@@ -148,8 +148,8 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
     fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
-    others = {name: text for name, text in texts.items() if FileRecord.of(text) != manifest.files.get(name)}
-    wrong = [f"{name}: {_how_it_differs(files.texts.get(name), text)}" for name, text in others.items()]
+    others = [name for name, record in again.files.items() if record != manifest.files.get(name)]
+    wrong = [f"{name}: {_how_it_differs(files.texts.get(name), texts[name])}" for name in others]
     if wrong or not fields:
         return [*wrong, *lines], []
     runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]

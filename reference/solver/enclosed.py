@@ -151,8 +151,7 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
     missing = [bits_lacking(gaps, grid_decimals(solution))]
     for word, passages in solution.sections.items():
         if word in witness.passages and not passages.possible:
-            ones = passages.table, passages.directions
-            missing.append(zeros_lacking(ones, witness.passages[word], section_decimals(solution), witness)[0])
+            missing.append(zeros_lacking(passages[:2], witness.passages[word], section_decimals(solution), witness)[0])
     if solution.zeros is not None and witness.transits is not None and not solution.possible:
         ones, others = (solution.zeros, solution.directions), (witness.transits, witness.directions)
         lacking, apart = zeros_lacking(ones, others, transit_decimals(solution), witness)

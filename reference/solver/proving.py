@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -108,21 +109,16 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
     gaps = checked_states(grid, times, approximant).largest()
     check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
-    zeros = _passages(enclosed.proved.transits or (), TRANSITS, times[-1], bits)
+    table = partial(Table.of_intervals, bits=bits)
+    zeros = separated(enclosed.proved.transits or (), TRANSITS, times[-1], table)
     transits = None if enclosed.proved.transits is None else zeros.table
     size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
     transit_radius = None if transits is None else max(transits.bound("t"), default=None)
     proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)
     found, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
-    sections = {word: _passages(passages, SECTION, times[-1], bits) for word, passages in found.items()}
+    sections = {word: separated(passages, SECTION, times[-1], table) for word, passages in found.items()}
     known = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
     return Solution(*known, sections=sections)
-
-
-def _passages(zeros: Any, columns: tuple[str, ...], end: Fraction, bits: int) -> Passages:
-    """Return zeros as a table; they lie in (0, end], and the ball of a cluster may be a little wider."""
-    rows, directions, possible = separated(zeros, columns, end)
-    return Passages(Table.of_intervals(columns, rows, bits), directions, possible)
 
 
 def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
@@ -214,7 +210,7 @@ def _transit_gap(event_run: Run, solution: Solution, xdot_error: Fraction) -> Fr
     return _zero_gap("transit", zeros, event_run.transits or Table(("t",), 0, []), event_run.directions, late)
 
 
-def _zero_gap(name: str, zeros: Passages, seen: Table, signs: list[int], late: list[Fraction]) -> Fraction:
+def _zero_gap(name: str, zeros: Passages[Table], seen: Table, signs: list[int], late: list[Fraction]) -> Fraction:
     """Return how far the zeros that a run has seen are from the enclosed ones, at most, in s.
 
     Args:

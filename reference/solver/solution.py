@@ -5,11 +5,11 @@ The decimals follow from the bounds, and so does whether a proof decides each di
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy.typing as npt
 
@@ -24,6 +24,7 @@ from ..scenes.scene import Scene
 from .swing import Swing, swing_of
 
 Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
+T = TypeVar("T")
 SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
 
@@ -82,17 +83,17 @@ class Proof:
     confirmed: Confirmation = "none"
 
 
-@dataclass(frozen=True)
-class Passages:
-    """The passages of a section.
+class Passages(NamedTuple, Generic[T]):
+    """The passages of a section, or the zeros of xdot.
 
     Attributes:
-        table: `columns.SECTION` at each, in SI units, with bounds.
+        table: `columns.SECTION` at each, in SI units: a `Table` with bounds; of uncertain inputs `Intervals` in each of
+            which every pendulum of the box has one, in order; the last one may come after the end for some.
         directions: +1 where the section's form grows, per passage.
         possible: intervals in s, each with a parity, that may hold passages which the proof could not decide.
     """
 
-    table: Table = field(repr=False)
+    table: T
     directions: list[int]
     possible: Undecided = ()
 
@@ -135,7 +136,7 @@ class Solution(GridColumns):
     possible: Undecided = ()
     guard: CrossCheck | None = None
     not_checked: str = ""
-    sections: Mapping[str, Passages] = field(default_factory=dict, repr=False)
+    sections: Mapping[str, Passages[Table]] = field(default_factory=dict, repr=False)
 
     @property
     def transits(self) -> Table:
@@ -219,11 +220,17 @@ def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
     return tables + [(passages.table, section_decimals(solution)) for passages in solution.sections.values()]
 
 
-def separated(found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> tuple[list[Any], list[int], Undecided]:
-    """Return of what a proof found up to `end` the rows of single zeros, their directions, and what it left open."""
+def separated(
+    found: Iterable[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
+) -> Passages[T]:
+    """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
+
+    Zeros lie in (0, end], and the ball of a cluster may be a little wider.
+    """
     ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
-    return [tuple(getattr(z, name) for name in columns) for z in ones], [z.direction for z in ones], possible
+    rows = tuple(tuple(getattr(z, name) for name in columns) for z in ones)
+    return Passages(table(columns, rows), [z.direction for z in ones], possible)
 
 
 def check_decided(solution: Solution) -> None:
