@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
@@ -162,21 +163,16 @@ def _derived(scene: Scene) -> dict[str, str]:
 
     start = Start.of(scene.exact, DERIVED_PREC)
     ctx, k = start.ctx, start.k
-
-    def text(value: Any) -> str:
-        return str(ctx.nstr(ctx.mpf(value), 15))
-
-    carried = scene.site.gravity_is == "ellipsoid"  # effective gravity takes the distance out of the equations
-    derived = {"axis_distance_m": text(k.axis_distance * k.length)} if carried else {}
+    found = {}
+    if scene.site.gravity_is == "ellipsoid":  # effective gravity takes the distance out of the equations
+        found["axis_distance_m"] = k.axis_distance * k.length
     strength = ctx.sqrt(sum(part * part for part in k.pull))
-    derived["pivot_gravity_m_s2"] = text(strength * k.length)
+    found["pivot_gravity_m_s2"] = strength * k.length
     if strength:
-        derived["small_swing_period_s"] = text(2 * ctx.pi / ctx.sqrt(strength))
-    try:
-        _, y, z = start.rest
-    except UnreachableError:
-        return derived
-    return derived | {"rest_y_m": text(y * k.length), "rest_z_m": text(z * k.length)}
+        found["small_swing_period_s"] = 2 * ctx.pi / ctx.sqrt(strength)
+    with suppress(UnreachableError):
+        found |= {"rest_y_m": start.rest[1] * k.length, "rest_z_m": start.rest[2] * k.length}
+    return {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in found.items()}
 
 
 def _motion(scene: Scene) -> dict[str, Any]:
