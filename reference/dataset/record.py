@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -96,19 +96,16 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
     return Making(AUTO, confirm="sampled", function=True)
 
 
-def manifest_of(
-    solution: Solution,
-    grid: Sheet,
-    transits: Sheet,
-    name: str | None = None,
-    *,
-    tables: bool = True,
-    sections: Sheet | None = None,
-) -> Manifest:
-    """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id.
+def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | None, tables: bool) -> Manifest:
+    """Return the manifest of a solution, still without files and seal.
 
-    Without `tables` its command says that they are left out.
+    Args:
+        solution: what is described.
+        sheets: its tables, by file name.
+        name: the dataset's id, by default the scene's own.
+        tables: whether they are written; else the command says that they are left out.
     """
+    grid, transits = sheets["grid.csv"], sheets.get("transits.csv", Sheet((), [], {}))
     scene, run, proof = solution.scene, solution.run, solution.proof
     name = name or dataset_id(scene)
     options = f"{ENGINE} {run.engine}"
@@ -138,7 +135,7 @@ def manifest_of(
         generator=generator(),
         command=command(scene, name, options),
         files={},
-        sections=None if sections is None else _sections(solution, sections),
+        sections=_sections(solution, sheets["sections.csv"]) if "sections.csv" in sheets else None,
         **following(scene, run.formulation, run.number, grid),
     )
 

@@ -54,17 +54,17 @@ def render(solution: Solution, name: str | None = None, *, tables: bool = True) 
 
     Without `tables` they are manifest and golden function alone.
     """
-    grid, transits = grid_sheet(solution), transits_sheet(solution)
+    grid = grid_sheet(solution)
     of_grid = {"t": [float(t) for t in solution.times], **nearest_doubles(solution.grid, grid)}
     sheets = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, of_grid)}
     if solution.scene.run.transits:
-        sheets["transits.csv"] = transits
+        sheets["transits.csv"] = transits = transits_sheet(solution)
         if len(transits.rows) <= MOST_DOUBLES:
             of_transits = nearest_doubles(solution.transits, transits)
             sheets["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
     if solution.scene.run.sections:
         sheets["sections.csv"] = sections_sheet(solution)
-    record = manifest_of(solution, grid, transits, name, tables=tables, sections=sheets.get("sections.csv"))
+    record = manifest_of(solution, sheets, name, tables)
     contents: dict[str, Content] = {}
     if tables:
         contents |= {name: sheet.csv() for name, sheet in sheets.items()} | derived_texts(record, sheets)
