@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..engines import AUTO, engine_names
 from ..errors import InputError, in_words
-from ..scenes.fields import CONFIRMATIONS, LEVELS, Confirmation
+from ..scenes.fields import CONFIRMATIONS, LEVELS
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
 from .progress import progress
@@ -132,7 +133,7 @@ def command(
         _generate_ranges(scene, level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.record import Making, making_of
+    from ..dataset.record import making_of
     from ..dataset.write import check_target, summary, write
     from ..solver.solve import solve
 
@@ -144,14 +145,10 @@ def command(
     if no_confirm:
         refuse({"--confirm": confirm}, "with --no-confirm")
     usual = making_of(scene, name, folder)
-    confirm = chosen("--confirm", "none" if no_confirm else confirm or usual.confirm, CONFIRMATIONS)
-    making = Making(
-        engine=usual.engine if engine == AUTO else engine,
-        audit=usual.audit if audit is None else audit,
-        confirm=cast("Confirmation", confirm),
-        function=usual.function if function is None else function,
-        tables=usual.tables and not no_tables,
-    )
+    confirm = "none" if no_confirm else confirm and chosen("--confirm", confirm, CONFIRMATIONS)
+    given = {"engine": None if engine == AUTO else engine, "audit": audit, "confirm": confirm, "function": function}
+    asked: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    making = replace(usual, **asked, tables=usual.tables and not no_tables)
     if not (making.tables or making.function):
         refuse({"--no-tables": True}, "without --function")
     with stoppable("nothing was written"), progress() as show:
@@ -186,12 +183,13 @@ def _generate_ranges(
         InputError: an input, a width, or the folder.
         UnreachableError: the box is too wide; nothing is written.
     """
-    from ..dataset.place import GOLDEN
-    from ..dataset.ranges import check_ranges_target, period_texts, ranges_id, write_ranges
+    from ..dataset.place import GOLDEN, RANGES
+    from ..dataset.ranges import period_texts, ranges_id, write_ranges
+    from ..dataset.write import check_target
     from ..solver.solve import solve
 
     if out is not None:
-        check_ranges_target(out)
+        check_target(out, RANGES)
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         ranges = solve(scene, uncertain=widths, level=level, engine=engine, report=report)

@@ -39,7 +39,7 @@ def progress() -> Iterator[Show]:
     """Yield the function that begins a piece of work; it is shown on stderr from its first move on."""
     if not sys.stderr.isatty():
         with announced_to(partial(typer.echo, err=True)):
-            yield Notice
+            yield notice
         return
     from rich.console import Console  # takes a tenth of a second
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -72,8 +72,10 @@ def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> 
     return move
 
 
-class Notice:
-    """One line, written once a piece of work has taken a while, that says how long all of it will take.
+def notice(
+    label: str, total: float = 0, unit: str = "s simulated", clock: Callable[[], float] = time.monotonic
+) -> Move:
+    """Return the function that moves a piece of work on, and says once how long all of it will take, if it is long.
 
     Args:
         label: what is done.
@@ -81,32 +83,27 @@ class Notice:
         unit: of completed and total.
         clock: returns a time in s.
     """
+    begun, known, given, last = clock(), total, False, 0.0
+    first: tuple[float, float] | None = None  # time and part done at the first move, also of a second try
 
-    def __init__(
-        self, label: str, total: float = 0, unit: str = "s simulated", clock: Callable[[], float] = time.monotonic
-    ) -> None:
-        self._label, self._total, self._unit, self._clock = label, total, unit, clock
-        self._begun = clock()
-        self._first: tuple[float, float] | None = None  # time and part done at the first move, also of a second try
-        self._last = 0.0
-        self._given = False
-
-    def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
-        """Note the part that is done; write the line if it is time and there is something to estimate from."""
-        now, total = self._clock(), self._total if total is None else total
-        if self._first is None or completed < self._last:
-            self._first = now, completed
-        self._last = completed
-        since, done = self._first
-        elapsed = now - self._begun
-        if self._given or elapsed <= NOTICE_S or now - since < MEASURED_S or completed <= done:
+    def move(completed: float, total: float | None = None, item: str = "") -> None:
+        nonlocal first, last, given
+        now, total = clock(), known if total is None else total
+        if first is None or completed < last:
+            first = now, completed
+        last = completed
+        since, done = first
+        elapsed = now - begun
+        if given or elapsed <= NOTICE_S or now - since < MEASURED_S or completed <= done:
             return
         if completed - done < ENOUGH * (total - done) and elapsed <= LATEST_S:
             return
-        self._given = True
+        given = True
         whole = elapsed + (total - completed) * (now - since) / (completed - done)
-        counted = f"{_rough(completed)} of {_rough(total)} {self._unit} after {elapsed:.0f} s"
-        typer.echo(f"{self._label}: about {in_words(whole)}: {counted}", err=True)
+        counted = f"{_rough(completed)} of {_rough(total)} {unit} after {elapsed:.0f} s"
+        typer.echo(f"{label}: about {in_words(whole)}: {counted}", err=True)
+
+    return move
 
 
 def _rough(amount: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
@@ -75,10 +76,9 @@ def command(
             "SCENE", "nothing", "a scene's id or the path of a TOML file", "`foucault scenes` lists the ids."
         )
     scene = load_scene(scene_word, set_ or ())
-    flags = flag_meanings(scene.flags)
     document: dict[str, Any] = {
         **scene.model_dump(exclude_none=True),
-        "flag_meanings": flags,
+        "flag_meanings": flag_meanings(scene.flags),
         "derived": _derived(scene),
         "motion": _motion(scene),
     }
@@ -99,43 +99,41 @@ def command(
     if as_json:
         emit(document)
         return
+    for line in _told(scene, document):
+        typer.echo(line)
+
+
+def _told(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
+    """Yield the lines that tell people what a document on a scene holds."""
     from ..dataset.sheets import scene_inputs
 
-    typer.echo(f"{scene.id}: {scene.title}")
-    if scene.source:
-        typer.echo(f"source: {scene.source}")
-    for flag, meaning in flags.items():
-        typer.echo(f"{flag}: {meaning}")
-    typer.echo(f"inputs are read as: {scene.inputs}")
-    for section, table in scene_inputs(scene).items():
-        typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
-    if scene.uncertain:
-        typer.echo("[uncertain] " + ", ".join(f"{key} = {width}" for key, width in scene.uncertain.items()))
-    typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
-    typer.echo(_motion_line(document["motion"]))
-    if proved:
+    yield f"{scene.id}: {scene.title}"
+    yield from [f"source: {scene.source}"] * bool(scene.source)
+    yield from (f"{flag}: {meaning}" for flag, meaning in document["flag_meanings"].items())
+    yield f"inputs are read as: {scene.inputs}"
+    uncertain = {"uncertain": scene.uncertain} if scene.uncertain else {}
+    for section, table in {**scene_inputs(scene), **uncertain, "derived": document["derived"]}.items():
+        yield f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items())
+    yield _motion_line(document["motion"])
+    if "proved" in document:
         from .proved import swing_line
 
-        typer.echo(swing_line(document["proved"]))
-    if widths:
+        yield swing_line(document["proved"])
+    if "ranges" in document:
         from .proved import ranges_lines
 
-        for line in ranges_lines(document["ranges"]):
-            typer.echo(line)
-    if sensitivity:
-        lost = document["digits_lost"]
-        typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
-        typer.echo(f"  the inputs have to be right to n + {lost:.1f}")
-    if equations:
+        yield from ranges_lines(document["ranges"])
+    if (lost := document.get("digits_lost")) is not None:
+        yield f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result"
+        yield f"  the inputs have to be right to n + {lost:.1f}"
+    if "equations" in document:
         form, where = document["formulation"], f"{document['engine']}, {document['number']}"
-        typer.echo(f"compiled by generate ({where}; {form} form: {FORMS[form]}):")
-        for line in document["equations"]:
-            typer.echo(f"  {line}")
-        typer.echo("left out:")
-        for line in document["left_out"] or ["nothing"]:
-            typer.echo(f"  {line}")
+        yield f"compiled by generate ({where}; {form} form: {FORMS[form]}):"
+        yield from (f"  {line}" for line in document["equations"])
+        yield "left out:"
+        yield from (f"  {line}" for line in document["left_out"] or ["nothing"])
         if document["confirmed"]:
-            typer.echo(f"of the proof heyoka confirms: {document['confirmed']}")
+            yield f"of the proof heyoka confirms: {document['confirmed']}"
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:
@@ -165,21 +163,16 @@ def _derived(scene: Scene) -> dict[str, str]:
 
     start = Start.of(scene.exact, DERIVED_PREC)
     ctx, k = start.ctx, start.k
-
-    def text(value: Any) -> str:
-        return str(ctx.nstr(ctx.mpf(value), 15))
-
-    carried = scene.site.gravity_is == "ellipsoid"  # effective gravity takes the distance out of the equations
-    derived = {"axis_distance_m": text(k.axis_distance * k.length)} if carried else {}
+    found = {}
+    if scene.site.gravity_is == "ellipsoid":  # effective gravity takes the distance out of the equations
+        found["axis_distance_m"] = k.axis_distance * k.length
     strength = ctx.sqrt(sum(part * part for part in k.pull))
-    derived["pivot_gravity_m_s2"] = text(strength * k.length)
+    found["pivot_gravity_m_s2"] = strength * k.length
     if strength:
-        derived["small_swing_period_s"] = text(2 * ctx.pi / ctx.sqrt(strength))
-    try:
-        _, y, z = start.rest
-    except UnreachableError:
-        return derived
-    return derived | {"rest_y_m": text(y * k.length), "rest_z_m": text(z * k.length)}
+        found["small_swing_period_s"] = 2 * ctx.pi / ctx.sqrt(strength)
+    with suppress(UnreachableError):
+        found |= {"rest_y_m": start.rest[1] * k.length, "rest_z_m": start.rest[2] * k.length}
+    return {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in found.items()}
 
 
 def _motion(scene: Scene) -> dict[str, Any]:

@@ -47,10 +47,6 @@ class PrintedTable:
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
-        return self.array(name)
-
-    def array(self, name: str) -> Array:
-        """Return a column as the nearest doubles, shape (rows,)."""
         return np.array([float(text) for text in self.decimals(name)], dtype=np.float64)
 
     def exact(self, name: str) -> list[Fraction]:

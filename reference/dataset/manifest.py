@@ -201,6 +201,8 @@ class Manifest(Part):
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:
         bounds, transits = self.bounds, TRANSITS if self.counts.transits else ()
+        needed = [*ALWAYS, *["transits.csv"] * bool(transits), *["sections.csv"] * bool(self.sections)]
+        lacking = [] if self.alone else [name for name in needed if name not in self.files]
         rules = {
             "level: a proof and the level enclosed belong together": (self.level == "enclosed") == bool(self.enclosure),
             "level: no run agrees with the published one": bool(self.cross_checks) or self.level == "computed",
@@ -216,16 +218,11 @@ class Manifest(Part):
             == {"t", *GRID},
             f"decimals.transits: must name the columns {', '.join(TRANSITS)}": {*self.decimals.get("transits", ())}
             in ({*TRANSITS}, {*transits}),
-            f"files: {' and '.join(ALWAYS)} belong to every dataset but a golden function alone": set(ALWAYS)
-            <= set(self.files)
-            or self.alone,
-            "files: transits.csv belongs to a dataset with transits": not transits
-            or "transits.csv" in self.files
-            or self.alone,
+            f"files: {' and '.join(lacking)} must be there, but for a golden function alone": not lacking,
             "sections: they belong to a scene that asks for some": bool(self.sections)
             == ("sections" in self.scene.get("run", ())),
-            "files: sections.csv belongs to a dataset with sections": ("sections.csv" in self.files)
-            == (bool(self.sections) and not self.alone),
+            "files: sections.csv belongs to a dataset with sections": bool(self.sections)
+            or "sections.csv" not in self.files,
             "files: a golden function has two files, and a proof": (FUNCTION[0] in self.files)
             == (FUNCTION[1] in self.files)
             <= bool(self.enclosure),

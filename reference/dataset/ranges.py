@@ -15,8 +15,8 @@ from ..errors import DatasetError, FoucaultError, InputError
 from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..scenes.scene import parse_scene
-from ..solver.ranges import Ends, Intervals, Ranges, ZeroRanges
-from ..solver.solution import exact_decimals
+from ..solver.ranges import Ends, Intervals, Ranges
+from ..solver.solution import Passages, exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
 from .place import MAX_ID, RANGES, dataset_id, golden_folder
@@ -36,15 +36,6 @@ def ranges_id(ranges: Ranges) -> str:
     return f"{name}+-{box}"
 
 
-def check_ranges_target(folder: Path) -> None:
-    """Refuse a target that cannot be written, or that holds something other than ranges.
-
-    Raises:
-        InputError: one of the two.
-    """
-    check_target(folder, RANGES, "older ranges")
-
-
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
     """Write ranges: `ranges.json`, which says the scene, the box and the proof, and the tables; whole or not at all.
 
@@ -57,7 +48,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
         DatasetError: a table does not hold what was proved; nothing is written then.
     """
     folder = Path(folder)
-    check_ranges_target(folder)
+    check_target(folder, RANGES)
     texts = _texts(ranges)
     if problems := _misprints(texts, ranges):
         raise DatasetError(str(folder), problems)
@@ -132,9 +123,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
             {name: width.removeprefix("±") for name, width in said["uncertain"].items()},
             tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
             Intervals(GRID, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
-            transits.table,
-            transits.directions,
-            transits.possible,
+            *transits,
             said["proof"]["engine"],
             passages,
         )
@@ -147,8 +136,8 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
 
 def _zeros(
     rows: Sequence[Sequence[str]], columns: tuple[str, ...], possible: Sequence[Mapping[str, str]]
-) -> ZeroRanges:
-    return ZeroRanges(
+) -> Passages[Intervals]:
+    return Passages(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
         tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in possible),
@@ -199,30 +188,14 @@ def _cells(table: Intervals) -> list[list[str]]:
     return [[text for pair in row for text in pair] for row in zip(*columns, strict=True)]
 
 
-def _grid(ranges: Ranges) -> str:
+def _grid_rows(ranges: Ranges) -> list[list[str]]:
     decimals = exact_decimals(ranges.times)
     first, later = Intervals(GRID, ranges.grid.rows[:1]), Intervals(GRID, ranges.grid.rows[1:])
     # the release may be known exactly, up to the rounding of the proof: it has the digits of the next row
     places = [places_of(*later.exact(name)[0]) for name in GRID]
     release = [text for name, count in zip(GRID, places, strict=True) for text in ends(*first.exact(name)[0], count)]
-    rows = [release, *_cells(later)]
-    lines = [
-        ["t", *_names(GRID)],
-        *([fixed_decimal(t, decimals), *row] for t, row in zip(ranges.times, rows, strict=True)),
-    ]
-    return _csv(lines)
-
-
-def _transits(ranges: Ranges) -> str:
-    rows = _zero_rows(ranges.transits, ranges.directions)
-    return _csv([["k", "direction", *_names(TRANSITS)], *rows])
-
-
-def _sections(ranges: Ranges) -> str:
-    lines = [["section", "k", "direction", *_names(SECTION)]]
-    for word, found in ranges.sections.items():
-        lines += [[word, *row] for row in _zero_rows(found.table, found.directions)]
-    return _csv(lines)
+    rows = zip(ranges.times, [release, *_cells(later)], strict=True)
+    return [[fixed_decimal(t, decimals), *row] for t, row in rows]
 
 
 def _zero_rows(table: Intervals, directions: Sequence[int]) -> list[list[str]]:
@@ -230,19 +203,19 @@ def _zero_rows(table: Intervals, directions: Sequence[int]) -> list[list[str]]:
     return [[str(k), str(direction), *row] for k, (direction, row) in enumerate(rows, 1)]
 
 
-def _names(columns: Sequence[str]) -> list[str]:
-    return [f"{name}_{word}" for name in columns for word in ("low", "high")]
-
-
-def _csv(lines: Sequence[Sequence[str]]) -> str:
-    return "".join(",".join(line) + "\n" for line in lines)
+def _table(first: Sequence[str], columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table as text: its first columns, and two for each column of intervals."""
+    header = [*first, *(f"{name}_{word}" for name in columns for word in ("low", "high"))]
+    return "".join(",".join(line) + "\n" for line in (header, *rows))
 
 
 def _texts(ranges: Ranges) -> dict[str, str]:
     """Return the files of ranges, sealed."""
-    tables = {GRID_FILE: _grid(ranges), TRANSITS_FILE: _transits(ranges)}
-    if ranges.sections:
-        tables[SECTIONS_FILE] = _sections(ranges)
+    tables = {GRID_FILE: _table(["t"], GRID, _grid_rows(ranges))}
+    tables[TRANSITS_FILE] = _table(["k", "direction"], TRANSITS, _zero_rows(ranges.transits, ranges.directions))
+    if named := ranges.sections.items():
+        rows = [[word, *row] for word, found in named for row in _zero_rows(found.table, found.directions)]
+        tables[SECTIONS_FILE] = _table(["section", "k", "direction"], SECTION, rows)
     said = _manifest(ranges, tables)
     return {RANGES: _text(said | {"seal": _seal(said)}), **tables}
 
@@ -264,6 +237,8 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
     proof, scene = ranges.proof, ranges.scene
     sections = scene_inputs(scene)
     sections["run"] = {name: text for name, text in sections["run"].items() if name != "digits"}  # as widths support
+    made = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
+    named = {word: _possible(zeros.possible) for word, zeros in ranges.sections.items()}
     return {
         "format": FORMAT,
         "seal": "",
@@ -274,18 +249,9 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
         "uncertain": _signed(ranges),
         "period_s": period_texts(ranges),
         "possible": _possible(ranges.possible),
-        **(
-            {"sections": {word: _possible(z.possible) for word, z in ranges.sections.items()}}
-            if ranges.sections
-            else {}
-        ),
+        **({"sections": named} if named else {}),
         "counts": {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)},
-        "proof": {
-            "engine": ranges.engine,
-            "bits": proof.bits,
-            "steps": proof.steps,
-            "radius_m": rounded_up(proof.radius),
-        },
+        "proof": made | {"radius_m": rounded_up(proof.radius)},
         "sha256": {name: _hash(text) for name, text in tables.items()},
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -96,25 +96,23 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
     return Making(AUTO, confirm="sampled", function=True)
 
 
-def manifest_of(
-    solution: Solution,
-    grid: Sheet,
-    transits: Sheet,
-    name: str | None = None,
-    *,
-    tables: bool = True,
-    sections: Sheet | None = None,
-) -> Manifest:
-    """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id.
+def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | None, tables: bool) -> Manifest:
+    """Return the manifest of a solution, still without files and seal.
 
-    Without `tables` its command says that they are left out.
+    Args:
+        solution: what is described.
+        sheets: its tables, by file name.
+        name: the dataset's id, by default the scene's own.
+        tables: whether they are written; else the command says that they are left out.
     """
+    grid, transits = sheets["grid.csv"], sheets.get("transits.csv", Sheet((), [], {}))
     scene, run, proof = solution.scene, solution.run, solution.proof
     name = name or dataset_id(scene)
     options = f"{ENGINE} {run.engine}"
     if proof is not None:
-        making = Making(run.engine, proof.audited, proof.confirmed, proof.function is not None, tables)
+        making = Making(run.engine, proof.audited, proof.confirmed, proof.enclosure.function is not None, tables)
         options = making.options_for(scene, name)
+    of_transits = column_bounds(solution.transits, transits.decimals) if transits.rows else {}
     end = grid.rows[-1][0]
     return Manifest.model_construct(
         schema_version=3,
@@ -127,7 +125,7 @@ def manifest_of(
         level=scene.run.level,
         digits=scene.run.digits,
         decimals={"grid": grid.decimals, "transits": transits.decimals},
-        bounds=_bounds(solution, grid, transits),
+        bounds=bounds_of(column_bounds(solution.grid, grid.decimals), of_transits),
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
         transits=completeness(scene, solution.zeros is None, bool(solution.possible)),
         possible=_possible(solution.possible, end),
@@ -137,7 +135,7 @@ def manifest_of(
         generator=generator(),
         command=command(scene, name, options),
         files={},
-        sections=None if sections is None else _sections(solution, sections),
+        sections=_sections(solution, sheets["sections.csv"]) if "sections.csv" in sheets else None,
         **following(scene, run.formulation, run.number, grid),
     )
 
@@ -212,15 +210,6 @@ def command(scene: Scene, name: str, options: str) -> str:
     return " ".join([*parts, *(word for change in changed for word in ("--set", change))])
 
 
-def _bounds(solution: Solution, grid: Sheet, transits: Sheet) -> Bounds:
-    of_grid = column_bounds(solution.grid, grid.decimals)
-    of_transits = {}
-    if transits.rows:
-        largest = max((row[-1] for row in transits.rows), key=Fraction)
-        of_transits = column_bounds(solution.transits, transits.decimals) | {"t": largest}
-    return bounds_of(of_grid, of_transits)
-
-
 def bounds_of(grid: dict[str, str], transits: dict[str, str]) -> Bounds:
     """Return the bounds of columns, and the largest of each kind."""
     return Bounds(
@@ -242,13 +231,11 @@ def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
 
 
 def _enclosure(proof: Proof) -> EnclosureRecord:
-    radii = {
-        "position_radius_m": proof.position_radius,
-        "velocity_radius_m_s": proof.velocity_radius,
-        "transit_radius_s": proof.transit_radius,
-    }
-    same = {name: getattr(proof, name) for name in EnclosureRecord.model_fields if name not in radii}
-    return EnclosureRecord.model_validate(same | radii)
+    made = proof.enclosure
+    said = {"method": made.method, "prec": made.bits, "order": made.order, "steps": made.steps}
+    said |= {"position_radius_m": made.position_radius, "velocity_radius_m_s": made.velocity_radius}
+    said |= {"transit_radius_s": proof.transit_radius, "agreement_bits": proof.agreement_bits}
+    return EnclosureRecord.model_validate(said)
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:

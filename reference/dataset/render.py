@@ -54,23 +54,22 @@ def render(solution: Solution, name: str | None = None, *, tables: bool = True) 
 
     Without `tables` they are manifest and golden function alone.
     """
-    grid, transits = grid_sheet(solution), transits_sheet(solution)
+    grid = grid_sheet(solution)
     of_grid = {"t": [float(t) for t in solution.times], **nearest_doubles(solution.grid, grid)}
     sheets = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, of_grid)}
     if solution.scene.run.transits:
-        sheets["transits.csv"] = transits
+        sheets["transits.csv"] = transits = transits_sheet(solution)
         if len(transits.rows) <= MOST_DOUBLES:
             of_transits = nearest_doubles(solution.transits, transits)
             sheets["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
     if solution.scene.run.sections:
         sheets["sections.csv"] = sections_sheet(solution)
-    record = manifest_of(solution, grid, transits, name, tables=tables, sections=sheets.get("sections.csv"))
+    record = manifest_of(solution, sheets, name, tables)
     contents: dict[str, Content] = {}
     if tables:
         contents |= {name: sheet.csv() for name, sheet in sheets.items()} | derived_texts(record, sheets)
-    if solution.proof and solution.proof.function:
-        said = FunctionRecord.of(solution.proof.function, record)
-        contents |= zip(FUNCTION, (said.text(), solution.proof.function.data), strict=True)
+    if solution.proof and (function := solution.proof.enclosure.function):
+        contents |= zip(FUNCTION, (FunctionRecord.of(function, record).text(), function.data), strict=True)
     manifest = record.model_copy(update={"files": {file: FileRecord.of(text) for file, text in contents.items()}})
     return {MANIFEST: manifest.sealed().text(), **contents}
 
@@ -90,17 +89,17 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
         contents = {**render(solution, said["id"]), **contents}
     from ..enclosure.printed import check_dataset
 
-    proof, files = solution.proof, dict[str, Any](contents)
+    made, files = solution.proof and solution.proof.enclosure, dict[str, Any](contents)
     try:
-        check_dataset(files, proof.proved if proof else None)
-        if proof and FUNCTION[1] in files:
+        check_dataset(files, made and made.proved)
+        if made and FUNCTION[1] in files:
             from ..enclosure.function import check_function
 
-            check_function(files[FUNCTION[0]], files[FUNCTION[1]], proof.function, proof.proved)
-        if proof and said.get("sections"):
+            check_function(files[FUNCTION[0]], files[FUNCTION[1]], made.function, made.proved)
+        if made and said.get("sections"):
             from ..enclosure.sections import check_sections
 
-            check_sections(files, proof.sections, proof.proved)
+            check_sections(files, made.sections, made.proved)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 

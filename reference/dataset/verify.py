@@ -14,7 +14,7 @@ from ..scenes.shipped import golden_root, seals
 from ..solver.solve import solve
 from .checks import function, motion, physics, scene_check
 from .files import Files, read_files, read_manifest
-from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
+from .manifest import MANIFEST, Content, Manifest, differences
 from .record import AUDIT, Making, generator
 from .render import render
 
@@ -148,13 +148,8 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
     fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
-    wrong = [
-        line
-        for name, text in texts.items()
-        if isinstance(text, str) and (line := _first_line(name, files.texts.get(name), text))
-    ]
-    if FUNCTION[1] in texts and FileRecord.of(texts[FUNCTION[1]]) != manifest.files.get(FUNCTION[1]):
-        wrong.append(f"{FUNCTION[1]}: recomputing gives other coefficients")
+    others = [name for name, record in again.files.items() if record != manifest.files.get(name)]
+    wrong = [f"{name}: {_how_it_differs(files.texts.get(name), texts[name])}" for name in others]
     if wrong or not fields:
         return [*wrong, *lines], []
     runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
@@ -164,16 +159,16 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     return lines, []
 
 
-def _first_line(name: str, old: str | None, new: str) -> str:
-    """Return how a file differs: in how many lines, and the first of them; empty if it does not."""
+def _how_it_differs(old: str | None, new: Content) -> str:
+    """Return how a file differs: in how many lines, and the first of them."""
+    if isinstance(new, bytes):
+        return "recomputing gives other coefficients"
     if old is None:
-        return f"{name}: recomputing gives this file too"
-    pairs = enumerate(zip_longest(old.splitlines(), new.splitlines(), fillvalue="nothing"), 1)
+        return "recomputing gives this file too"
+    pairs = enumerate(zip_longest(old.split("\n"), new.split("\n"), fillvalue="nothing"), 1)
     differing = [(number, *lines) for number, lines in pairs if lines[0] != lines[1]]
-    if not differing:
-        return ""
     number, before, after = differing[0]
-    return f"{name}: {_differ(len(differing), 'line')}; line {number} is {before}, recomputed {after}"
+    return f"{_differ(len(differing), 'line')}; line {number} is {before}, recomputed {after}"
 
 
 def _differ(count: int, what: str) -> str:

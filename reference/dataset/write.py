@@ -16,14 +16,16 @@ from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
 from .manifest import FUNCTION, MANIFEST, Content
-from .place import ships
+from .place import RANGES, ships
 from .record import OPTIONS
 from .render import check_proved, render
 from .sheets import column_bounds
 from .verify import problems_of
 
+_OLDER = {MANIFEST: "an older dataset", RANGES: "older ranges"}
 
-def check_target(folder: Path, mark: str = MANIFEST, older: str = "an older dataset") -> None:
+
+def check_target(folder: Path, mark: str = MANIFEST) -> None:
     """Refuse a target that cannot be written, or that holds something other than what has the file `mark`.
 
     Raises:
@@ -32,7 +34,7 @@ def check_target(folder: Path, mark: str = MANIFEST, older: str = "an older data
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
     if folder.is_dir() and any(folder.iterdir()) and not (folder / mark).is_file():
-        raise InputError("--out", str(folder), f"a new or empty folder, or {older}", "Nothing was changed.")
+        raise InputError("--out", str(folder), f"a new or empty folder, or {_OLDER[mark]}", "Nothing was changed.")
     with writable_place(folder):
         pass
 
@@ -120,7 +122,7 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
     """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
-    proof_s = sum((solution.proof.cpu_s if solution.proof else {}).values())
+    proof_s = sum((solution.proof.enclosure.cpu_s if solution.proof else {}).values())
     checks_s = sum(check.cpu_s for check in solution.checks) + proof_s
     guard = None
     if solution.guard is not None:  # its distances are fractions

@@ -190,17 +190,13 @@ class Angles:
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
         """Return n and n' by (7) and (10), over l."""
-        phi, azimuth, phi_rate, azimuth_rate = state
-        sp, cp = functions.sin(phi), functions.cos(phi)
-        sl, cl = functions.sin(azimuth), functions.cos(azimuth)
+        sp, cp, sl, cl, phi_rate, azimuth_rate = _turned(state, functions)
         v = (phi_rate * cp * cl - azimuth_rate * sp * sl, phi_rate * cp * sl + azimuth_rate * sp * cl, phi_rate * sp)
         return (sp * cl, sp * sl, -cp), v
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
         """Return (24) and (26) solved for the second derivatives, with R Ω² and g gathered in c."""
-        phi, azimuth, phi_rate, azimuth_rate = state
-        sp, cp = functions.sin(phi), functions.cos(phi)
-        sl, cl = functions.sin(azimuth), functions.cos(azimuth)
+        sp, cp, sl, cl, phi_rate, azimuth_rate = _turned(state, functions)
         _, north, up = k.turn
         along = minus(product(north, sp, sl), product(up, cp))
         across = plus(product(up, sp), product(north, cp, sl))
@@ -230,9 +226,7 @@ class Lagrangian(Angles):
 
     def lagrangian(self, state: State, k: Constants, functions: Functions) -> Any:
         """Return L / (m l²) = (α0 + α1 Ω + α2 Ω²)/2 + (g/l) cos φ, with α of (17)-(19)."""
-        phi, azimuth, phi_rate, azimuth_rate = state
-        sp, cp = functions.sin(phi), functions.cos(phi)
-        sl, cl = functions.sin(azimuth), functions.cos(azimuth)
+        sp, cp, sl, cl, phi_rate, azimuth_rate = _turned(state, functions)
         alpha_0 = phi_rate * phi_rate + sp * sp * azimuth_rate * azimuth_rate
         alpha_1 = plus(
             product(2, k.axis_distance, phi_rate * cp * cl - azimuth_rate * sp * sl),
@@ -251,3 +245,9 @@ FORMULATIONS: dict[str, Formulation] = {formulation.name: formulation for formul
 
 def _halves(state: State) -> tuple[Vector, Vector]:
     return (state[0], state[1], state[2]), (state[3], state[4], state[5])
+
+
+def _turned(state: State, functions: Functions) -> tuple[Any, ...]:
+    """Return sine and cosine of cord angle and azimuth, and the rates of both."""
+    phi, azimuth, *rates = state
+    return functions.sin(phi), functions.cos(phi), functions.sin(azimuth), functions.cos(azimuth), *rates

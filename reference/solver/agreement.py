@@ -34,6 +34,7 @@ from .pilot import MARGIN_BITS
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
 INSTANT = Fraction("1e-6")  # of the fastest rate's radian: a form's second rate is a difference over it
+Zeros = tuple[Table, list[int]]  # of xdot or of a section: a row for each, and its direction
 ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here
 
 
@@ -46,14 +47,14 @@ class Agreement:
         grid: largest difference in each column of the grid.
         transits: differences of each transit; None where they are not to be compared.
         errors: of each column of the grid: twice the difference, or the witness's resolution if there is none.
-        sections: differences of the passages of each section, where they are compared.
+        sections: the same of the passages of each section.
     """
 
     missing_bits: int
     grid: dict[str, Fraction]
     transits: Table | None
     errors: dict[str, Fraction]
-    sections: dict[str, Table] = field(default_factory=dict)
+    sections: dict[str, Table | None] = field(default_factory=dict)
 
     @classmethod
     def between(cls, published: Run, witness: Run, digits: int) -> Agreement:
@@ -68,18 +69,19 @@ class Agreement:
         finest = _resolution(published, witness)
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
-        lacking, sections = passages_lacking(published.passages, witness, decimals, digits)
-        missing, apart = bits_lacking(gaps, decimals), None
+        missing, transits, sections = [bits_lacking(gaps, decimals)], None, {}
         if published.transits is not None and witness.transits is not None:
-            if published.directions == witness.directions:
-                transits = published.transits.only(TRANSITS)
-                apart = transits.distance(witness.transits)
-                decimals = {name: places for name, places in decimals.items() if name in TRANSITS}
-                of_transits = decimals_of(transits.largest(), digits) | decimals
-                missing = max(missing, bits_lacking(apart.largest(), of_transits))
-            else:
-                missing = witness.plan.number.prec // 2
-        return cls(max(missing, lacking), gaps, apart, errors, sections)
+            table = published.transits.only(TRANSITS)
+            same = {name: places for name, places in decimals.items() if name in TRANSITS}
+            ones, others = (table, published.directions), (witness.transits, witness.directions)
+            lacking, transits = zeros_lacking(ones, others, decimals_of(table.largest(), digits) | same, witness)
+            missing.append(lacking)
+        latest = max((table.largest()["t"] for table, _ in published.passages.values()), default=Fraction(0))
+        decimals = {"t": decimals_for(latest, digits), **decimals}
+        for word, passages in published.passages.items():
+            lacking, sections[word] = zeros_lacking(passages, witness.passages[word], decimals, witness)
+            missing.append(lacking)
+        return cls(max(missing), gaps, transits, errors, sections)
 
 
 def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
@@ -118,24 +120,18 @@ def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> i
     return lacking
 
 
-def passages_lacking(
-    published: Mapping[str, tuple[Table, list[int]]], witness: Run, decimals: Mapping[str, int], digits: int
-) -> tuple[int, dict[str, Table]]:
-    """Return the bits that two runs lack to agree on the passages of sections, and how far these are apart.
+def zeros_lacking(
+    published: Zeros, others: Zeros, decimals: Mapping[str, int], witness: Run
+) -> tuple[int, Table | None]:
+    """Return the bits that a witness lacks to agree on zeros, which are `others` there, and how far these are apart.
 
-    `decimals` are those of the grid's columns; where directions differ, no distances are told.
+    Where directions differ, no distances are told.
     """
-    lacking, apart = 0, {}
-    latest = max((table.largest()["t"] for table, _ in published.values()), default=Fraction(0))
-    places = {"t": decimals_for(latest, digits), **decimals}
-    for word, (table, directions) in published.items():
-        other, others = witness.passages[word]
-        if directions != others:
-            lacking = max(lacking, witness.plan.number.prec // 2)
-            continue
-        apart[word] = table.distance(other)
-        lacking = max(lacking, bits_lacking(apart[word].largest(), places))
-    return lacking, apart
+    (table, directions), (other, signs) = published, others
+    if directions != signs:
+        return witness.plan.number.prec // 2, None
+    apart = table.distance(other)
+    return bits_lacking(apart.largest(), decimals), apart
 
 
 def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None) -> Table:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -17,30 +16,23 @@ from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import WORTH_A_PROCESS, expected_s, in_background, reports, run, send_run, slowest
 from ..errors import IntegrationError
-from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..system.workers import Emit
-from .agreement import bits_lacking, passages_lacking
+from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, guarded, proved
-from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, tables_of, transit_decimals
+from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, tables_of, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
 
 
 def solve_enclosed(
-    scene: Scene,
-    times: tuple[Fraction, ...],
-    engine: str,
-    report: Report | None,
-    audit: bool = False,
-    confirm: Confirmation = "none",
-    function: bool = False,
+    scene: Scene, engine: str, report: Report | None, audit: bool, confirm: Confirmation, function: bool
 ) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
@@ -59,7 +51,7 @@ def solve_enclosed(
     need_flint()
     from .. import enclosure
 
-    problem = ProofTask(scene, times, engine, run_pilot(scene.exact, times), function)
+    problem = ProofTask(scene, engine, run_pilot(scene.exact, tuple(scene.exact.grid)), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
         confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
     with ExitStack() as meanwhile:
@@ -113,7 +105,7 @@ def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None
     scene, pilot = problem.scene, problem.pilot
     bits = prec or first_prec(scene, pilot, AUTO)
     check_reach(pilot.steps // (SAMPLED if confirm == "sampled" else 1), bits, scene.run.digits, WITHOUT)
-    return confirming_plan(scene, problem.times, pilot, bits)
+    return confirming_plan(scene, tuple(scene.exact.grid), pilot, bits)
 
 
 def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Run:
@@ -155,17 +147,14 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
 
     `grid` are the solution's rows that the run has.
     """
-    gaps = grid.distance(witness.grid.only(GRID)).largest()
-    decimals = grid_decimals(solution)
-    decided = {
-        w: (p.table, p.directions) for w, p in solution.sections.items() if w in witness.passages and not p.possible
-    }
-    lacking, _ = passages_lacking(decided, witness, decimals, solution.scene.run.digits)
-    missing = max(lacking, bits_lacking(gaps, decimals))
-    if solution.zeros is None or witness.transits is None or solution.possible:
-        return CrossCheck.of(witness, gaps, None), missing
-    if witness.directions != solution.directions:
-        return CrossCheck.of(witness, gaps, None), max(missing, witness.plan.number.prec // 2)
-    apart = solution.zeros.distance(witness.transits.only(TRANSITS)).largest()
-    missing = max(missing, bits_lacking(apart, transit_decimals(solution)))
-    return CrossCheck.of(witness, gaps, apart["t"]), missing
+    gaps, late = grid.distance(witness.grid).largest(), None
+    missing = [bits_lacking(gaps, grid_decimals(solution))]
+    for word, passages in solution.sections.items():
+        if word in witness.passages and not passages.possible:
+            missing.append(zeros_lacking(passages[:2], witness.passages[word], section_decimals(solution), witness)[0])
+    if solution.zeros is not None and witness.transits is not None and not solution.possible:
+        ones, others = (solution.zeros, solution.directions), (witness.transits, witness.directions)
+        lacking, apart = zeros_lacking(ones, others, transit_decimals(solution), witness)
+        missing.append(lacking)
+        late = None if apart is None else apart.largest()["t"]
+    return CrossCheck.by(witness, gaps, late), max(missing)

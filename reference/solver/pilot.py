@@ -247,7 +247,9 @@ class Pace:
         needed, drag = steps + (self._end - t) * pace, self._inputs.drag
         self._watching = needed > MAX_STEPS
         if self._watching and (steps >= MAX_STEPS or drag * Fraction(t) >= SETTLED or not drag):
-            raise UnreachableError(_reason(self._inputs, needed, pace), _advice(t + (MAX_STEPS - steps) / pace))
+            most = 0.95 * (t + (MAX_STEPS - steps) / pace)
+            advice = f"Ask for a shorter run (run.t_end up to about {most:.2g}) or less drag."
+            raise UnreachableError(_reason(self._inputs, needed, pace), advice)
 
 
 def _reason(inputs: Inputs, needed: float, pace: float) -> str:
@@ -267,7 +269,3 @@ def _reason(inputs: Inputs, needed: float, pace: float) -> str:
         f"Stiff: drag takes the speed away at {fast:.1e}/s, and after that {then}. "
         f"An explicit method's steps are limited by the faster rate: {altogether}"
     )
-
-
-def _advice(t: float) -> str:
-    return f"Ask for a shorter run (run.t_end up to about {0.95 * t:.2g}) or less drag."

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -43,14 +44,12 @@ class ProofTask:
 
     Attributes:
         scene: the scene, with the digits asked for.
-        times: output times in s.
         engine: name of the engine that makes the approximant; "auto" for the fastest.
         pilot: how rounding errors grow on the scene.
         function: whether the golden function is made, too.
     """
 
     scene: Scene
-    times: tuple[Fraction, ...]
     engine: str
     pilot: Pilot
     function: bool = False
@@ -68,8 +67,8 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
         UnreachableError: no balls are small enough, and it tells the radius that was reached.
         IntegrationError: the run lies outside the enclosure.
     """
-    scene, times, pilot = problem.scene, problem.times, problem.pilot
-    span = float(times[-1])
+    scene, pilot = problem.scene, problem.pilot
+    times, span = tuple(scene.exact.grid), float(scene.exact.t_end)
     radius = first = first_radius(scene, pilot)
     feed = Feed(scene.exact, times, problem.engine, pilot.steps)
 
@@ -109,34 +108,17 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     bits = enclosed.bits + TABLE_BITS
     grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
     gaps = checked_states(grid, times, approximant).largest()
-    check = replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
-    zeros = _passages(enclosed.proved.transits or (), TRANSITS, times[-1], bits)
+    check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
+    table = partial(Table.of_intervals, bits=bits)
+    zeros = separated(enclosed.proved.transits or (), TRANSITS, times[-1], table)
     transits = None if enclosed.proved.transits is None else zeros.table
     size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
-    proof = Proof(
-        method=enclosed.method,
-        prec=enclosed.bits,
-        order=enclosed.order,
-        steps=enclosed.steps,
-        position_radius=enclosed.position_radius,
-        velocity_radius=enclosed.velocity_radius,
-        transit_radius=None if transits is None else max(transits.bound("t"), default=None),
-        agreement_bits=-bits_in(gap / size) if gap else approximant.plan.number.prec,
-        cpu_s=enclosed.cpu_s,
-        proved=enclosed.proved,
-        function=enclosed.function,
-        sections=enclosed.sections,
-    )
+    transit_radius = None if transits is None else max(transits.bound("t"), default=None)
+    proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)
     found, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
-    sections = {word: _passages(passages, SECTION, times[-1], bits) for word, passages in found.items()}
+    sections = {word: separated(passages, SECTION, times[-1], table) for word, passages in found.items()}
     known = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
     return Solution(*known, sections=sections)
-
-
-def _passages(zeros: Any, columns: tuple[str, ...], end: Fraction, bits: int) -> Passages:
-    """Return zeros as a table; they lie in (0, end], and the ball of a cluster may be a little wider."""
-    rows, directions, possible = separated(zeros, columns, end)
-    return Passages(Table.of_intervals(columns, rows, bits), directions, possible)
 
 
 def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
@@ -191,7 +173,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
         else:
-            return replace(solution, guard=CrossCheck.of(event_run, gaps, apart))
+            return replace(solution, guard=CrossCheck.by(event_run, gaps, apart))
     if contradiction is not None:
         raise contradiction
     return replace(solution, not_checked=str(reason))
@@ -201,16 +183,9 @@ def _check_passages(event_run: Run, solution: Solution, gaps: Mapping[str, Fract
     """Raise `IntegrationError` where a run finds other passages of a section, given how far its states are off."""
     errors = {name: ESTIMATE_FACTOR * gap for name, gap in gaps.items()}
     for word, passages in solution.sections.items():
-        if passages.possible:
-            continue
-        seen, directions = with_passage_errors(event_run, errors, word, None), event_run.passages[word][1]
-        if directions != passages.directions:
-            found = f"{len(directions)} passages, the enclosure {len(passages.directions)}, or other directions"
-            raise IntegrationError(f"{word}: heyoka finds {found}.")
-        apart = passages.table.distance(seen).exact("t")
-        for k, (gap, *bounds) in enumerate(zip(apart, seen.bound("t"), passages.table.bound("t"), strict=True), 1):
-            if gap > sum(bounds):
-                raise IntegrationError(f"{word}: heyoka's passage {k} is {float(gap):.1e} s from the enclosure.")
+        if not passages.possible:
+            seen = with_passage_errors(event_run, errors, word, None)
+            _zero_gap(f"{word} passage", passages, seen, event_run.passages[word][1], seen.bound("t"))
 
 
 def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
@@ -229,21 +204,32 @@ def _transit_gap(event_run: Run, solution: Solution, xdot_error: Fraction) -> Fr
 
     `xdot_error` is how far its xdot may be from the truth, in m/s.
     """
-    transits, directions = solution.transits, solution.directions
-    seen = event_run.transits or Table(transits.columns, 0, [])
-    if len(seen) != len(directions) and not solution.possible:
-        raise IntegrationError(f"heyoka finds {len(seen)} transits, the enclosure {len(directions)}.")
-    prec, bits = event_run.plan.number.prec, max(seen.bits, transits.bits)
-    remaining = iter(zip(seen.whole("t", bits), event_run.directions, strict=True))
-    # in integers over 2**bits, as there may be many
-    rounding = math.ceil(event_run.plan.times[-1] * Fraction(2) ** (bits + EVALUATION_BITS - prec))
-    off, largest = math.ceil(xdot_error * (1 << 2 * bits)), 0
-    bounds = (math.ceil(bound * (1 << bits)) for bound in transits.bound("t"))
-    rows = zip(*(transits.whole(name, bits) for name in ("t", "ax")), bounds, directions, strict=True)
-    for k, (t, ax, bound, direction) in enumerate(rows, 1):
-        allowed = bound + off // abs(ax) + rounding
-        gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
+    zeros = Passages(solution.transits, solution.directions, solution.possible)
+    rounding = event_run.plan.times[-1] * Fraction(2) ** (EVALUATION_BITS - event_run.plan.number.prec)
+    late = [xdot_error / abs(ax) + rounding for ax in zeros.table.exact("ax")]
+    return _zero_gap("transit", zeros, event_run.transits or Table(("t",), 0, []), event_run.directions, late)
+
+
+def _zero_gap(name: str, zeros: Passages[Table], seen: Table, signs: list[int], late: list[Fraction]) -> Fraction:
+    """Return how far the zeros that a run has seen are from the enclosed ones, at most, in s.
+
+    Args:
+        name: of a zero, in messages.
+        zeros: the enclosed ones.
+        seen: times of those that the run found; there may be others where some are undecided.
+        signs: the directions of these.
+        late: how far the run's times may be from the truth, in s, beside each enclosed one's own bound.
+
+    Raises:
+        IntegrationError: the run has others.
+    """
+    if len(seen) != len(zeros.directions) and not zeros.possible:
+        raise IntegrationError(f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}.")
+    found, gaps = iter(zip(seen.exact("t"), signs, strict=True)), [Fraction(0)]
+    rows = zip(zeros.table.exact("t"), zeros.directions, zeros.table.bound("t"), late, strict=True)
+    for k, (t, direction, bound, off) in enumerate(rows, 1):
+        gap = next((abs(t - x) for x, sign in found if sign == direction and abs(t - x) <= bound + off), None)
         if gap is None:
-            raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {t / (1 << bits)} s.")
-        largest = max(largest, gap)
-    return Fraction(largest, 1 << bits)
+            raise IntegrationError(f"heyoka does not find {name} {k} of the enclosure, at t = {float(t)} s.")
+        gaps.append(gap)
+    return max(gaps)

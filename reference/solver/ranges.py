@@ -14,7 +14,7 @@ from ..errors import InputError, unknown
 from ..numbers.columns import GRID, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
-from .solution import Undecided, separated
+from .solution import Passages, Undecided
 from .swing import HOUR, Swing, swing_of
 
 
@@ -62,28 +62,6 @@ class Intervals(Framed):
         return data_frame({f"{name}_{word}": of(name) for name in self.columns for word, of in ends})
 
 
-@dataclass(frozen=True)
-class ZeroRanges:
-    """The transits of a box, or the passages of one of its sections.
-
-    Attributes:
-        table: intervals in each of which every pendulum of the box has one, in order; the last one may come after the
-            end for some.
-        directions: +1 where the form grows, per zero.
-        possible: intervals of time that may hold other zeros, each with its parity.
-    """
-
-    table: Intervals
-    directions: list[int] = field(repr=False)
-    possible: Undecided
-
-    @classmethod
-    def of(cls, found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> ZeroRanges:
-        """Return what a proof found up to `end`."""
-        rows, directions, possible = separated(found, columns, end)
-        return cls(Intervals(columns, tuple(rows)), directions, possible)
-
-
 class Derivative(NamedTuple):
     """Derivatives to one input, per SI unit of it (degrees for angles), as proven intervals.
 
@@ -126,7 +104,7 @@ class Ranges:
     directions: list[int] = field(repr=False)
     possible: Undecided
     engine: str
-    sections: Mapping[str, ZeroRanges] = field(default_factory=dict, repr=False)
+    sections: Mapping[str, Passages[Intervals]] = field(default_factory=dict, repr=False)
     proof: Any = field(default=None, repr=False)
 
     @property

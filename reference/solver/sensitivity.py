@@ -7,12 +7,11 @@ these depend on a scene's inputs (length, latitude, …) comes in by the chain r
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -28,8 +27,11 @@ from ..scenes.inputs import RELEASES, Inputs
 from ..scenes.scene import Scene
 from .pilot import MAX_PREC, Pilot, run_pilot
 
-Quadruple = tuple[Fraction, Fraction, Fraction, Fraction]
 DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation
+# In which each input is nudged: most get smaller, as x, y and the angle must, to stay on the sphere; length and
+# gravity, which set the swing's frequency, change in opposite directions.
+_WAYS = {"y": Fraction(-1, 2), "azimuth": Fraction(-1, 2)}
+_WAYS |= dict.fromkeys(("vx", "angle_rate", "length", "rotation_rate", "altitude"), Fraction(1))
 
 
 def digits_lost(
@@ -55,7 +57,7 @@ def digits_lost(
     number = DOUBLE if pilot.prec <= DOUBLE.prec else real(2 * LONG_DOUBLE.prec)
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))
-        changed = [_perturbed_release(inputs, nudge), *([_perturbed_constants(inputs, nudge)] if constants else [])]
+        changed = [_perturbed(inputs, nudge, release=release) for release in (True, False)[: 1 + constants]]
         base, *perturbed = (run(Plan(each, "momentum", number, times, transits=False)) for each in (inputs, *changed))
         changes = [base.grid.only(GRID).distance(other.grid).largest() for other in perturbed]
         worst = max(change[name] / size for change in changes for name, size in pilot.sizes.items() if size)
@@ -69,23 +71,13 @@ def digits_lost(
     )
 
 
-def _perturbed_release(inputs: Inputs, nudge: Fraction) -> Inputs:
-    """Change each number of the release by a factor; x, y and the angle get smaller, to stay on the sphere."""
-    factors = (1 - nudge, 1 - nudge / 2, 1 + nudge, 1 - nudge)
-
-    def perturbed(numbers: Quadruple | None) -> Quadruple | None:
-        return numbers and cast("Quadruple", tuple(map(operator.mul, numbers, factors)))
-
-    return replace(inputs, position=perturbed(inputs.position), angles=perturbed(inputs.angles))
-
-
-def _perturbed_constants(inputs: Inputs, nudge: Fraction) -> Inputs:
-    """Change each constant by a factor, length and gravity, which set the swing's frequency, in opposite directions."""
-    up, down = ("length", "rotation_rate", "altitude", "flattening"), ("gravity", "equatorial_radius", "drag")
-    values = {name: getattr(inputs, name) * (1 + nudge) for name in up}
-    values |= {name: getattr(inputs, name) * (1 - nudge) for name in down}
-    latitude = inputs.latitude * (1 - nudge) if inputs.latitude % 90 else inputs.latitude
-    return replace(inputs, latitude=latitude, **values)
+def _perturbed(inputs: Inputs, nudge: Fraction, *, release: bool) -> Inputs:
+    """Change each number of the release, or each constant, by a factor; a latitude where a term vanishes is exact."""
+    for name, value in inputs.by_name.items():
+        section, key = name.split(".")
+        if (section == "release") == release and not (key == "latitude" and value % 90 == 0):
+            inputs = with_value(inputs, name, value * (1 + _WAYS.get(key, -1) * nudge))
+    return inputs
 
 
 _PREC = 320  # bits

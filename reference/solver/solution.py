@@ -5,11 +5,11 @@ The decimals follow from the bounds, and so does whether a proof decides each di
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy.typing as npt
 
@@ -24,40 +24,13 @@ from ..scenes.scene import Scene
 from .swing import Swing, swing_of
 
 Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
+T = TypeVar("T")
 SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
 
 @dataclass(frozen=True)
-class CrossCheck:
-    """A run that checks the published numbers, and its largest disagreement with them, in m, m/s and s."""
-
-    formulation: str
-    number: str
-    order: int
-    steps: int
-    position_m: Fraction
-    velocity_m_s: Fraction
-    transit_s: Fraction | None
-    cpu_s: float
-
-    @classmethod
-    def of(cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None) -> CrossCheck:
-        """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
-        return cls(
-            formulation=witness.plan.formulation,
-            number=str(witness.plan.number),
-            order=witness.order,
-            steps=witness.steps,
-            position_m=max(gaps[name] for name in POSITION),
-            velocity_m_s=max(gaps[name] for name in VELOCITY),
-            transit_s=transit_s,
-            cpu_s=witness.cpu_s,
-        )
-
-
-@dataclass(frozen=True)
 class Source:
-    """The run that published numbers come from: engine, formulation, number type, order, steps, cost."""
+    """A run that numbers come from: engine, formulation, number type, order, steps, cost."""
 
     engine: str
     formulation: str
@@ -75,42 +48,52 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Proof:
-    """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
+class CrossCheck(Source):
+    """A run that checks the published numbers, and its largest disagreement with them, in m, m/s and s."""
 
-    `proved`, `function` and `sections` are what trusted code returned, and compares with what is written; `audited`:
-    FLINT alone proves it too;
-    `confirmed`: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
-    transit, or a sample: a tenth of the grid's intervals, each from its first row.
+    position_m: Fraction
+    velocity_m_s: Fraction
+    transit_s: Fraction | None
+
+    @classmethod
+    def by(cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None) -> CrossCheck:
+        """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
+        position_m, velocity_m_s = (max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY))
+        return cls(**vars(Source.of(witness)), position_m=position_m, velocity_m_s=velocity_m_s, transit_s=transit_s)
+
+
+@dataclass(frozen=True)
+class Proof:
+    """A proof, and what stands beside it.
+
+    Attributes:
+        enclosure: the `Enclosure`: method, size, largest radii in m and m/s, and what trusted code returned, which it
+            compares with what is written.
+        transit_radius: the largest radius of a transit's time in s.
+        agreement_bits: bits to which its run agrees with it.
+        audited: whether FLINT alone proves it too.
+        confirmed: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
+            transit, or a sample: a tenth of the grid's intervals, each from its first row.
     """
 
-    method: str
-    prec: int
-    order: int
-    steps: int
-    position_radius: Fraction
-    velocity_radius: Fraction
+    enclosure: Any = field(repr=False)
     transit_radius: Fraction | None
     agreement_bits: int
-    cpu_s: dict[str, float]
-    proved: Any = field(default=None, repr=False)
-    function: Any = field(default=None, repr=False)
-    sections: Any = field(default=None, repr=False)
     audited: bool = False
     confirmed: Confirmation = "none"
 
 
-@dataclass(frozen=True)
-class Passages:
-    """The passages of a section.
+class Passages(NamedTuple, Generic[T]):
+    """The passages of a section, or the zeros of xdot.
 
     Attributes:
-        table: `columns.SECTION` at each, in SI units, with bounds.
+        table: `columns.SECTION` at each, in SI units: a `Table` with bounds; of uncertain inputs `Intervals` in each of
+            which every pendulum of the box has one, in order; the last one may come after the end for some.
         directions: +1 where the section's form grows, per passage.
         possible: intervals in s, each with a parity, that may hold passages which the proof could not decide.
     """
 
-    table: Table = field(repr=False)
+    table: T
     directions: list[int]
     possible: Undecided = ()
 
@@ -153,7 +136,7 @@ class Solution(GridColumns):
     possible: Undecided = ()
     guard: CrossCheck | None = None
     not_checked: str = ""
-    sections: Mapping[str, Passages] = field(default_factory=dict, repr=False)
+    sections: Mapping[str, Passages[Table]] = field(default_factory=dict, repr=False)
 
     @property
     def transits(self) -> Table:
@@ -179,7 +162,7 @@ class Solution(GridColumns):
     @cached_property
     def function(self) -> GoldenFunction | None:
         """The golden function, if it was asked for."""
-        made = self.proof and self.proof.function
+        made = self.proof and self.proof.enclosure.function
         return GoldenFunction.of(made.facts, made.bounds, made.data) if made else None
 
     def at(self, t: npt.ArrayLike) -> States:
@@ -237,11 +220,17 @@ def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
     return tables + [(passages.table, section_decimals(solution)) for passages in solution.sections.values()]
 
 
-def separated(found: Sequence[Any], columns: tuple[str, ...], end: Fraction) -> tuple[list[Any], list[int], Undecided]:
-    """Return of what a proof found up to `end` the rows of single zeros, their directions, and what it left open."""
+def separated(
+    found: Iterable[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
+) -> Passages[T]:
+    """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
+
+    Zeros lie in (0, end], and the ball of a cluster may be a little wider.
+    """
     ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
-    return [tuple(getattr(z, name) for name in columns) for z in ones], [z.direction for z in ones], possible
+    rows = tuple(tuple(getattr(z, name) for name in columns) for z in ones)
+    return Passages(table(columns, rows), [z.direction for z in ones], possible)
 
 
 def check_decided(solution: Solution) -> None:

@@ -19,7 +19,6 @@ from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
-from ..numbers.table import Table
 from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene, as_scene
 from .agreement import Agreement, with_passage_errors, with_transit_errors
@@ -110,13 +109,12 @@ def solve(
         InputError: a field of the scene is wrong.
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
+    proving = {"audit": audit, "confirm": confirm != "none", "function": function}
     if uncertain is not None:
-        wanted: dict[str, Any] = {"digits": digits, "audit": audit, "function": function}
-        wanted["confirm"] = confirm != "none"
-        for wish in (name for name, asked in wanted.items() if asked):
-            raise InputError(
-                wish, wanted[wish], "nothing together with uncertain", "Intervals have the digits they support."
-            )
+        for wish, asked in {"digits": digits, **proving}.items():
+            if asked:
+                advice = "Intervals have the digits they support."
+                raise InputError(wish, asked, "nothing together with uncertain", advice)
         if level not in (None, "enclosed"):
             raise InputError("level", level, "enclosed, together with uncertain", "Ranges are proved, or refused.")
         level = "enclosed"
@@ -128,7 +126,7 @@ def solve(
     engine = checked(engine)
     if confirm not in CONFIRMATIONS:
         raise InputError("confirm", confirm, in_words(CONFIRMATIONS))
-    for wish, asked in (("audit", audit), ("confirm", confirm != "none"), ("function", function)):
+    for wish, asked in proving.items():
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
@@ -138,7 +136,7 @@ def solve(
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 
-        return solve_enclosed(scene, times, engine, report, audit, confirm, function)
+        return solve_enclosed(scene, engine, report, audit, confirm, function)
     if settings.level == "computed":
         return _computed(scene, times, engine, report)
     return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)
@@ -170,8 +168,8 @@ def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = Non
     gap = Agreement.between(published, witness, scene.run.digits)
     if published.directions != witness.directions:
         return None
-    check = CrossCheck.of(witness, gap.grid, None)
-    return _assemble(scene, every, published, gap.errors, gap.transits, (check,), 0.0)
+    check = CrossCheck.by(witness, gap.grid, None)
+    return _assemble(scene, published, gap, (check,), 0.0)
 
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
@@ -181,7 +179,7 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Re
     check_reach(pilot.steps, prec, scene.run.digits)
     published = run(published_plan(scene, times, pilot, prec, engine), report)
     errors = pilot.estimates(published.plan.number.prec)
-    return _with_sections(_assemble(scene, times, published, errors, None, (), pilot.cpu_s), published, errors, {})
+    return _assemble(scene, published, Agreement(0, {}, None, errors), (), pilot.cpu_s)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
@@ -200,9 +198,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         gap = Agreement.between(published, witness, digits)
         if not gap.missing_bits:
             transit_s = None if gap.transits is None else gap.transits.largest()["t"]
-            check = CrossCheck.of(witness, gap.grid, transit_s)
-            solution = _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot.cpu_s)
-            return _with_sections(solution, published, gap.errors, gap.sections)
+            return _assemble(scene, published, gap, (CrossCheck.by(witness, gap.grid, transit_s),), pilot.cpu_s)
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
             last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord
@@ -227,25 +223,11 @@ def _witness(fine: Plan, prec: int, engine: str, steps: int) -> Plan:
     return replace(coarse.plan(fine.inputs, prec, fine.times, fine.transits), sections=fine.sections)
 
 
-def _assemble(
-    scene: Scene,
-    times: tuple[Fraction, ...],
-    published: Run,
-    errors: Mapping[str, Fraction],
-    apart: Table | None,
-    checks: tuple[CrossCheck, ...],
-    pilot_s: float,
-) -> Solution:
-    """Return a run with its bounds as a `Solution`; `apart` are the differences of its transits from a second run's."""
+def _assemble(scene: Scene, published: Run, gap: Agreement, checks: tuple[CrossCheck, ...], pilot_s: float) -> Solution:
+    """Return a run with its bounds as a `Solution`, given its errors and how far a second run is apart, if any."""
+    errors, times, signs, source = gap.errors, published.plan.times, published.directions, Source.of(published)
     grid = published.grid.only(GRID).with_errors(errors)
-    transits = None if published.transits is None else with_transit_errors(published, errors, apart)
-    return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot_s)
-
-
-def _with_sections(
-    solution: Solution, published: Run, errors: Mapping[str, Fraction], apart: Mapping[str, Table]
-) -> Solution:
-    """Return a solution with the passages of its run, which have their bounds."""
-    tables = {word: with_passage_errors(published, errors, word, apart.get(word)) for word in published.passages}
+    transits = None if published.transits is None else with_transit_errors(published, errors, gap.transits)
+    tables = {w: with_passage_errors(published, errors, w, gap.sections.get(w)) for w in published.passages}
     sections = {word: Passages(table, published.passages[word][1]) for word, table in tables.items()}
-    return replace(solution, sections=sections)
+    return Solution(scene, times, grid, transits, signs, source, checks, pilot_s, sections=sections)

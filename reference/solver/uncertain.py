@@ -17,8 +17,8 @@ from ..scenes.scene import Scene, checked_value, full_name
 from ..system.imports import needed
 from .pilot import check_reach
 from .proof_steps import COEFFICIENT_BITS, Feed
-from .ranges import Intervals, Ranges, ZeroRanges
-from .solution import exact_decimals
+from .ranges import Intervals, Ranges
+from .solution import exact_decimals, separated
 
 UNCERTAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in (*SITE, "inverse_flattening"))]
 UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
@@ -137,16 +137,14 @@ def solve_ranges(
     finally:
         for feed in feeds:
             feed.stop()
-    transits = ZeroRanges.of(proof.proved.transits or (), TRANSITS, end)
+    transits = separated(proof.proved.transits or (), TRANSITS, end, Intervals)
     return Ranges(
         scene,
         texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
-        transits.table,
-        transits.directions,
-        transits.possible,
+        *transits,
         feeds[-1].begun,
-        {word: ZeroRanges.of(found, SECTION, end) for word, found in proof.proved.sections.items()},
+        {word: separated(found, SECTION, end, Intervals) for word, found in proof.proved.sections.items()},
         proof,
     )

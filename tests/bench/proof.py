@@ -49,16 +49,16 @@ def proof(t_end: str, pairs: int) -> None:
     """Print a proof's CPU seconds over those of heyoka's unproven run at the same bits, with all transits."""
     proved("60")  # compiles
     _, _, solution = proved(t_end)
-    scene, bits = solution.scene, solution.proof.prec
+    scene, bits = solution.scene, solution.proof.enclosure.bits
     plan = Plan(scene.exact, "momentum", real(bits), solution.times, transits=True)
     run(Plan(scene.exact, "momentum", real(bits), solution.times[:2], transits=True))  # compiles
-    print(f"paris, {t_end} s, {bits} bits, {len(solution.directions)} transits, {solution.proof.steps} steps")
+    print(f"paris, {t_end} s, {bits} bits, {len(solution.directions)} transits, {solution.proof.enclosure.steps} steps")
     ratios = []
     for _ in range(pairs):
         cpu, _, solution = proved(t_end)
         plain = run(plan).cpu_s
         ratios.append(cpu / plain)
-        parts = ", ".join(f"{part} {spent:.2f}" for part, spent in solution.proof.cpu_s.items())
+        parts = ", ".join(f"{part} {spent:.2f}" for part, spent in solution.proof.enclosure.cpu_s.items())
         print(f"  proof {cpu:.2f} s ({parts}), unproven {plain:.2f} s: {cpu / plain:.2f}; {load()}", flush=True)
     print(f"enclosed over unproven: median of {pairs}: {median(ratios):.2f}")
     cpu, wall, _ = proved(t_end, "heyoka")

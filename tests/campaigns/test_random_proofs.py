@@ -32,7 +32,7 @@ def misses(solution, engine):
 
     By heyoka it is in the formulation `spin`, which the proof does not use, but heyoka compiles for each precision.
     """
-    scene, prec = solution.scene, solution.proof.prec + FINER
+    scene, prec = solution.scene, solution.proof.enclosure.bits + FINER
     plan = Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), scene.run.transits)
     if engine == "limbs":
         plan = engines()["limbs"].plan(scene.exact, prec, tuple(scene.exact.grid), scene.run.transits)
@@ -47,7 +47,7 @@ def misses(solution, engine):
             return [f"{len(solution.transits)} transits, not {len(truth.transits)}"]
         tables.append(("transit", solution.transits, truth.transits))
     for kind, table, other in tables:
-        slack = Fraction(1, 1 << solution.proof.prec) * max(1, scene.exact.length, scene.exact.t_end)
+        slack = Fraction(1, 1 << solution.proof.enclosure.bits) * max(1, scene.exact.length, scene.exact.t_end)
         for name in table.columns:
             gaps = table.distance(other).exact(name)
             for row, (gap, bound) in enumerate(zip(gaps, table.bound(name), strict=True)):
@@ -68,8 +68,8 @@ def test_random_scenes_are_proved_and_right(size, tally):
             refused.append(f"{seed}: {error}")
             continue
         spent = time.process_time() - begun
-        if spent > CLEARLY and spent > solution.proof.steps / 20:
-            slow.append(f"{seed}: {spent:.0f} s for {solution.proof.steps} steps")
+        if spent > CLEARLY and spent > solution.proof.enclosure.steps / 20:
+            slow.append(f"{seed}: {spent:.0f} s for {solution.proof.enclosure.steps} steps")
         proved, possible, flat = proved + 1, possible + bool(solution.possible), flat + bool(solution.not_checked)
         found = misses(solution, engine)
         unchecked += found is None
@@ -103,7 +103,7 @@ def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monke
             if seed % 10 == 9:
                 patch.setattr("reference.enclosure.prove.plan_for", lambda *wanted: plan_for(*wanted[:3], "columns"))
             solution = reference.solve(scene_of_a_third(seed))
-        methods[solution.proof.method] += 1
+        methods[solution.proof.enclosure.method] += 1
         transits += len(solution.transits or ())
         done = check(reference.write(solution, tmp_path / str(seed)))
         if done.returncode:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.constants import Constants, constants
+from ...model.constants import Constants, Vector, constants
 from ...model.force import acceleration, energy, invariant
 from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
@@ -28,7 +28,7 @@ NEAR = 64  # a nudge of z is at most its size over this
 NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 SLACK = Fraction(21, 20)
 
-Quantity = Callable[[list[Any], Constants], Any]
+Quantity = Callable[[Vector, Vector, Constants], Any]  # of position and velocity, over the length
 
 
 def problems(files: Files) -> Iterator[str]:
@@ -118,8 +118,8 @@ class _Moments:
 
     def with_another_invariant(self, release: _Moments) -> Iterator[str]:
         """Check that h is that of the release."""
-        (first,), (allowed_first,) = release.values(_invariant), release.allowed(_energy)
-        rows = zip(self.names, self.values(_invariant), self.allowed(_energy), self._whole, strict=True)
+        (first,), (allowed_first,) = release.values(invariant), release.allowed(energy)
+        rows = zip(self.names, self.values(invariant), self.allowed(energy), self._whole, strict=True)
         for name, h, allowed, whole in rows:
             if whole and abs(h - first) > allowed + allowed_first:
                 yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
@@ -146,7 +146,7 @@ class _Moments:
         follows = self._follows & np.asarray(columns[2].values != 0, dtype=bool)  # beyond the sphere, z comes out 0
         x, y, z, vx, vy = (column[follows] for column in columns[:5])
         columns[5].values[follows] = _vertical_velocity(x, y, z, vx, vy).values
-        return list(quantity(columns, k).fractions())
+        return list(quantity(*_over_length(columns, k), k).fractions())
 
     @np.errstate(all="ignore")
     def allowed(self, quantity: Quantity) -> list[Fraction]:
@@ -163,7 +163,7 @@ class _Moments:
             x, y, z, vx, vy, vz = changed
             z = np.where(self._deep, _depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))), z)
             vz = np.where(self._follows, _vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy), vz)
-            return np.asarray(quantity([x, y, z, vx, vy, vz], k) + 0.0 * z)
+            return np.asarray(quantity(*_over_length([x, y, z, vx, vy, vz], k), k) + 0.0 * z)
 
         value, total, largest = of(columns), np.zeros(len(self.names)), max(bounds)
         fastest = max(float(np.max(np.abs(column))) for column in columns[3:])
@@ -208,18 +208,10 @@ def _vertical_velocity(x: Any, y: Any, z: Any, vx: Any, vy: Any) -> Any:
     return -(x * vx + y * vy) / z
 
 
-def _invariant(columns: list[Any], k: Constants) -> Any:
-    return invariant(*_over_length(columns, k), k)
+def _xddot(n: Vector, v: Vector, k: Constants) -> Any:
+    return acceleration(n, v, k)[0] * k.length
 
 
-def _energy(columns: list[Any], k: Constants) -> Any:
-    return energy(*_over_length(columns, k), k)
-
-
-def _xddot(columns: list[Any], k: Constants) -> Any:
-    return acceleration(*_over_length(columns, k), k)[0] * k.length
-
-
-def _over_length(columns: list[Any], k: Constants) -> tuple[Any, Any]:
+def _over_length(columns: list[Any], k: Constants) -> tuple[Vector, Vector]:
     x, y, z, vx, vy, vz = (column / k.length for column in columns)
     return (x, y, z), (vx, vy, vz)

@@ -23,6 +23,7 @@ from ..sheets import NUMBERS, Sheet, by_field
 PREC = 128  # bits; only exact zeros matter here
 SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
 SIGNIFICANT = 8  # a column is noise, and has no digits of its own, if no number is this many times its bound
+_BOUNDED = ("position_m", "velocity_m_s", "transit_s")  # what a run or a proof may be off in
 
 
 def table_problems(files: Files) -> Iterator[str]:
@@ -49,7 +50,7 @@ def _release(files: Files) -> Iterator[str]:
     """Check that the first row is the scene's exact release."""
     start = Start.of(files.scene.exact, bits_of(2 * files.manifest.digits) + GUARD_BITS)
     released = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
-    (printed,) = Sheet(files.tables["grid.csv"].header, files.tables["grid.csv"].rows[:1], {}).numbers(STATE)
+    printed = next(files.tables["grid.csv"].numbers(STATE))
     for name, value, number in zip(STATE, released, printed, strict=True):
         if abs(number - value) > files.manifest.bound("grid", name):
             yield f"grid.csv: {name} of the first row is not that of the scene's release"
@@ -259,19 +260,15 @@ def _evidence(manifest: Manifest) -> Iterator[str]:
         if proof is None:  # a proof needs no close second run
             yield from _too_far(check, manifest)
     if proof is not None:
-        radii = {
-            "position_m": proof.position_radius_m,
-            "velocity_m_s": proof.velocity_radius_m_s,
-            "transit_s": proof.transit_radius_s,
-        }
-        for name, radius in radii.items():
+        radii = proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s
+        for name, radius in zip(_BOUNDED, radii, strict=True):
             if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):
                 yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
 
 
 def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
     """Yield where a run is further from the published one than the bounds allow."""
-    for name in ("position_m", "velocity_m_s", "transit_s"):
+    for name in _BOUNDED:
         gap, bound = getattr(check, name), getattr(manifest.bounds, name)
         if gap is not None and bound and Fraction(gap) > Fraction(bound):
             yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from reference.commands.progress import Notice, in_words, progress
+from reference.commands.progress import in_words, notice, progress
 
 
 class Clock:
@@ -23,7 +23,7 @@ def clock() -> Clock:
 
 
 def test_long_work_gets_one_line_and_no_more(clock, capsys):
-    move = Notice("creeping", 86400.0, clock=clock)
+    move = notice("creeping", 86400.0, clock=clock)
     for seconds in range(200):
         clock.now = 100.0 + seconds
         move(144.0 * seconds)
@@ -33,7 +33,7 @@ def test_long_work_gets_one_line_and_no_more(clock, capsys):
 
 
 def test_short_work_gets_none(clock, capsys):
-    move = Notice("paris", 3600.0, clock=clock)
+    move = notice("paris", 3600.0, clock=clock)
     for seconds in range(21):
         clock.now = 100.0 + seconds
         move(180.0 * seconds)
@@ -42,7 +42,7 @@ def test_short_work_gets_none(clock, capsys):
 
 def test_work_that_begins_late_is_estimated_from_its_own_rate(clock, capsys):
     """Compilation took 40 s before the first step; then 10 s for a tenth of the way: 90 s remain, 140 s in all."""
-    move = Notice("creeping", 100.0, clock=clock)
+    move = notice("creeping", 100.0, clock=clock)
     clock.now = 140.0
     move(0.0)
     clock.now = 144.0
@@ -54,7 +54,7 @@ def test_work_that_begins_late_is_estimated_from_its_own_rate(clock, capsys):
 
 
 def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
-    move = Notice("hard", 100.0, clock=clock)
+    move = notice("hard", 100.0, clock=clock)
     move(0.0)
     clock.now = 119.0
     move(90.0)
@@ -66,7 +66,7 @@ def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
 
 
 def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(clock, capsys):
-    move = Notice("creeping", 100.0, clock=clock)
+    move = notice("creeping", 100.0, clock=clock)
     for seconds in range(100):
         clock.now = 100.0 + seconds
         move(0.004 * seconds)
@@ -74,7 +74,7 @@ def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(c
 
 
 def test_runs_are_counted_and_those_that_were_stored_cost_nothing(clock, capsys):
-    move = Notice("paris", unit="runs", clock=clock)
+    move = notice("paris", unit="runs", clock=clock)
     for done in range(30, 60):
         move(done, 130, "rk4")
         clock.now += 1.0
@@ -85,7 +85,7 @@ def test_without_a_terminal_the_notice_is_what_moves(capfd):
     with progress() as show:
         move = show("paris", 60.0)
         move(30.0)
-    assert isinstance(move, Notice)
+    assert move.__qualname__.startswith("notice.")
     assert capfd.readouterr().err == ""
 
 

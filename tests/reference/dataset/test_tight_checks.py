@@ -266,13 +266,13 @@ def in_a_swing(files, state, bounds, gravity="5"):
 @pytest.mark.parametrize("z", ["-0.7", "0.7"])
 def test_h_is_taken_on_the_sphere_on_the_side_where_the_bob_is(files, z):
     """With x = 0.6 it is at ±0.8, and there vz = -0.6/z."""
-    (h,) = in_a_swing(files, ("0.6", "0", z, "1", "2", "9"), [1] * 6).values(physics._invariant)
+    (h,) = in_a_swing(files, ("0.6", "0", z, "1", "2", "9"), [1] * 6).values(physics.invariant)
     exact = (5 + Fraction(3, 4) ** 2) / 2 + (4 if float(z) > 0 else -4)
     assert abs(h - exact) < Fraction(1, 4 ** bits_of(files.manifest.digits))
 
 
 def test_beyond_the_sphere_nothing_tells_z_and_vz_is_that_of_the_row(files):
-    (h,) = in_a_swing(files, ("0.9", "0.9", "0.5", "1", "2", "3"), [1] * 6).values(physics._invariant)
+    (h,) = in_a_swing(files, ("0.9", "0.9", "0.5", "1", "2", "3"), [1] * 6).values(physics.invariant)
     assert h == 7
 
 
@@ -306,14 +306,14 @@ def test_z_follows_from_x_and_y_where_it_is_more_than_a_quarter_of_the_cord(file
 def test_h_may_be_off_by_its_slopes_along_the_sphere(files, state, gravity, slopes):
     """Where z = -√(1 - x² - y²) and vz = -(x vx + y vy)/z follow; differentiated by hand."""
     made = in_a_swing(files, state, [int(slope > 0) for slope in slopes], gravity)
-    (allowed,) = made.allowed(physics._energy)
+    (allowed,) = made.allowed(physics.energy)
     assert float(allowed) == pytest.approx(1.05e-18 * sum(slopes), rel=1e-3, abs=0)
 
 
 def test_h_at_a_transit_with_a_nearly_level_cord_may_be_off_by_the_slope_of_vz_over_z(files):
     """A millionth of the cord below the pivot: h = (y vy)²/(2 z²) + …, and its slope is 4e6 m/s²."""
     made = in_a_swing(files, ("0", "1", "-1e-6", "0", "2e-6", "0"), [0, 0, 1, 0, 0, 0])
-    (allowed,) = replace(made, transits=files.tables["transits.csv"]).allowed(physics._energy)
+    (allowed,) = replace(made, transits=files.tables["transits.csv"]).allowed(physics.energy)
     assert float(allowed) == pytest.approx(1.05e-18 * 4e6, rel=0.03, abs=0)
 
 

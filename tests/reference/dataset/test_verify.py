@@ -55,8 +55,8 @@ def test_a_missing_file_is_found_and_a_foreign_one_is_mentioned(dataset):
 
 def test_a_dataset_that_counts_transits_and_has_no_table_of_them_is_refused(dataset):
     forge(dataset, without=("transits.csv", "transits.binary64.csv"))
-    assert "transits.csv belongs to a dataset with transits" in problems(dataset)
-    with pytest.raises(DatasetError, match=r"transits\.csv belongs"):
+    assert "files: transits.csv must be there" in problems(dataset)
+    with pytest.raises(DatasetError, match=r"transits\.csv must be there"):
         reference.load(dataset)
 
 

@@ -37,12 +37,14 @@ def refuse(solution, texts, **spoilt):
     """Demand that these texts are refused."""
     names = {"grid": "grid.csv", "transits": "transits.csv", "page": "certified.txt", "manifest": "manifest.json"}
     with pytest.raises(REFUSED):
-        check_dataset({**texts, **{names[name]: text for name, text in spoilt.items()}}, solution.proof.proved)
+        check_dataset(
+            {**texts, **{names[name]: text for name, text in spoilt.items()}}, solution.proof.enclosure.proved
+        )
 
 
 @pytest.mark.parametrize("name", ["grid", "transits"])
 def test_every_digit_that_is_changed_is_found(name, solution, texts):
-    check_dataset(texts, solution.proof.proved)
+    check_dataset(texts, solution.proof.enclosure.proved)
     header, *lines = texts[f"{name}.csv"].splitlines()
     found = 0
     for i in (0, len(lines) // 2, -1):
@@ -135,7 +137,7 @@ def test_a_title_with_a_word_of_the_page_is_no_misprint(title, tmp_path):
 
 def test_what_is_not_the_very_result_of_a_proof_is_not_written(solution, texts, tmp_path):
     """F5 of the audit: transits shifted between the proof and the tables were written."""
-    proved, by = solution.proof.proved, Fraction(1, 10**18)
+    proved, by = solution.proof.enclosure.proved, Fraction(1, 10**18)
     moved = [replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by)) for z in proved.transits]
     for forged in (replace(proved), replace(proved, transits=tuple(moved)), None):
         with pytest.raises(DatasetError, match="not what was proved"):
@@ -187,4 +189,4 @@ def test_a_source_with_the_words_before_the_inputs_is_no_misprint():
     """`below_horizontal` could not be made again: its source ends in "degrees)", as the line above the inputs does."""
     solution = reference.solve(reference.load_scene("below_horizontal"), t_end="1", digits=12, level="enclosed")
     assert "degrees)" in solution.scene.source
-    check_dataset(render(solution), solution.proof.proved)
+    check_dataset(render(solution), solution.proof.enclosure.proved)

@@ -211,7 +211,7 @@ def papers():
     words = ["highest", "gate 30@0"]
     solution = reference.solve(dict(OWN_PLANE), level="enclosed", digits=12, sections=words)
     texts = {k: v for k, v in render(solution).items() if isinstance(v, str)}
-    return texts, solution.proof
+    return texts, solution.proof.enclosure
 
 
 def forged(texts):

@@ -25,9 +25,9 @@ from reference.solver import solve as solver
 from reference.solver.agreement import (
     Agreement,
     bits_lacking,
-    passages_lacking,
     with_passage_errors,
     with_transit_errors,
+    zeros_lacking,
 )
 from reference.solver.pilot import MARGIN_BITS
 
@@ -223,23 +223,35 @@ def test_no_error_of_a_time_is_below_the_last_bit_of_the_run():
             assert float(bound / t) == pytest.approx(2.0**-53, rel=1e-6)
 
 
-def test_passages_lack_bits_where_directions_differ_or_a_time_has_not_its_digits():
-    """Five digits of 500 s are two after the point, and 1/256 s is more than a quarter of a unit of the last."""
-    one = {word: (Table(SECTION, 8, [(t << 8, *[0] * 6)]), [1]) for word, t in (("highest", 5), ("lowest", 500))}
+def test_zeros_lack_bits_where_directions_differ_or_a_number_has_not_its_digits():
     plan = SimpleNamespace(number=SimpleNamespace(prec=90))
+    table, places = Table(SECTION, 8, [(500 << 8, *[0] * 6)]), dict.fromkeys(GRID, 9) | {"t": 2}
+    later = Table(SECTION, 8, [((500 << 8) + 1, *[0] * 6)])
 
-    def lacking(times=0, **ways):
-        other = {
-            word: (replace(table, values=[(table.values[0][0] + times, *[0] * 6)]), ways.get(word, [1]))
-            for word, (table, _) in one.items()
-        }
-        missing, apart = passages_lacking(one, SimpleNamespace(plan=plan, passages=other), dict.fromkeys(GRID, 9), 5)
-        return missing, {word: float(table.largest()["t"]) for word, table in apart.items()}
+    def lacking(other, way=1):
+        missing, apart = zeros_lacking((table, [1]), (other, [way]), places, SimpleNamespace(plan=plan))
+        return missing, apart and float(apart.largest()["t"])
 
-    assert lacking() == (0, {"highest": 0, "lowest": 0})
-    assert lacking(1) == (bits_lacking({"t": Fraction(1, 256)}, {"t": 2}), {"highest": 1 / 256, "lowest": 1 / 256})
-    assert lacking(highest=[-1]) == (45, {"lowest": 0})
-    assert lacking(lowest=[-1]) == (45, {"highest": 0})
+    assert lacking(table) == (0, 0)
+    assert lacking(later) == (bits_lacking({"t": Fraction(1, 256)}, {"t": 2}), 1 / 256)
+    assert lacking(later, -1) == (45, None)
+
+
+def test_the_times_of_passages_have_the_decimals_of_the_latest_of_all_sections(paris):
+    """Five digits of 117 s are two after the point, and 1/512 s is less than a quarter of a unit of the last."""
+    times, words = (Fraction(0), Fraction(60), Fraction(120)), ("highest", "lowest")
+    plans = (Plan(paris.exact, "momentum", real(bits), times, transits=False, sections=words) for bits in (136, 120))
+    one, other = map(run, plans)
+    early = {word: (replace(table, values=table.values[:3]), ways[:3]) for word, (table, ways) in one.passages.items()}
+
+    def missing(**passages):
+        table, ways = other.passages["highest"]
+        late = table.values[0][0] + (1 << table.bits - 9)
+        moved = {"highest": (replace(table, values=[(late, *table.values[0][1:]), *table.values[1:3]]), ways[:3])}
+        found = replace(one, passages={"highest": early["highest"], **passages})
+        return Agreement.between(found, replace(other, passages=other.passages | moved), 5).missing_bits
+
+    assert missing() > 0 == missing(lowest=one.passages["lowest"])
 
 
 @pytest.mark.parametrize("error", [Fraction(1, 10**40), Fraction(1, 10**16)])

@@ -24,7 +24,7 @@ from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.precision import fixed_decimal, real
 from reference.solver import proof_steps
-from reference.solver.enclosed import audited, proved_digits, solve_enclosed
+from reference.solver.enclosed import audited, proved_digits
 from reference.solver.proof_steps import Feed
 
 SHORT = {"t_end": "300", "digits": 30, "level": "enclosed"}
@@ -231,7 +231,7 @@ def test_balls_that_cannot_be_had_end_with_the_widths_reached():
 def test_without_flint_the_level_says_what_to_install(monkeypatch):
     monkeypatch.setattr("reference.system.imports.missing", list)  # none is installed
     with pytest.raises(InputError, match=r"foucault-reference\[enclose\]"):
-        solve_enclosed(make_scene(run=SHORT), (Fraction(0),), "heyoka", None)
+        reference.solve(make_scene(run=SHORT))
 
 
 def test_nothing_of_the_proof_is_imported_at_a_lower_level():

@@ -31,7 +31,7 @@ def proved():
 
 @pytest.fixture(scope="module")
 def problem(proved):
-    return ProofTask(SCENE, proved.times, "auto", run_pilot(SCENE.exact, proved.times))
+    return ProofTask(SCENE, "auto", run_pilot(SCENE.exact, proved.times))
 
 
 def confirms(problem, solution):

@@ -76,14 +76,14 @@ def test_terminating_decimals_are_printed_exactly(values, digits):
 
 
 def test_the_motion_at_any_time_takes_a_golden_function(solution):
-    proof = Proof("variational", 1, 1, 1, SURE, SURE, None, 1, {})
+    proof = Proof(SimpleNamespace(function=None), None, 1)
     facts = {"times": [(0.0).hex(), (2.0).hex()], "components": ["x", "y", "z"], "degree": 1, "length_squared": None}
     made = SimpleNamespace(facts=facts, bounds=dict.fromkeys(STATE, "1e-15"), data=np.arange(6.0).tobytes())
     for without in (solution, replace(solution, proof=proof)):
         assert without.function is None
         with pytest.raises(InputError, match="function=True"):
             without.at(1.0)
-    at = replace(solution, proof=replace(proof, function=made)).at([0.0, 1.5])
+    at = replace(solution, proof=Proof(SimpleNamespace(function=made), None, 1)).at([0.0, 1.5])
     assert (at.x.tolist(), at.vz.tolist()) == ([-1.0, 0.5], [5.0, 5.0])
 
 
@@ -109,9 +109,10 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
 
 
 def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
-    plan = SimpleNamespace(formulation="spin", number="double")
+    plan = SimpleNamespace(engine="heyoka", formulation="spin", number="double")
+    witness = SimpleNamespace(plan=plan, order=20, steps=9, cpu_s=0.5, compile_s=0.0)
     gaps = {name: Fraction(i, 7) for i, name in enumerate(GRID)}
-    check = CrossCheck.of(SimpleNamespace(plan=plan, order=20, steps=9, cpu_s=0.5), gaps, None)
+    check = CrossCheck.by(witness, gaps, None)
     assert (check.position_m, check.velocity_m_s, check.transit_s) == (Fraction(2, 7), Fraction(5, 7), None)
     assert SAMPLED == 10  # "a tenth" in help, pages and what is written
     assert len(replace(solution, zeros=None).transits) == 0 < len(solution.transits)
