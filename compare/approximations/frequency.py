@@ -57,7 +57,12 @@ def _turning(scene: Scene) -> str | None:
 
 
 _frequency = partial(Quantity, needs=SWINGING, truth=frequency, unit="Hz")
-_precession = partial(Quantity, needs=(_turning, *SWINGING), truth=precession_period, unit="s")
+_precession = partial(
+    Quantity,
+    needs=(_turning, *SWINGING),
+    truth=precession_period,
+    unit="s",
+)
 
 _SWING = (
     Quantity(
@@ -180,7 +185,12 @@ def _not_at_a_pole(scene: Scene) -> str | None:
     return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude" if pole else None
 
 
-_rest_angle = partial(Quantity, needs=(under_gravity,), truth=lambda scene: Case.of_scene(scene).rest_angle, unit="rad")
+_rest_angle = partial(
+    Quantity,
+    needs=(under_gravity,),
+    truth=lambda scene: Case.of_scene(scene).rest_angle,
+    unit="rad",
+)
 
 _REST = (
     _rest_angle(
