@@ -223,19 +223,19 @@ class Layout:
         return columns, low
 
 
-def layout(words: Sequence[str], needed: Sequence[str], units: tuple[str, ...], where: str) -> Layout:
+def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: str) -> Layout:
     """Resolve the words of a header.
 
     Args:
         words: one for each column of the file.
         needed: columns that must be among them: `NEEDED`, beside which others are read, or t alone.
-        units: as in `Naming`.
+        naming: what the user says of the columns, of which the units count here.
         where: the header's name in messages.
 
     Raises:
         InputError: a column is missing or there twice, or its unit is not known.
     """
-    of_units = defaults(units)
+    of_units = defaults(naming.units)
     meanings = [meaning(word, of_units) for word in words]
     places: dict[str, int] = {}
     chosen: dict[str, Meaning] = {}
@@ -273,12 +273,29 @@ def layout(words: Sequence[str], needed: Sequence[str], units: tuple[str, ...], 
     return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(said))
 
 
-def by_number(count: int, needed: Sequence[str], units: tuple[str, ...], where: str) -> Layout | None:
+def given(count: int, needed: Sequence[str], naming: Naming) -> Layout:
+    """Return the layout of so many columns that the user names.
+
+    Raises:
+        InputError: there are more or fewer names, one is not known, or one that is needed is missing.
+    """
+    names, option = naming.columns, "--columns"
+    if len(names) != count:
+        expected = f"a name for each of the {count} columns, - for one that is not read"
+        raise InputError(option, ",".join(names), expected)
+    unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
+    if unknown:
+        expected = f"names of {', '.join(['t', *COLUMNS])}"
+        raise InputError(option, ", ".join(unknown), expected, "Write - for a column that is not read.")
+    return layout(names, needed, naming, option)
+
+
+def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | None:
     """Return the layout of a file without a header, by the number of its columns; None if that does not tell it."""
     names = UNNAMED.get(count) if len(needed) > 1 else ("t",) if count == 1 else None
     if names is None:
         return None
-    made = layout([*names, *["-"] * (count - len(names))], needed, units, where)
+    made = layout([*names, *["-"] * (count - len(names))], needed, naming, "--columns")
     text = f"no header: the columns are taken as {', '.join(names)} (--columns names others)"
     said = (Deviation("no_header", text),) if len(needed) > 1 else ()
     return replace(made, conventions=(*said, *made.conventions))
