@@ -82,16 +82,7 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     Raises:
         InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
     """
-    arrays = _arrays(stream, name)
-    if not arrays:
-        raise InputError(name, "none of them", _EXPECTED)
-    if [*arrays] == [TABLE]:
-        return _of_table(arrays[TABLE], name, naming)
-    if naming.columns:
-        raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
-    times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
-    transits = None if times is None else checked_transits(real_array(times, field), field)
-    return _candidate(name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits)
+    return _of_arrays(_arrays(stream, name), name, naming)
 
 
 def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
@@ -104,15 +95,21 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
         array = np.load(stream, allow_pickle=False)
     except Exception as error:  # numpy raises several kinds of errors for a damaged file
         raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
-    if array.dtype.names and array.ndim == 1 and not naming.columns:
-        words = array.dtype.names
-        return _candidate(name, [array[word] for word in words], layout(words, NEEDED, naming, name))
-    return _of_table(array, name, naming)
+    words = array.dtype.names
+    return _of_arrays({word: array[word] for word in words} if words else {TABLE: array}, name, naming)
 
 
-def _of_table(array: object, name: str, naming: Naming) -> Candidate:
-    """Make a candidate of a table, shape (rows, columns); the user names its columns, or their number does."""
-    table = real_array(array, name)
+def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidate:
+    """Make a candidate of arrays with names, or of a table, whose columns the user names, or their number does."""
+    if not arrays:
+        raise InputError(name, "none of them", _EXPECTED)
+    if [*arrays] != [TABLE]:
+        if naming.columns:
+            raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
+        times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
+        transits = None if times is None else checked_transits(real_array(times, field), field)
+        return _candidate(name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits)
+    table = real_array(arrays[TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
     made = given(count, NEEDED, naming) if naming.columns and count else by_number(count, NEEDED, naming)
     if made is None:

@@ -16,7 +16,7 @@ COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
 FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
 APART = re.compile(r"\s{2,}|\t")
-MOST = 1000  # lines above the first row that are looked at
+MOST = 1000  # lines above the first row, beyond which there is none
 FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
 BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
 
@@ -108,11 +108,9 @@ class Header:
             InputError: there are too many before the first row.
         """
         self.lines.append((number, text, comment))
-        if len(self.lines) > MOST:
-            if not comment:
-                where, expected = f"{self.name}: line {number}", "a row of numbers before it"
-                raise InputError(where, text[:80], expected, advice(self.needed))
-            del self.lines[0]
+        if len(self.lines) > MOST and not comment:
+            where, expected = f"{self.name}: line {number}", "a row of numbers before it"
+            raise InputError(where, text[:80], expected, advice(self.needed))
 
     def layout(self, row: str, spelled: Spelling, number: int) -> Layout:
         """Return which column stands where, from the first row and its line.

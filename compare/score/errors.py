@@ -256,6 +256,11 @@ def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, 
     return float(turn), float(delay)
 
 
+def counted(count: int, word: str) -> str:
+    """Return how many there are of something."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
 def entry(name: str, value: str, remark: str = "") -> str:
     """Return a line of a score: what it is, how much, and a remark."""
     return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"

@@ -31,7 +31,7 @@ from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
-from .errors import TrajectoryErrors, drifts, trajectory_errors
+from .errors import TrajectoryErrors, counted, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
@@ -189,8 +189,7 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     if not kept.any():
         raise InputError("t_end", f"{end:g}", f"a time from the first row on, which is at t = {candidate.t[0]:g} s")
     columns, low = ({name: column[kept] for name, column in of.items()} for of in (candidate.columns, candidate.low))
-    ignored = int((~kept).sum())
-    note = f"{ignored} {'row' if ignored == 1 else 'rows'} after t = {end:g} s ignored"
+    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored"
     return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
 
 
