@@ -111,10 +111,8 @@ def by_function(golden: Golden, times: Array) -> Dense | None:
     bound_m, bound_m_s = (max(bound[name] for name in kind) for kind in (POSITION, VELOCITY))
     if late.any():
         moved = np.array(rates([*states], constants_in_double(golden.scene.exact)))
-        length, speed, pull = (
-            float(golden.scene.exact.length),
-            *(float(np.abs(part).max()) for part in np.vsplit(moved, 2)),
-        )
+        length = float(golden.scene.exact.length)
+        speed, pull = (float(np.abs(part).max()) for part in np.vsplit(moved, 2))
         left_out = float(late.max()) ** 2 * pull  # of the position
         if left_out > bound_m:
             return None

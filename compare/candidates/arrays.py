@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
-from typing import Any, BinaryIO
+from typing import IO, Any
 
 import numpy as np
 
@@ -13,8 +12,7 @@ from reference import InputError
 from reference.numbers.precision import Array
 
 from .candidate import ADVICE, COLUMNS, Candidate, checked_transits
-from .names import NEEDED, Layout, Naming, by_number, layout, meaning
-from .text import CHUNK, MAX_BYTES
+from .names import NEEDED, Layout, Naming, by_number, given, layout, meaning
 
 MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
 MOST_ARRAYS = 1000
@@ -78,57 +76,45 @@ def real_array(values: Any, name: str) -> Array:
     return array
 
 
-def read_archive(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
-    """Read a candidate from the bytes of an .npz archive, of which `head` has been read already.
+def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
+    """Read a candidate from the bytes of an .npz archive.
 
     Raises:
         InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
     """
-    with tempfile.TemporaryFile() as spool:
-        _bounded(stream, head, spool, name)
-        arrays = _arrays(spool, name)
-    if not arrays:
-        raise InputError(name, "none of them", _EXPECTED)
-    if [*arrays] == [TABLE]:
-        return _of_table(arrays[TABLE], name, naming)
-    if naming.columns:
-        raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
-    times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
-    transits = None if times is None else checked_transits(real_array(times, field), field)
-    made = layout([*arrays], NEEDED, naming.units, name)
-    return _candidate(name, [*arrays.values()], made, transits)
+    return _of_arrays(_arrays(stream, name), name, naming)
 
 
-def read_array(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
+def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     """Read a candidate from the bytes of an .npy file: a table of rows, or an array of records with names.
 
     Raises:
-        InputError: the file is too large or damaged, or its columns are not known.
+        InputError: the file is damaged, or its columns are not known.
     """
-    with tempfile.TemporaryFile() as spool:
-        _bounded(stream, head, spool, name, MAX_UNPACKED)
-        try:
-            array = np.load(spool, allow_pickle=False)
-        except Exception as error:  # numpy raises several kinds of errors for a damaged file
-            raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
-    if array.dtype.names and array.ndim == 1 and not naming.columns:
-        words = array.dtype.names
-        return _candidate(name, [array[word] for word in words], layout(words, NEEDED, naming.units, name))
-    return _of_table(array, name, naming)
+    try:
+        array = np.load(stream, allow_pickle=False)
+    except Exception as error:  # numpy raises several kinds of errors for a damaged file
+        raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
+    words = array.dtype.names
+    return _of_arrays({word: array[word] for word in words} if words else {TABLE: array}, name, naming)
 
 
-def _of_table(array: object, name: str, naming: Naming) -> Candidate:
-    """Make a candidate of a table, shape (rows, columns); the user names its columns, or their number does."""
-    table, made = real_array(array, name), None
+def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidate:
+    """Make a candidate of arrays with names, or of a table, whose columns the user names, or their number does."""
+    if not arrays:
+        raise InputError(name, "none of them", _EXPECTED)
+    if [*arrays] != [TABLE]:
+        if naming.columns:
+            raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
+        times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
+        transits = None if times is None else checked_transits(real_array(times, field), field)
+        return _candidate(name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits)
+    table = real_array(arrays[TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
-    if not naming.columns:
-        made = by_number(count, NEEDED, naming.units, "--columns")
-    elif len(naming.columns) == count:
-        made = layout(naming.columns, NEEDED, naming.units, "--columns")
+    made = given(count, NEEDED, naming) if naming.columns and count else by_number(count, NEEDED, naming)
     if made is None:
-        expected = f"{len(naming.columns)} columns" if naming.columns else "3, 4 or 7 columns, t, x, y first"
         advice = "One row for each time; --columns names the columns."
-        raise InputError(name, f"shape {table.shape}", f"a table of {expected}", advice)
+        raise InputError(name, f"shape {table.shape}", "a table of 3, 4 or 7 columns, t, x, y first", advice)
     return _candidate(name, [*table.T], made)
 
 
@@ -138,19 +124,7 @@ def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Arra
     return candidate_of(name, columns, transits, made)
 
 
-def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str, most: int = MAX_BYTES) -> None:
-    """Copy the stream to a file, up to a limit: a zip archive is read from its end."""
-    total, data = 0, head
-    while data:
-        total += len(data)
-        if total > most:
-            raise InputError(name, f"more than {most} bytes", f"at most {most} bytes", "Thin the output out.")
-        spool.write(data)
-        data = stream.read(CHUNK)
-    spool.seek(0)
-
-
-def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
+def _arrays(data: IO[bytes], name: str) -> dict[str, object]:
     """Return the arrays whose names mean something, or the only one if it has no name."""
     try:
         with zipfile.ZipFile(data) as archive:

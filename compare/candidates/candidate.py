@@ -115,18 +115,7 @@ class Candidate:
                 )
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
-        if t[0] < 0:
-            advice = "Count them from the release, and leave out rows before it."
-            raise InputError(f"{name}: t", f"{t[0]:.17g} in row 1", "times from 0 on", advice)
-        steps = np.diff(t)
-        if (steps <= 0).any():
-            row = int(np.argmax(steps <= 0))
-            raise InputError(
-                f"{name}: t",
-                f"{t[row + 1]:.17g} in row {row + 2} after {t[row]:.17g}",
-                "strictly increasing times",
-                "Sort the rows and drop repeated times.",
-            )
+        _check_order(t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True)
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
 
 
@@ -143,17 +132,19 @@ def checked_transits(times: Array, name: str) -> Array:
     if not np.isfinite(times).all():
         row = int(np.argmin(np.isfinite(times)))
         raise InputError(name, f"{times[row]} as transit {row + 1}", "finite times in s")
-    if len(times) and times[0] < 0:
-        raise InputError(name, f"{times[0]:.17g} as transit 1", "times from 0 on, in s")
-    unordered = np.diff(times) < 0
-    if unordered.any():
-        row = int(np.argmax(unordered))
-        raise InputError(
-            name,
-            f"{times[row + 1]:.17g} as transit {row + 2} after {times[row]:.17g}",
-            "times in s that increase",
-        )
+    _check_order(times, name, "as transit", "", strictly=False)
     return times
+
+
+def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: bool) -> None:
+    """Refuse times before the release, and times that do not increase; `at` is how a message names a place."""
+    if len(times) and times[0] < 0:
+        count = "Count them from the release, and leave out what comes before it."
+        raise InputError(name, f"{times[0]:.17g} {at} 1", "times from 0 on, in s", count)
+    unordered = np.diff(times) <= 0 if strictly else np.diff(times) < 0
+    if unordered.any():
+        row, expected = int(np.argmax(unordered)), f"{'strictly ' * strictly}increasing times, in s"
+        raise InputError(name, f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}", expected, advice)
 
 
 def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:

@@ -223,62 +223,74 @@ class Layout:
         return columns, low
 
 
-def layout(words: Sequence[str], needed: Sequence[str], units: tuple[str, ...], where: str) -> Layout:
+def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: str) -> Layout:
     """Resolve the words of a header.
 
     Args:
         words: one for each column of the file.
         needed: columns that must be among them: `NEEDED`, beside which others are read, or t alone.
-        units: as in `Naming`.
+        naming: what the user says of the columns, of which the units count here.
         where: the header's name in messages.
 
     Raises:
         InputError: a column is missing or there twice, or its unit is not known.
     """
-    of_units = defaults(units)
+    of_units = defaults(naming.units)
     meanings = [meaning(word, of_units) for word in words]
     places: dict[str, int] = {}
-    chosen: dict[str, Meaning] = {}
+    factors: dict[str, Fraction] = {}
+    said, renamed, converted = [], [], []
     for name in ("t", *COLUMNS) if len(needed) > 1 else needed:
         ranked = [(word.rank, i, word) for i, word in enumerate(meanings) if word is not None and word.column == name]
         best = [(i, word) for rank, i, word in ranked if rank == min(ranked)[0]]
         if len(best) > 1:
             same = ", ".join(words[i].strip() for i, _ in best)
             raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
-        if best:
-            places[name], chosen[name] = best[0]
-        elif name in needed:
+        if not best and name in needed:
             got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
             raise InputError(where, got, f"one column {name}", advice(needed))
-    factors: dict[str, Fraction] = {}
-    for name, word in chosen.items():
-        if word.factor is None:
-            column = f"{where}: {words[places[name]].strip()}"
-            raise InputError(column, word.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
-        factors[name] = word.factor
-    said = []
-    renamed = [
-        f"{unquoted(words[i])} as {'-' if factors[name] < 0 else ''}{name}"
-        for name, i in places.items()
-        if chosen[name].rank == 2
-    ]
+        for i, word in best:
+            if word.factor is None:
+                column = f"{where}: {words[i].strip()}"
+                raise InputError(column, word.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
+            places[name], factors[name] = i, word.factor
+            if word.rank == 2:
+                renamed.append(f"{unquoted(words[i])} as {'-' if word.factor < 0 else ''}{name}")
+            if abs(word.factor) != 1:
+                converted.append(f"{name} from {word.unit}")
     if renamed:
         others = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
         others = [word for word in others if word not in SKIPPED]
         unread = f"; not read: {', '.join(others)}" if others else ""
         said.append(Deviation("columns", f"{', '.join(renamed)}{unread}"))
-    converted = [f"{name} from {chosen[name].unit}" for name, factor in factors.items() if abs(factor) != 1]
     if converted:
         said.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
     return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(said))
 
 
-def by_number(count: int, needed: Sequence[str], units: tuple[str, ...], where: str) -> Layout | None:
+def given(count: int, needed: Sequence[str], naming: Naming) -> Layout:
+    """Return the layout of so many columns that the user names.
+
+    Raises:
+        InputError: there are more or fewer names, one is not known, or one that is needed is missing.
+    """
+    names, option = naming.columns, "--columns"
+    if len(names) != count:
+        expected = f"a name for each of the {count} columns, - for one that is not read"
+        raise InputError(option, ",".join(names), expected)
+    unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
+    if unknown:
+        expected = f"names of {', '.join(['t', *COLUMNS])}"
+        raise InputError(option, ", ".join(unknown), expected, "Write - for a column that is not read.")
+    return layout(names, needed, naming, option)
+
+
+def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | None:
     """Return the layout of a file without a header, by the number of its columns; None if that does not tell it."""
     names = UNNAMED.get(count) if len(needed) > 1 else ("t",) if count == 1 else None
     if names is None:
         return None
-    made = layout([*names, *["-"] * (count - len(names))], needed, units, where)
+    made = layout([*names, *["-"] * (count - len(names))], needed, naming, "--columns")
     text = f"no header: the columns are taken as {', '.join(names)} (--columns names others)"
     said = (Deviation("no_header", text),) if len(needed) > 1 else ()
     return replace(made, conventions=(*said, *made.conventions))

@@ -12,32 +12,35 @@ The number of bytes and rows and the length of a line are limited. Errors name t
 
 from __future__ import annotations
 
-import errno
 import math
 import os
-import stat
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from decimal import Context, Decimal
+from functools import partial
+from itertools import chain
 from pathlib import Path
-from typing import BinaryIO
+from tempfile import SpooledTemporaryFile
+from typing import IO
 
 import numpy as np
 
 from reference import InputError
 from reference.errors import plain
 from reference.numbers.precision import Array
+from reference.scenes.scene import MAX_ROWS
 from reference.system.documents import open_at_once
 
-from .arrays import read_archive, read_array
+from .arrays import AS_NAMED, read_archive, read_array
 from .candidate import Candidate, Deviation, checked_transits
-from .names import NEEDED, Layout, Naming
-from .text import COMMENT, Header, Spelling, chunks, is_number, spelling
+from .names import NEEDED, Naming
+from .text import COMMENT, MAX_BYTES, MAX_LINE, Header, Spelling, is_number, spelling
 
 _TELLING = 6  # bytes that tell an archive from text
-MAX_ROWS = 2_000_000
-SAMPLE = 50  # rows of a chunk that are searched for numbers with more digits than a double's
+CHUNK = 1 << 22
+SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
 DOUBLE_DIGITS = 17  # decimal digits that identify a double
 SURE_DIGITS = 15  # decimals of up to this many digits survive a double, so a precise program means the decimal itself
 _EXACT = Context(prec=40)  # rounds a difference to 40 digits, far more than a low part holds
@@ -55,15 +58,16 @@ def read(source: str | Path, *, columns: Sequence[str] = (), units: Sequence[str
     Raises:
         InputError: the candidate cannot be read; the message names the line.
     """
-    with _opened(source, "CANDIDATE", "a readable file, or - for standard input") as (stream, head, name):
-        return read_stream(stream, name, head, Naming(tuple(columns), tuple(units)))
+    with _opened(source, "CANDIDATE", "a readable file, or - for standard input") as (stream, name):
+        return read_stream(stream, name, Naming(tuple(columns), tuple(units)))
 
 
-def read_stream(stream: BinaryIO, name: str, head: bytes = b"", naming: Naming | None = None) -> Candidate:
-    """Read a candidate in any of the formats from a stream of bytes, of which `head` has been read already."""
-    head += stream.read(_TELLING - len(head))
+def read_stream(stream: IO[bytes], name: str, naming: Naming | None = None) -> Candidate:
+    """Read a candidate in any of the formats from a stream of bytes that can be read twice, as no pipe can."""
+    head = stream.read(_TELLING)
+    stream.seek(-len(head), os.SEEK_CUR)
     reader = read_archive if head.startswith(b"PK") else read_array if head.startswith(b"\x93NUMPY") else read_text
-    return reader(stream, head, name, naming or Naming())
+    return reader(stream, name, naming or Naming())
 
 
 def read_transits(source: str | Path, units: Sequence[str] = ()) -> Array:
@@ -72,50 +76,47 @@ def read_transits(source: str | Path, units: Sequence[str] = ()) -> Array:
     Raises:
         InputError: the file cannot be read; the message names the line.
     """
-    with _opened(source, "--transits", "a readable CSV file") as (stream, head, name):
-        columns, _ = ColumnReader(name, ("t",), Naming((), tuple(units))).columns(stream, head)
+    with _opened(source, "--transits", "a readable CSV file") as (stream, name):
+        columns, _ = ColumnReader(name, ("t",), Naming((), tuple(units))).columns(stream)
         return checked_transits(columns["t"], name)
 
 
 @contextmanager
-def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[BinaryIO, bytes, str]]:
-    """Yield a file, or standard input if `source` is "-": stream, bytes read from it already, name for messages."""
-    try:
-        if str(source) == "-":
-            if sys.stdin is None:
-                raise OSError(errno.EBADF, "Standard input is closed")
-            yield sys.stdin.buffer, b"", "standard input"
-            return
-        with open_at_once(Path(source)) as stream:
-            head = _first_of_pipe(stream) if stat.S_ISFIFO(os.fstat(stream.fileno()).st_mode) else b""
-            os.set_blocking(stream.fileno(), True)
-            yield stream, head, plain(str(source))
-    except OSError as error:
-        raise InputError(field, str(source), expected, f"{error.strerror}.") from None
+def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[bytes], str]]:
+    """Yield a file, or standard input if `source` is "-", and its name for messages; of a pipe a copy."""
+    stream: IO[bytes]
+    with ExitStack() as stack:
+        try:
+            if str(source) == "-":
+                stream, name = sys.stdin.buffer, "standard input"
+            else:
+                stream, name = stack.enter_context(open_at_once(Path(source))), plain(str(source))
+                os.set_blocking(stream.fileno(), True)
+            if not stream.seekable():
+                pipe, stream = stream, stack.enter_context(SpooledTemporaryFile(CHUNK))
+                while stream.tell() <= MAX_BYTES and (data := pipe.read(CHUNK)):
+                    stream.write(data)
+                stream.seek(0)
+            start = stream.tell()
+            if stream.seek(0, os.SEEK_END) > MAX_BYTES:
+                raise InputError(name, f"more than {MAX_BYTES} bytes", f"at most {MAX_BYTES}", "Thin the output out.")
+            stream.seek(start)
+            yield stream, name
+        except OSError as error:
+            raise InputError(field, str(source), expected, f"{error.strerror}.") from None
 
 
-def _first_of_pipe(stream: BinaryIO) -> bytes:
-    """Return the first bytes of a pipe, none if its writer has not written yet; refuse one without a writer."""
-    try:
-        head = os.read(stream.fileno(), _TELLING)
-    except BlockingIOError:
-        return b""
-    if not head:
-        raise OSError(errno.EPIPE, "Nobody writes to this pipe: start the program first, or let --run start it")
-    return head
-
-
-def read_text(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
-    """Read a candidate from a stream of bytes, of which `head` has been read already.
+def read_text(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
+    """Read a candidate from a stream of bytes.
 
     Raises:
         InputError: the text cannot be read; the message names the line.
     """
     reader = ColumnReader(name, NEEDED, naming)
-    columns, low = reader.columns(stream, head)
+    columns, low = reader.columns(stream)
     times = checked_transits(np.array(reader.transits), f"{name}: # P") if reader.transits else None
     notes = ("the last line does not end with a newline: it may be cut off",) if reader.cut_off else ()
-    conventions = reader.conventions
+    conventions = reader.layout.conventions
     return Candidate.of(name, columns.pop("t"), columns, low=low, transits=times, notes=notes, conventions=conventions)
 
 
@@ -131,122 +132,89 @@ class ColumnReader:
     def __init__(self, name: str, needed: tuple[str, ...], naming: Naming) -> None:
         self.name, self.alone = name, len(needed) == 1
         self.header = Header(name, needed, naming)
-        self.spelled = Spelling(None)
-        self.layout: Layout | None = None  # once a row has been seen
-        self.places: dict[str, int] = {}  # of the layout
-        self.fields = 0  # of a row
-        self.blocks: list[Array] = []
-        self.low_blocks: list[Array] = []
+        self.spelled, self.layout, self.fields = Spelling(None), AS_NAMED, 0  # of a row, once one has been seen
+        self.rows: list[str] = []
         self.transits: list[float] = []  # that comments of foucPend name
-        self.rows = self.line = 0
+        self.line = 0
         self.cut_off = False  # the last line does not end with a newline
 
-    def columns(self, stream: BinaryIO, head: bytes = b"") -> tuple[dict[str, Array], dict[str, Array]]:
+    def columns(self, stream: IO[bytes]) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return the columns by name in SI units, and their low parts if some number is finer than a double.
 
         Args:
             stream: bytes in UTF-8.
-            head: bytes that have been read from it already.
 
         Raises:
             InputError: the text cannot be read; the message names the line.
         """
-        for lines, complete in chunks(stream, self.name, head):
-            self.cut_off = not complete
-            self._read_lines(lines)
-        if self.layout is None:
+        rows = self._rows_of(stream)
+        first = next(rows, None)
+        if first is None:
             formats = " with a column t" if self.alone else ", foucPend's output, .npy or .npz"
             raise self.header.refuse(f"a CSV file{formats}")
-        finer = any(block.any() for block in self.low_blocks)
-        return self.layout.converted(self._joined(self.blocks), self._joined(self.low_blocks) if finer else {})
+        separator, places = self.spelled.separator, self.layout.places
+        indices = [*places.values()]
+        try:
+            table = np.loadtxt(chain([first], rows), delimiter=separator, usecols=indices, comments=None, ndmin=2)
+        except ValueError:
+            where, row = f"{self.name}: line {self.line}", self.rows[-1]
+            fields = {name: row.split(separator)[i].strip() for name, i in places.items()}
+            bad = next(((f"{where}: {name}", text[:40]) for name, text in fields.items() if not is_number(text)), None)
+            raise InputError(*(bad or (where, row[:80])), "a number") from None
+        low = _low_parts(self.rows, separator, indices, table)
+        columns, rest = (dict(zip(places, np.ascontiguousarray(part.T), strict=True)) for part in (table, low))
+        return self.layout.converted(columns, rest if low.any() else {})
 
-    @property
-    def conventions(self) -> tuple[Deviation, ...]:
-        """Return what is to be said of the way in which it was read."""
-        said = () if self.layout is None else self.layout.conventions
-        return (*said, DECIMAL_COMMA) if self.spelled.decimal_comma else said
-
-    def _joined(self, blocks: list[Array]) -> dict[str, Array]:
-        table = np.concatenate(blocks)
-        return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(self.places)}
-
-    def _read_lines(self, lines: list[str]) -> None:
-        rows: list[str] = []
-        numbers: list[int] = []
-        for number, line in enumerate(lines, self.line + 1):
-            text = line.strip().removeprefix("\ufeff")
+    def _rows_of(self, stream: IO[bytes]) -> Iterator[str]:
+        """Yield the rows, of which the first and the lines above it tell which column is where."""
+        for data in iter(partial(stream.readline, MAX_LINE + 1), b""):
+            self.line += 1
+            if len(data) > MAX_LINE:
+                got = f"a line of more than {MAX_LINE} bytes"
+                raise InputError(self.name, got, "lines of numbers", "Is it text?")
+            if not self.fields and b"\0" in data:
+                raise InputError(self.name, "a zero byte", "text", "Binary data is read from .npz only.")
+            text = data.decode(errors="replace").strip().removeprefix("\ufeff")
             if not text:
                 continue
+            self.cut_off = not data.endswith(b"\n")
             if remark := COMMENT.match(text):
-                if self.layout is None:
-                    self.header.add(number, remark[1], True)
+                if not self.fields:
+                    self.header.add(self.line, remark[1], True)
                 if remark[1].split()[:1] == ["P"] and not self.alone:
-                    self._take_transit(remark[1], number)
-            elif self.layout is not None or self._begins(text, number):
-                rows.append(text)
-                numbers.append(number)
-        self.line += len(lines)
-        self.rows += len(rows)
-        if self.rows > MAX_ROWS:
-            raise InputError(self.name, f"more than {MAX_ROWS} rows", f"at most {MAX_ROWS}", "Thin the output out.")
-        if rows:
-            self._parse(rows, numbers)
+                    self._take_transit(remark[1])
+            elif self.fields or self._begins(text):
+                row, separator = self.spelled.plain(text), self.spelled.separator
+                count = row.count(separator) + 1 if separator else len(row.split())
+                if count != self.fields:
+                    got, expected = f"{count} fields", f"{self.fields} as in the first row"
+                    raise InputError(f"{self.name}: line {self.line}", got, expected, "Is the line cut off?")
+                if len(self.rows) == MAX_ROWS:
+                    most = f"at most {MAX_ROWS}"
+                    raise InputError(self.name, f"more than {MAX_ROWS} rows", most, "Thin the output out.")
+                self.rows.append(row)
+                yield row
 
-    def _take_transit(self, remark: str, line: int) -> None:
+    def _take_transit(self, remark: str) -> None:
         try:
             self.transits.append(float(remark.split()[2]))
         except (IndexError, ValueError):
             expected = "# P, a count, a time in s, a frequency"
-            raise InputError(f"{self.name}: line {line}", f"# {remark[:80]}", expected) from None
+            raise InputError(f"{self.name}: line {self.line}", f"# {remark[:80]}", expected) from None
 
-    def _begins(self, text: str, number: int) -> bool:
+    def _begins(self, text: str) -> bool:
         """Return True if a line is the first row, after taking from it and the lines above which column is where."""
         spelled = spelling(text)
         if spelled is None:
-            self.header.add(number, text, False)
+            self.header.add(self.line, text, False)
             return False
-        self.spelled = spelled
-        self.layout, self.fields = self.header.layout(text, spelled, number)
-        self.places = self.layout.places
+        made = self.header.layout(text, spelled, self.line)
+        said = (*made.conventions, *([DECIMAL_COMMA] if spelled.decimal_comma else []))
+        self.spelled, self.layout, self.fields = spelled, replace(made, conventions=said), len(spelled.fields(text))
         return True
 
-    def _parse(self, lines: list[str], numbers: list[int]) -> None:
-        separator, indices = self.spelled.separator, [*self.places.values()]
-        lines = [self.spelled.plain(line) for line in lines]
-        try:
-            uniform = {line.count(separator) if separator else len(line.split()) - 1 for line in lines}
-            if uniform != {self.fields - 1}:
-                raise ValueError
-            block = np.loadtxt(lines, delimiter=separator, usecols=indices, comments=None, ndmin=2)
-        except ValueError:
-            self._refuse_bad_line(lines, numbers)
-            raise InputError(self.name, "a number that cannot be read", "decimal numbers") from None
-        if self.blocks:
-            self._check_order(self.blocks[-1][-1, 0], block[0, 0], numbers[0])
-        self.blocks.append(block)
-        self.low_blocks.append(_low_parts(lines, separator, indices, block))
 
-    def _check_order(self, before: float, after: float, line: int) -> None:
-        """Refuse a stream whose times do not increase from chunk to chunk at once, not after a gigabyte."""
-        unordered = after < before if self.alone else after <= before
-        if math.isfinite(before) and math.isfinite(after) and unordered:
-            raise InputError(
-                f"{self.name}: line {line}", f"t = {after:.17g} after {before:.17g}", "strictly increasing times"
-            )
-
-    def _refuse_bad_line(self, lines: list[str], numbers: list[int]) -> None:
-        """Raise an error for the first line that has another number of fields than the first, or no number in one."""
-        for line, number in zip(lines, numbers, strict=True):
-            fields = line.split(self.spelled.separator)
-            if len(fields) != self.fields:
-                got, expected = f"{len(fields)} fields", f"{self.fields} as in the first row"
-                raise InputError(f"{self.name}: line {number}", got, expected, "Is the line cut off?")
-            for name, i in self.places.items():
-                if not is_number(fields[i].strip()):
-                    raise InputError(f"{self.name}: line {number}: {name}", fields[i].strip()[:40], "a number")
-
-
-def _low_parts(lines: list[str], separator: str | None, indices: list[int], block: Array) -> Array:
+def _low_parts(lines: list[str], separator: str | None, indices: list[int], table: Array) -> Array:
     """Return the printed numbers minus their doubles; zeros if a sample of rows holds nothing but doubles."""
 
     def of_row(line: str, row: Array) -> list[float]:
@@ -254,9 +222,9 @@ def _low_parts(lines: list[str], separator: str | None, indices: list[int], bloc
         return [low_part(fields[k], float(row[i]), of_time=i == 0) for i, k in enumerate(indices)]
 
     sample = range(0, len(lines), 1 + len(lines) // SAMPLE)
-    if not any(any(of_row(lines[i], block[i])[1:]) for i in sample):
-        return np.broadcast_to(0.0, block.shape)
-    return np.array([of_row(line, row) for line, row in zip(lines, block, strict=True)])
+    if not any(any(of_row(lines[i], table[i])[1:]) for i in sample):
+        return np.broadcast_to(0.0, table.shape)
+    return np.array([of_row(line, row) for line, row in zip(lines, table, strict=True)])
 
 
 def low_part(text: str, near: float, of_time: bool = False) -> float:

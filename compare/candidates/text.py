@@ -3,65 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import BinaryIO
 
 from reference import InputError
 
-from .candidate import COLUMNS
-from .names import SKIPPED, Layout, Naming, advice, by_number, layout, meaning
+from .names import Layout, Naming, advice, by_number, given, layout, meaning
 
 MAX_BYTES = 1 << 30
 MAX_LINE = 1 << 16
-MAX_LINES = 4_000_000  # comments and empty lines included
-CHUNK = 1 << 22
-_BINARY = "Binary data is read from .npz only."
 COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
 FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
 APART = re.compile(r"\s{2,}|\t")
-MOST = 1000  # lines above the first row that are looked at
+MOST = 1000  # lines above the first row, beyond which there is none
 FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
 BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
-
-
-def chunks(stream: BinaryIO, name: str, head: bytes = b"") -> Iterator[tuple[list[str], bool]]:
-    """Yield lists of complete lines, each with a flag: whether the last line ended with a newline.
-
-    Args:
-        stream: bytes in UTF-8.
-        name: the stream's name in messages.
-        head: bytes that have been read from it already.
-
-    Raises:
-        InputError: there are too many bytes or lines, a line is too long, or the bytes are not text.
-    """
-    remainder, total, count = head, len(head), 0
-    while data := stream.read(CHUNK):
-        total += len(data)
-        if total > MAX_BYTES:
-            raise InputError(name, f"more than {MAX_BYTES} bytes", f"at most {MAX_BYTES}", "Thin the output out.")
-        count += data.count(b"\n")
-        if count > MAX_LINES:
-            raise InputError(name, f"more than {MAX_LINES} lines", f"at most {MAX_LINES}", "Thin the output out.")
-        remainder += data
-        complete, newline, remainder = remainder.rpartition(b"\n")
-        if newline:
-            yield _decoded(complete, name), True
-        if len(remainder) > MAX_LINE:
-            raise InputError(name, f"a line of more than {MAX_LINE} bytes", "lines of numbers", "Is it text?")
-    if remainder.strip():
-        yield _decoded(remainder, name), False
-
-
-def _decoded(data: bytes, name: str) -> list[str]:
-    if b"\0" in data:
-        raise InputError(name, "a zero byte", "text", _BINARY)
-    try:
-        return data.decode().split("\n")
-    except UnicodeDecodeError:
-        raise InputError(name, "bytes that are not UTF-8", "text", _BINARY) from None
 
 
 def is_number(text: str) -> bool:
@@ -151,14 +108,12 @@ class Header:
             InputError: there are too many before the first row.
         """
         self.lines.append((number, text, comment))
-        if len(self.lines) > MOST:
-            if not comment:
-                where, expected = f"{self.name}: line {number}", "a row of numbers before it"
-                raise InputError(where, text[:80], expected, advice(self.needed))
-            del self.lines[0]
+        if len(self.lines) > MOST and not comment:
+            where, expected = f"{self.name}: line {number}", "a row of numbers before it"
+            raise InputError(where, text[:80], expected, advice(self.needed))
 
-    def layout(self, row: str, spelled: Spelling, number: int) -> tuple[Layout, int]:
-        """Return which column stands where, and the number of fields in a row, from the first one and its line.
+    def layout(self, row: str, spelled: Spelling, number: int) -> Layout:
+        """Return which column stands where, from the first row and its line.
 
         Raises:
             InputError: no line names the columns, or one does but not all that are needed, and the first row does not
@@ -167,34 +122,19 @@ class Header:
         fields = spelled.fields(row)
         count = len(fields) - (len(fields) > 1 and not fields[-1].strip())
         if self.naming.columns:
-            return self._given(count), len(fields)
+            return given(count, self.needed, self.naming)
         for above, text, is_comment in reversed(self.lines):
             header = self._named(text, count, is_comment)
             if header is not None:
                 if len(header) != count:
                     got, expected = f"{count} fields", f"{len(header)} as in the header, line {above}"
                     raise InputError(f"{self.name}: line {number}", got, expected, "Is the line cut off?")
-                return layout(header, self.needed, self.naming.units, f"{self.name}: header"), len(fields)
-        made = by_number(count, self.needed, self.naming.units, self.name)
+                return layout(header, self.needed, self.naming, f"{self.name}: header")
+        made = by_number(count, self.needed, self.naming)
         if made is None or (len(self.needed) == 1 and self.lines):
             expected = "a header that names the columns"
             raise InputError(f"{self.name}: first line", row[:80], expected, advice(self.needed))
-        return made, len(fields)
-
-    def _given(self, count: int) -> Layout:
-        """Return the layout of `--columns`."""
-        names = self.naming.columns
-        if len(names) != count:
-            expected = f"a name for each of the {count} columns, - for one that is not read"
-            raise InputError("--columns", ",".join(names), expected)
-        unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
-        if unknown:
-            expected = f"names of {', '.join(['t', *COLUMNS])}"
-            raise InputError("--columns", ", ".join(unknown), expected, "Write - for a column that is not read.")
-        missing = [name for name in self.needed if name not in _columns(names)]
-        if missing:
-            raise InputError("--columns", ",".join(names), f"a column {missing[0]} among them")
-        return layout(names, self.needed, self.naming.units, "--columns")
+        return made
 
     def _named(self, text: str, count: int, is_comment: bool) -> list[str] | None:
         """Return the words of a line that names the columns, or is meant to; None for another."""

@@ -52,7 +52,6 @@ class Worst(NamedTuple):
 class SwingErrors:
     """Turn of the swing plane in radians (positive from east to north) and delay in s, for each part of the run."""
 
-    t: Array
     turn: Array
     delay: Array
 
@@ -168,9 +167,9 @@ class TrajectoryErrors:
     def swing(self, rest: tuple[float, float]) -> SwingErrors:
         """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
         if "x" not in self.components:
-            return SwingErrors(*np.empty((3, 0)))
+            return SwingErrors(*np.empty((2, 0)))
         error = np.column_stack([self.components["x"], self.components["y"]])
-        return swing_errors(self.t, self.truth.states, error, rest)
+        return swing_errors(self.truth.states, error, rest)
 
 
 def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solution) -> TrajectoryErrors:
@@ -224,22 +223,20 @@ def drifts(candidate: Candidate, scene: Scene) -> dict[str, float]:
     return largest
 
 
-def swing_errors(t: Array, truth: Array, error: Array, rest: tuple[float, float]) -> SwingErrors:
+def swing_errors(truth: Array, error: Array, rest: tuple[float, float]) -> SwingErrors:
     """Fit turn and delay of a candidate, part by part.
 
     Args:
-        t: times in s, shape (rows,).
         truth: x, y, z, vx, vy, vz in m and m/s, shape (rows, 6).
         error: candidate minus truth in x and y, shape (rows, 2), in m.
         rest: x and y of the rest position in m.
     """
-    if len(t) < FEWEST:
-        return SwingErrors(*np.empty((3, 0)))
-    parts = np.array_split(np.arange(len(t)), max(1, min(BLOCKS, len(t) // ROWS)))
+    if len(truth) < FEWEST:
+        return SwingErrors(*np.empty((2, 0)))
+    parts = np.array_split(np.arange(len(truth)), max(1, min(BLOCKS, len(truth) // ROWS)))
     samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
     fits = [_fit(truth[part], error[part], rest) for part in samples]
-    middle = np.array([float(np.mean(t[part])) for part in parts])
-    return SwingErrors(middle, np.array([turn for turn, _ in fits]), np.array([delay for _, delay in fits]))
+    return SwingErrors(*np.array(fits).T)
 
 
 def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, float]:
@@ -257,6 +254,11 @@ def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, 
 
     (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
     return float(turn), float(delay)
+
+
+def counted(count: int, word: str) -> str:
+    """Return how many there are of something."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def entry(name: str, value: str, remark: str = "") -> str:

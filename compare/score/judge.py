@@ -31,7 +31,7 @@ from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
-from .errors import TrajectoryErrors, drifts, trajectory_errors
+from .errors import TrajectoryErrors, counted, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
@@ -189,8 +189,7 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     if not kept.any():
         raise InputError("t_end", f"{end:g}", f"a time from the first row on, which is at t = {candidate.t[0]:g} s")
     columns, low = ({name: column[kept] for name, column in of.items()} for of in (candidate.columns, candidate.low))
-    ignored = int((~kept).sum())
-    note = f"{ignored} {'row' if ignored == 1 else 'rows'} after t = {end:g} s ignored"
+    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored"
     return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
 
 
@@ -214,30 +213,21 @@ def _check_times(candidate: Candidate, scene: Scene) -> None:
 
 def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None."""
-    reach = float(np.hypot(candidate.columns["x"], candidate.columns["y"]).max())
-    length = float(scene.exact.length)
+    x, y, length = candidate.columns["x"], candidate.columns["y"], float(scene.exact.length)
+    reach = float(np.hypot(x, y).max())
     if reach <= BEYOND * length:
         return None
     far = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
-    if (scale := _scale(candidate, scene)) is None:
+    release = complex(*map(float, Start.of(scene.exact, PLACEHOLDER_BITS).position[:2]))
+    ratio = complex(x[0], y[0]) / release if release and candidate.t[0] == 0 else 0j
+    scale = abs(ratio)
+    if not abs(ratio - scale) < SAME * scale:  # it does not begin at the release, in its direction
         return Deviation("beyond_the_cord", f"{far}: pixels, or another unit? Metres are wanted")
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
         return Deviation("scale", f"{far}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it")
     return Deviation("scale", f"{far}: {times}, so they are {LONG_NAMES[unit]}; --units {unit} reads them so")
-
-
-def _scale(candidate: Candidate, scene: Scene) -> float | None:
-    """Return how many times the release the first row is, if it is at t = 0 and in the release's direction."""
-    if candidate.t[0] != 0:
-        return None
-    x, y, _ = (float(part) for part in Start.of(scene.exact, PLACEHOLDER_BITS).position)
-    at, release = complex(candidate.columns["x"][0], candidate.columns["y"][0]), complex(x, y)
-    if not release or not at:
-        return None
-    ratio = at / release
-    return abs(ratio) if abs(ratio - abs(ratio)) < SAME * abs(ratio) else None
 
 
 def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, str]:

@@ -13,6 +13,7 @@ from reference.numbers.precision import Array
 from reference.solver.uncertain import solve_ranges
 
 from ..candidates.candidate import Candidate
+from .errors import counted
 
 TOLD = 5  # of the numbers outside, those that are listed: the farthest of each column first
 ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing
@@ -61,14 +62,14 @@ class Measured:
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
-        counted = [_counted(self.rows, "row")] if self.rows else []
+        parts = [counted(self.rows, "row")] if self.rows else []
         zero, of = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
-        counted += [] if self.transits is None else [f"{_counted(self.transits, zero)}{of}"]
-        scene, what = self.ranges.scene.id, " and ".join(counted)
+        parts += [] if self.transits is None else [f"{counted(self.transits, zero)}{of}"]
+        scene, what = self.ranges.scene.id, " and ".join(parts)
         if not self.outside:
             yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved"
         else:
-            numbers = _counted(len(self.outside), "number")
+            numbers = counted(len(self.outside), "number")
             yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
         for column, t, got, low, high, by in self.outside[:TOLD]:
             at, unit = (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m") if column in STATE else ("", "s")
@@ -147,9 +148,9 @@ def measured(
     first = {column: max(z.by for z in off if z.column == column) for column in {z.column for z in off}}
     notes = list(candidate.notes if candidate else ())
     if late:
-        notes.append(f"after {float(end):g} s {_counted(late, 'time')} left out")
+        notes.append(f"after {float(end):g} s {counted(late, 'time')} left out")
     if open_ := len(seen) - len(decided):
-        notes.append(f"{_counted(open_, 'time')} left out, at which the proof does not decide {word}")
+        notes.append(f"{counted(open_, 'time')} left out, at which the proof does not decide {word}")
     if TRANSIT in first and asked:
         notes.append(f"for passages of {asked[0]} write --section '{asked[0]}'")
     off.sort(key=lambda z: (z.by < first[z.column], z.column not in STATE, -z.by))
@@ -201,10 +202,6 @@ def _zeros(
             yield Outside(word, *map(float, (t, t, *ends, gap(t, ends))))
         elif one:
             free.remove((ends, one))
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def _exact(candidate: Candidate, name: str, k: int) -> Fraction:

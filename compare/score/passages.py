@@ -17,7 +17,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ..truth import DIGITS, Report, golden_of, truth_at
-from .errors import entry, swing_rate
+from .errors import counted, entry, swing_rate
 from .judge import TOLERANCE
 from .transit_matching import TransitErrors, transit_errors
 
@@ -59,8 +59,8 @@ class PassageScore:
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""
         span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} of {self.scene.run.t_end} s"
-        counted = f"{len(self.times)} passage{'s' if len(self.times) > 1 else ''} of {self.section}"
-        yield f"{self.name} {self.verdict} with {self.scene.id} ({counted}, {span})"
+        passages = f"{counted(len(self.times), 'passage')} of {self.section}"
+        yield f"{self.name} {self.verdict} with {self.scene.id} ({passages}, {span})"
         yield from self.errors.lines(self.allowed_m, "passages", "as a distance")
         yield entry("tolerance", f"{self.tolerance_m:.3g} m")
         yield entry("inputs read as", self.scene.inputs)

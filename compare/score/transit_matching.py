@@ -142,7 +142,8 @@ def transit_errors(
     spurious = np.zeros(len(extra), dtype=bool)
     if away is not None and 0 < len(extra) <= MOST_EXTRA and omega:
         doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])  # no motion has a transit twice
-        spurious = (np.abs(_at(times[extra], away)) / omega <= tolerance_m) & ~doubled
+        once, back = np.unique(times[extra], return_inverse=True)
+        spurious = (np.abs(away(once)[back]) / omega <= tolerance_m) & ~doubled
     return TransitErrors(
         errors,
         errors * weight[matched],
@@ -151,12 +152,6 @@ def transit_errors(
         truth[matched],
         sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()]),
     )
-
-
-def _at(times: Array, away: Callable[[Array], Array]) -> Array:
-    """Return what a function gives at times of which some may be equal."""
-    once, back = np.unique(times, return_inverse=True)
-    return np.asarray(away(once)[back])
 
 
 def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:

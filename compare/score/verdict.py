@@ -16,7 +16,7 @@ from reference.status import Status
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
-from .errors import SwingErrors, TrajectoryErrors, Worst, entry
+from .errors import SwingErrors, TrajectoryErrors, Worst, counted, entry
 from .experiments.findings import Experiments
 from .explanation.case import Explanation
 from .input_floor import input_floor
@@ -233,8 +233,7 @@ def _one_decimal(digits: float | None) -> str:
 
 def _span(score: Score) -> str:
     t, end = score.errors.t, score.scene.run.t_end
-    what = "row" if score.candidate.positions else "transit"
-    rows = f"1 {what}" if len(t) == 1 else f"{len(t)} {what}s"
+    rows = counted(len(t), "row" if score.candidate.positions else "transit")
     return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s: {percent(score.covered)}"
 
 

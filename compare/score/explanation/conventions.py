@@ -143,14 +143,14 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     ways = [*AXES_SAID]
     for one, (scale, text), (order, signs) in itertools.product((row, last), units, ways if rename else ways[:1]):
         if is_release(one[[*order]] / scale * np.array(signs), release, rows.noise / scale):
-            return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
+            return _renamed(_in_metres(rows, scale, text, length), order, signs)
     # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
     others = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
     if np.abs(row[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
         others += [(units[0], way) for way in ways[1:] if rename]
     for (scale, text), (order, signs) in others:
         if np.abs(row[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
-            return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
+            return _renamed(_in_metres(rows, scale, text, length), order, signs)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
     polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
@@ -166,13 +166,20 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     return replace(rows, starts=False)
 
 
-def _in_metres(rows: Rows, scale: float, text: str) -> Rows:
-    """Return the rows over a scale, with what is said of it; as they are where nothing is."""
+def _in_metres(rows: Rows, scale: float, text: str, length: float) -> Rows:
+    """Return the rows over a scale, with what is said of it; as they are where nothing is.
+
+    Heights are left out where they are not those of the cord then.
+    """
     if not text:
         return rows
-    positions = rows.positions / scale
-    convention = Deviation("unit_of_length", text, largest(positions - rows.positions))
-    return rows.changed(convention, positions=positions, noise=rows.noise / scale)
+    p = rows.positions / scale
+    convention = Deviation("unit_of_length", text, largest(p - rows.positions))
+    made = rows.changed(convention, positions=p, noise=rows.noise / scale)
+    if p.shape[1] < 3:
+        return made
+    below = -np.sqrt(np.maximum(length**2 - p[:, 0] ** 2 - p[:, 1] ** 2, 0))
+    return made if np.abs(p[:, 2] - below).max() < 1e-3 * length else _flat(made)
 
 
 def _renamed(rows: Rows, order: tuple[int, int], signs: tuple[int, int]) -> Rows:
@@ -183,15 +190,6 @@ def _renamed(rows: Rows, order: tuple[int, int], signs: tuple[int, int]) -> Rows
     plane = rows.positions[:, order] * np.array(signs)
     convention = Deviation(word, text, largest(plane - rows.plane))
     return rows.changed(convention, positions=np.column_stack([plane, rows.positions[:, 2:]]))
-
-
-def _scaled_height(rows: Rows, scale: float, length: float) -> Rows:
-    """Return rows in another unit with their heights, which are left out where they are not those of the cord then."""
-    p = rows.positions
-    if scale == 1 or p.shape[1] < 3:
-        return rows
-    below = -np.sqrt(np.maximum(length**2 - p[:, 0] ** 2 - p[:, 1] ** 2, 0))
-    return rows if np.abs(p[:, 2] - below).max() < 1e-3 * length else _flat(rows)
 
 
 def clock(rows: Rows, release: Array) -> Rows:

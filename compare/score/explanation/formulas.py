@@ -33,6 +33,7 @@ GAIN = 0.9  # of what was left: a step that leaves more is not taken
 WINDOW = 4.0  # ratio of the lengths of one window and the one before
 HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
 SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
+FLAT = 1e-12  # of the largest: products whose share in the rows is less are not told apart
 MOST = 3  # coefficients that are off
 
 
@@ -160,18 +161,14 @@ def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula 
         if not math.isfinite(left):
             return None
     omega, beta = rates.tolist()
-    return Formula(omega, beta, _linear(_basis(times, omega, beta), plane), left / math.sqrt(len(times)))
-
-
-def _linear(basis: Array, plane: Array) -> Array:
-    return np.asarray(solved(basis, plane, 1e-12), dtype=np.float64)
+    return Formula(omega, beta, solved(_basis(times, omega, beta), plane, FLAT), left / math.sqrt(len(times)))
 
 
 def _left(times: Array, plane: Array, hold: float, rates: Array) -> tuple[Array, Callable[[], Array]]:
     """Return what products of two rates leave, and its slopes by the rates, each held, then by the coefficients."""
     omega, beta = rates.tolist()
     basis = _basis(times, omega, beta)
-    coefficients = _linear(basis, plane)
+    coefficients = solved(basis, plane, FLAT)
 
     def slopes() -> Array:
         moved = np.column_stack([slope.ravel() for slope in _slopes(times, omega, beta, coefficients)])

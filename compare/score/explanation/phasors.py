@@ -176,7 +176,7 @@ def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -
         rates, size = gauss_newton(partial(_left, t, w), rates, steps=STEPS, gain=GAIN)
         if not math.isfinite(size):
             return result
-        a, b, centre = _linear(_basis(t, rates), w)
+        a, b, centre = solved(_basis(t, rates), w)
         phasors = Phasors((complex(rates[0]), complex(rates[1])), (complex(a), complex(b)), complex(centre))
         result = phasors, size / math.sqrt(len(t))
     return result
@@ -188,17 +188,12 @@ def _basis(times: Array, rates: ComplexArray) -> ComplexArray:
     return np.column_stack([turning, np.ones_like(times)])
 
 
-def _linear(basis: ComplexArray, rows: ComplexArray) -> ComplexArray:
-    """Return A, B and C."""
-    return np.asarray(solved(basis, rows), dtype=np.complex128)
-
-
 def _left(times: Array, rows: ComplexArray, rates: ComplexArray) -> tuple[ComplexArray, Callable[[], ComplexArray]]:
     """Return what two phasors leave, and its slopes by their rates, then by A, B and C."""
     basis = _basis(times, rates)
     if not np.isfinite(basis).all() or np.abs(basis).max() > OVERFLOW:
         return np.full_like(rows, np.nan), lambda: basis
-    linear = _linear(basis, rows)
+    linear = solved(basis, rows)
     return rows - basis @ linear, lambda: np.column_stack([1j * times[:, None] * basis[:, :2] * linear[:2], basis])
 
 
