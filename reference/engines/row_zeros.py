@@ -137,11 +137,10 @@ class RowRelease:
 
 @dataclass(frozen=True)
 class Samples:
-    """A row's motion at times from the release to the end; `complete` where no pair of zeros can be lost."""
+    """A row's motion at times from the release to the end."""
 
     times: Array
     motion: RowMotion
-    complete: bool = False
 
     def lost(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> bool:
         """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
@@ -149,7 +148,7 @@ class Samples:
         there = signs[np.searchsorted(zeros.times, self.times[1:])]
         alternate = (signs[:-1] * signs[1:] < 0).all()
         alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * there > 0).all()
-        return not (alternate and (self.complete or not self._dips(zeros, at, release, kind)[0].size))
+        return not (alternate and not self._dips(zeros, at, release, kind)[0].size)
 
     def finer(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> Array:
         """Return the times of samples, with more of them where the form of a kind may dip to zero."""
