@@ -20,9 +20,10 @@ from ..engines.row_zeros import RowMotion
 from ..errors import FoucaultError, UnreachableError
 from ..model.algebra import add, cross
 from ..model.constants import Constants
-from ..numbers.columns import POSITION, STATE, VELOCITY
+from ..numbers.columns import POSITION, SECTION, STATE, VELOCITY
 from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import Array
+from ..numbers.table import Table
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene
 from ..solver.solution import Solution
@@ -43,10 +44,9 @@ def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
     """Return what became of a row, and its errors; of its swing where the solution has its highest points."""
     grid, transits, run = solution.grid, solution.transits, Outcomes.empty(1)
     position, velocity = (_norm(grid.largest_bounds(), kind) for kind in (POSITION, VELOCITY))
-    swing = precession = angle = transit = frequency = np.full(1, np.nan)
+    transit = frequency = np.full(1, np.nan)
     with np.errstate(all="ignore"):
-        if HIGHEST in solution.sections and not solution.sections[HIGHEST].possible:
-            swing, precession, angle = _swing(run, rows, solution, position)
+        swing, precession, angle = _swing(run, rows, solution, position)
         run.steps[0], run.state[0] = solution.run.steps, [grid[name][-1] for name in STATE]
         if transits is not None and solution.directions:
             t = transits["t"]
@@ -63,9 +63,10 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
 
     These are those of frequency and precession, as in `Errors`, and of the angle in rad. Where a highest point grazes,
     its time has no bound, and its angle that of the grid, `position` in m. One so soon after the release that no digit
-    tells it, as the exact inputs do, counts as the release.
+    tells it, as the exact inputs do, counts as the release. On a cone, which has none, release and end tell the angle.
     """
-    points, grid, axes = solution.sections[HIGHEST].table, solution.grid, PlumbAxes.of(rows)
+    found, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
+    decided, points = found and not found.possible, found.table if found else Table(SECTION, 0, [])
     length, turn = solution.scene.exact.length, (0, *(part.high for part in axes.turn))
     states = [
         DoubleDouble.of(q / length for q in (grid.exact(name)[0], *points.exact(name), grid.exact(name)[-1]))
@@ -84,7 +85,8 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     untold = rows.rising[0] > 0 and abs(motion.v[2][0]) < soon * fall[0] and not (t[1:2] < 2 * soon).any()
     high = slice(0 if untold else 1, -1)
     t, azimuth = t[high.start :], azimuth[high]
-    if len(t) and (fall >= LEAST_BEND * (rows.rate * across) ** 2)[high].all():
+    bent = fall >= LEAST_BEND * (rows.rate * across) ** 2
+    if decided and len(t) and bent[high].all():
         run.apsides[0], run.apsis_first[0], run.apsis_last[0] = len(t), t[0], t[-1]
         run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(np.round(np.diff(azimuth) / np.pi))
     late = np.max(np.array(points.bound("t"), float), initial=0) + np.spacing(run.apsis_last)
@@ -92,7 +94,7 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     aside = np.max(off / (across[1:-1] * float(length)), initial=0) + np.spacing(2 * np.pi)
     reach = np.max(off, initial=position[0])
     leaning = np.where(reach < length, reach, position) / float(length) + np.spacing(run.largest_angle)
-    return *of_swing(run, late, aside), leaning
+    return *of_swing(run, late, aside), np.where(decided or not (found or bent.any()), leaning, np.nan)
 
 
 def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:
