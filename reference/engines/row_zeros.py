@@ -17,7 +17,7 @@ from ..model.algebra import add, cross, dot, minus, plus, subtract
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..numbers.precision import Array
-from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, XDOT, Outcomes, PlumbAxes, Rows
+from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
@@ -109,7 +109,7 @@ class RowRelease:
     angle: float
 
     @classmethod
-    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any = XDOT) -> Self:
+    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any) -> Self:
         """Return what is known of a row whose motion at the release is given, and in these axes the form."""
         rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])

@@ -67,7 +67,7 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     """
     found, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
     decided, points = found and not found.possible, found.table if found else Table(SECTION, 0, [])
-    length, turn = solution.scene.exact.length, (0, *(part.high for part in axes.turn))
+    length, turn = solution.scene.exact.length, (0, axes.turn[0].high, axes.turn[1].high)
     states = [
         DoubleDouble.of(q / length for q in (grid.exact(name)[0], *points.exact(name), grid.exact(name)[-1]))
         for name in STATE
@@ -138,7 +138,8 @@ def promoted(
     undecided = [word for word in request.sections if solution.sections[word].possible]
     if undecided:
         return Promoted({}, ([], []), f"{', '.join(undecided)}: the proof does not decide how many passages there are.")
-    return Promoted(_values(request, row, solution), _times(solution))
+    times = [float(t) for t in solution.transits.exact("t")]
+    return Promoted(_values(request, row, solution), (times, list(solution.directions)))
 
 
 def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
@@ -170,10 +171,6 @@ def _values(request: Request, row: int, solution: Solution) -> dict[str, Any]:
         "engine": solution.run.engine,
         "digits": solution.scene.run.digits,
     }
-
-
-def _times(solution: Solution) -> tuple[list[float], list[int]]:
-    return [float(t) for t in solution.transits.exact("t")], list(solution.directions)
 
 
 @dataclass(frozen=True)
