@@ -251,7 +251,7 @@ def moved(numbers: Array, way: int) -> Array:
     return np.where(numbers == 0, 0.0, np.nextafter(numbers, beyond)) if way else numbers
 
 
-def plumb_line(north: Any, up: Any, size: Any, none: Array | int) -> tuple[Any, Any]:
+def plumb_line(north: Any, up: Any, size: Any, none: Array) -> tuple[Any, Any]:
     """Return the unit vector up along -c; the vertical where there is no force, `none` 1 instead of 0."""
     return -north / (size + none), (none - up) / (size + none)
 

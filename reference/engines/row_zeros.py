@@ -17,7 +17,7 @@ from ..model.algebra import add, cross, dot, minus, plus, subtract
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..numbers.precision import Array
-from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, XDOT, Outcomes, PlumbAxes, Rows
+from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
@@ -109,7 +109,7 @@ class RowRelease:
     angle: float
 
     @classmethod
-    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any = XDOT) -> Self:
+    def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any) -> Self:
         """Return what is known of a row whose motion at the release is given, and in these axes the form."""
         rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
@@ -137,11 +137,10 @@ class RowRelease:
 
 @dataclass(frozen=True)
 class Samples:
-    """A row's motion at times from the release to the end; `complete` where no pair of zeros can be lost."""
+    """A row's motion at times from the release to the end."""
 
     times: Array
     motion: RowMotion
-    complete: bool = False
 
     def lost(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> bool:
         """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
@@ -149,7 +148,7 @@ class Samples:
         there = signs[np.searchsorted(zeros.times, self.times[1:])]
         alternate = (signs[:-1] * signs[1:] < 0).all()
         alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * there > 0).all()
-        return not (alternate and (self.complete or not self._dips(zeros, at, release, kind)[0].size))
+        return not (alternate and not self._dips(zeros, at, release, kind)[0].size)
 
     def finer(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> Array:
         """Return the times of samples, with more of them where the form of a kind may dip to zero."""

@@ -69,7 +69,9 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
     moved = engine.solve(rows, MOVED)
     estimated, stopped = errors(rows, run, moved), moved.fate == STOPPED
-    wild = ~(estimated.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
+    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
+    reaches_the_pivot = (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
+    wild = ~(estimated.position <= GROWN * rows.length[:, 0]) | reaches_the_pivot
     grown = np.flatnonzero(~stopped & wild)
     if not len(grown):
         return estimated, stopped
@@ -80,12 +82,6 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     state[grown[far > near]] = back.state[far > near]
     stopped[grown] |= back.fate == STOPPED
     return errors(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)), stopped
-
-
-def _reaches_the_pivot(rows: Rows) -> Any:
-    """Return which rows have the energy to rise as high as the pivot."""
-    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
-    return (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
 
 
 def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
@@ -264,8 +260,8 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
     """Return the columns by name, and in which rows a number has no error: there neither stands."""
     span, swings = run.t_last - run.t_first, run.apsis_last - run.apsis_first
     with np.errstate(divide="ignore", invalid="ignore"):
-        precession = np.where(run.apsides > 1, run.turn / swings * DEGREES_PER_HOUR, np.nan)
-        vertical = np.where(rows.turn[:, 2, 0] != 0, -rows.turn[:, 2, 0] * DEGREES_PER_HOUR, np.nan)
+        precession = run.turn / swings * DEGREES_PER_HOUR  # 0/0 of a single point, and so below
+        vertical = -rows.turn[:, 2, 0] * DEGREES_PER_HOUR
         columns = {
             "steps": run.steps,
             "transits": run.transits,
@@ -273,9 +269,9 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
             "t_first_s": run.t_first,
             "t_last_s": run.t_last,
             "transit_error_s": errors.transit,
-            "frequency_hz": np.where(run.transits > 1, (run.transits - 1) / (2 * span), np.nan),
+            "frequency_hz": (run.transits - 1) / (2 * span),
             "frequency_error_hz": errors.frequency,
-            "swing_hz": np.where(run.apsides > 1, (run.apsides - 1) / (2 * swings), np.nan),
+            "swing_hz": (run.apsides - 1) / (2 * swings),
             "swing_error_hz": errors.swing,
             "precession_deg_per_h": precession,
             "precession_error_deg_per_h": errors.precession,
@@ -291,10 +287,7 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
 
 
 def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[str, Any], Any]:
-    """Return columns with each error an ulp of its numbers larger, for the rounding, and where a number has no error.
-
-    There neither stands.
-    """
+    """Return columns, each error an ulp of its numbers larger, and where a number has none: there neither stands."""
     unknown: Any = False
     for name in {column.error for column in described if column.error}:
         own = [column.name for column in described if column.error == name]

@@ -1,34 +1,31 @@
 """A row solved by itself in as many digits as asked for: where double leaves a doubt, or for a level, or for an audit.
 
-An audit solves a sample of the rows again: does the truth lie within the errors that were estimated? Highest points
-are zeros of the height's rate in the Taylor steps of further runs: the finer of two gives them, the coarser their
-errors. Between its extremes the rate is monotone, so that signs miss none; they are zeros of its derivative, found
-alike.
+An audit solves a sample of the rows again: does the truth lie within the errors that were estimated?
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby
-from math import factorial
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import CLOSE_PAIR, Outcomes, PlumbAxes, Rows, plumb_line
-from ..engines.registry import fastest
-from ..engines.row_zeros import HEIGHT, RowMotion, RowRelease, RowZeros, Samples, describe_highest_points
-from ..errors import FoucaultError, IntegrationError
-from ..model.constants import constants
-from ..numbers.columns import POSITION, STATE, VELOCITY
-from ..numbers.precision import GUARD_BITS, Array, context
-from ..numbers.taylor_step import EARTH, TaylorStep
+from ..engines.batch_interface import CLOSE_PAIR, LEAST_BEND, Outcomes, PlumbAxes, Rows, turned
+from ..engines.row_zeros import RowMotion
+from ..errors import FoucaultError, UnreachableError
+from ..model.algebra import add, cross
+from ..model.constants import Constants
+from ..numbers.columns import POSITION, SECTION, STATE, VELOCITY
+from ..numbers.double_double import DoubleDouble
+from ..numbers.precision import Array
+from ..numbers.table import Table
 from ..scenes.fields import LEVELS, Level
-from ..scenes.inputs import Inputs
-from ..solver.proof_steps import COEFFICIENT_BITS
+from ..scenes.scene import Scene
 from ..solver.solution import Solution
 from ..status import Status
 from .estimate import Errors, columns_of, of_swing, passages_listed
@@ -38,95 +35,18 @@ from .row_constants import engine_rows
 LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
 DIGITS = 17  # that show a double
 AUDIT_DIGITS = 28  # at about 110 bits
-PRECS = (128, 256, 384)  # bits of the runs: two in turn, until they differ by rounding alone
-SAFETY = 4  # times what two runs differ by
-SAMPLES = 8  # of a step, at which signs of the derivative `TOP` of the height are compared
-TOP = 4
-MOST_REFINEMENTS = 60  # of a zero: a step of Newton's method that leaves its bracket halves it
-NEGLIGIBLE = 2.0**-64  # coefficients beside the largest, in double
-ROUNDING = 2.0**-48  # of the sum of a polynomial's terms in double
+MORE_DIGITS = 11  # for highest points, whose height is of second order, also after a swing has died down
+SOON = 1e-4  # of a radian of the swing after the release
+HIGHEST = "highest"  # the section that tells the swing
 
 
-@dataclass(frozen=True)
-class PlumbCourse:
-    """The motion in the axes of the plumb line: when steps begin, their units h in s, and n's series, (steps, 3, …)."""
-
-    starts: Array
-    h: Array
-    series: Array
-
-    @classmethod
-    def of(cls, steps: Iterable[TaylorStep], inputs: Inputs) -> Self:
-        """Turn steps to these axes exactly: of a swing however small the rate of the height keeps its digits."""
-        rows: list[Array] = []
-        places = []
-        for step in steps:
-            if not rows:
-                one, (a, b) = 1 << step.bits, _axes(step, inputs)
-            x, m, w, *_ = (np.array(row, object) for row in step.coefficients)
-            # doubles at once: the integers of a day's steps fill gigabytes
-            rows.append((np.array([x, (b * m - a * w) // one, (a * m + b * w) // one]) / one).astype(float))
-            places.append((float(step.centre), float(step.h)))
-        series, (starts, h) = np.array(rows), np.array(places).T
-        sizes = np.abs(series).max(axis=0)
-        needed = np.flatnonzero((sizes > NEGLIGIBLE * sizes[:, 1:].max(axis=1, keepdims=True)).any(axis=0))[-1] + 1
-        return cls(starts, h, series[:, :, :needed])
-
-    def derivatives(self, times: Array) -> list[Array]:
-        """Return n and its derivatives to `TOP` and one more, each of shape (3, times)."""
-        step = np.maximum(np.searchsorted(self.starts, times, "right") - 1, 0)
-        h = self.h[step]
-        s, sums = (times - self.starts[step]) / h, [np.zeros((3, len(times)))] * (TOP + 2)
-        for k in range(self.series.shape[2] - 1, -1, -1):
-            sums = [total * s + lower for total, lower in zip(sums, [self.series[step, :, k].T, *sums], strict=False)]
-        return [part * factorial(i) / h**i for i, part in enumerate(sums)]
-
-    def rounding(self, times: Array) -> tuple[Array, Array]:
-        """Return what sums in double may leave out of the distance from the plumb line over l, and of the rate u'."""
-        step = np.maximum(np.searchsorted(self.starts, times, "right") - 1, 0)
-        sizes = ROUNDING * np.abs(self.series[step])
-        return sizes[:, :2].sum(axis=(1, 2)), sizes[:, 2] @ np.arange(sizes.shape[2]) / self.h[step]
-
-    def at(self, times: Array) -> RowMotion:
-        """Return the motion at some times."""
-        return RowMotion(*map(tuple, self.derivatives(times)[:3]))
-
-    def crossings(self, order: int, times: Array, first: float = 0.0) -> RowZeros:
-        """Return the zeros of a derivative of the height that signs at times tell; `first` replaces the first sign."""
-        values = self.derivatives(times)[order][2]
-        values[0] = first or values[0]
-        times, values = times[values != 0], values[values != 0]  # a zero may be hit, and has no sign
-        before = np.flatnonzero(values[:-1] * values[1:] < 0)
-        low, high, sign = times[before], times[before + 1], np.sign(values[before])
-        t = (low + high) / 2
-        for _ in range(MOST_REFINEMENTS):
-            value, slope = (part[2] for part in self.derivatives(t)[order : order + 2])
-            same = value * sign > 0
-            low, high, last = np.where(same, t, low), np.where(same, high, t), t
-            t = t - value / slope
-            t = np.where((low < t) & (t < high), t, (low + high) / 2)
-            if (np.abs(t - last) <= np.spacing(t)).all():
-                break
-        return RowZeros(t, -sign)
-
-
-def _axes(step: TaylorStep, inputs: Inputs) -> tuple[int, int]:
-    """Return the plumb line's two components in the axes of a step, as integers in units of 2^-bits."""
-    ctx = context(step.bits + GUARD_BITS)
-    k = constants(inputs, ctx)
-    up = plumb_line(*k.pull[1:], ctx.norm(k.pull), 0)
-    if step.columns == EARTH and k.rate:
-        up = up[0] * k.sin - up[1] * k.cos, up[0] * k.cos + up[1] * k.sin
-    return int(up[0] * (1 << step.bits)), int(up[1] * (1 << step.bits))
-
-
-def outcomes_of(solution: Solution, rows: Rows, apsides: bool) -> tuple[Outcomes, Errors]:
-    """Return what became of a row, and its errors; `apsides` says whether its highest points are wanted."""
+def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
+    """Return what became of a row, and its errors; of its swing where the solution has its highest points."""
     grid, transits, run = solution.grid, solution.transits, Outcomes.empty(1)
-    late = turned = leaning = transit = frequency = np.full(1, np.nan)
+    position, velocity = (_norm(grid.largest_bounds(), kind) for kind in (POSITION, VELOCITY))
+    transit = frequency = np.full(1, np.nan)
     with np.errstate(all="ignore"):
-        if apsides and 0 < rows.rate < np.inf:
-            run, (late, turned, leaning) = _highest(rows, solution)
+        swing, precession, angle = _swing(run, rows, solution, position)
         run.steps[0], run.state[0] = solution.run.steps, [grid[name][-1] for name in STATE]
         if transits is not None and solution.directions:
             t = transits["t"]
@@ -134,48 +54,47 @@ def outcomes_of(solution: Solution, rows: Rows, apsides: bool) -> tuple[Outcomes
             run.close_pairs[0] = np.count_nonzero(np.diff(t) < CLOSE_PAIR * 2 * np.pi / rows.rate)
             transit = float(max(transits.bound("t"))) + np.spacing(run.t_last)
             frequency = np.where(len(t) > 1, (len(t) - 1) * transit / (t[-1] - t[0]) ** 2, np.nan)
-        swing = of_swing(run, late, turned)
     none = np.zeros(1, bool)
-    position, velocity = (_norm(grid.largest_bounds(), kind) for kind in (POSITION, VELOCITY))
-    return run, Errors(position, velocity, transit, frequency, *swing, np.degrees(leaning), none, none)
+    return run, Errors(position, velocity, transit, frequency, swing, precession, np.degrees(angle), none, none)
 
 
-def _highest(rows: Rows, solution: Solution) -> tuple[Outcomes, Array]:
-    """Return the highest points, and how late, turned and leaning they may be, in s and rad, shape (3, 1)."""
-    run, errors, before = Outcomes.empty(1), np.full((3, 1), np.nan), np.full((5, 1), np.inf)
-    for prec in PRECS:
-        try:
-            run, rounding = _of_run(rows, solution, prec)
-        except IntegrationError:
-            continue
-        seen = np.array([run.apsides, run.apsis_first, run.apsis_last, run.turn, run.largest_angle])
-        (count, first, *others), before = np.abs(seen - before), seen
-        gaps = np.array([np.fmax(first, others[0]), *others[1:]])
-        errors = SAFETY * gaps + rounding + np.where(count > 0, np.inf, 0.0)
-        if not (count > 0) and not (gaps > rounding).any():
-            break
-    return run, errors
+def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tuple[Array, Array, Array]:
+    """Fill in the highest points and the largest angle, also of release and end; return the errors of what they tell.
 
-
-def _of_run(rows: Rows, solution: Solution, prec: int) -> tuple[Outcomes, Array]:
-    """Return the highest points of a run, and what rounding may do to their times, their turn and the largest angle."""
-    run, inputs = Outcomes.empty(1), solution.scene.exact
-    engine = fastest(prec, steps=solution.run.steps)
-    course = PlumbCourse.of(engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS), inputs)
-    release = RowRelease.of(rows, PlumbAxes.of(rows), 0, course.at(np.zeros(1))[0])
-    times = np.linspace(0, release.end, SAMPLES * len(course.starts) + 1)
-    samples = Samples(times, course.at(times), complete=True)
-    for order in range(TOP, 1, -1):
-        times = np.sort(np.concatenate([times, course.crossings(order, times).times]))
-    zeros = course.crossings(1, times, release.signs[HEIGHT])
-    describe_highest_points(run, 0, release, zeros, course.at(zeros.times), samples)
-    t = zeros.times[zeros.directions < 0]
-    reach, slow = course.rounding(t)
-    (x, p, _), (vx, vp, _), (*_, fall) = course.derivatives(t)[:3]
-    late = slow / -fall + 2 * np.spacing(t)
-    turned = reach / np.hypot(x, p) + np.abs(x * vp - p * vx) / (x * x + p * p) * late
-    leaning = course.rounding(course.starts)[0]
-    return run, np.array([[2 * np.max(late, initial=0)], [4 * np.max(turned, initial=0)], [2 * leaning.max()]])
+    These are those of frequency and precession, as in `Errors`, and of the angle in rad. Where a highest point grazes,
+    its time has no bound, and its angle that of the grid, `position` in m. One so soon after the release that no digit
+    tells it, as the exact inputs do, counts as the release. On a cone, which has none, release and end tell the angle.
+    """
+    found, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
+    decided, points = found and not found.possible, found.table if found else Table(SECTION, 0, [])
+    length, turn = solution.scene.exact.length, (0, axes.turn[0].high, axes.turn[1].high)
+    states = [
+        DoubleDouble.of(q / length for q in (grid.exact(name)[0], *points.exact(name), grid.exact(name)[-1]))
+        for name in STATE
+    ]
+    n, v = (
+        (east.high, *(part.high for part in turned(north, up, axes.sin, axes.cos)))
+        for east, north, up in (states[:3], states[3:])
+    )
+    k = Constants(turn=turn, pull=(0, 0, -axes.size.high), drag=rows.drag[:, 0])
+    motion = RowMotion.of([*n, *cross(n, add(v, cross(turn, n)))], k)
+    (x, p, u), fall = motion.n, -motion.a[2]
+    across, azimuth = np.hypot(x, p), np.arctan2(p, x)
+    run.largest_angle[0] = np.arctan2(across, -u).max()
+    t, soon = np.append(0.0, points["t"]), SOON / rows.rate
+    untold = rows.rising[0] > 0 and abs(motion.v[2][0]) < soon * fall[0] and not (t[1:2] < 2 * soon).any()
+    high = slice(0 if untold else 1, -1)
+    t, azimuth = t[high.start :], azimuth[high]
+    bent = fall >= LEAST_BEND * (rows.rate * across) ** 2
+    if decided and len(t) and bent[high].all():
+        run.apsides[0], run.apsis_first[0], run.apsis_last[0] = len(t), t[0], t[-1]
+        run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(np.round(np.diff(azimuth) / np.pi))
+    late = np.max(np.array(points.bound("t"), float), initial=0) + np.spacing(run.apsis_last)
+    off = np.linalg.norm([np.array(points.bound(name), float) for name in POSITION], axis=0)
+    aside = np.max(off / (across[1:-1] * float(length)), initial=0) + np.spacing(2 * np.pi)
+    reach = np.max(off, initial=position[0])
+    leaning = np.where(reach < length, reach, position) / float(length) + np.spacing(run.largest_angle)
+    return *of_swing(run, late, aside), np.where(decided or not (found or bent.any()), leaning, np.nan)
 
 
 def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:
@@ -207,40 +126,51 @@ def promoted(
         level: a level instead of the request's.
         digits: digits instead of the request's.
     """
-    from ..solver.solve import solve
-
     wished = level or request.level
     if doubtful:
         wished = max(wished, LEAST_LEVEL, key=LEVELS.index)
     digits = digits or request.digits or DIGITS
     try:
-        scene = request.scene_of(row)
-        solution = solve(scene, level=wished, digits=digits, transits=request.wanted.transits)
+        settings = {"run.level": wished, "run.transits": request.wanted.transits}
+        solution = _solved(request.scene_of(row).with_values(settings), digits, request.wanted.apsides)
     except FoucaultError as error:
         return Promoted({}, ([], []), str(error))
-    undecided = [word for word, found in solution.sections.items() if found.possible]
+    undecided = [word for word in request.sections if solution.sections[word].possible]
     if undecided:
         return Promoted({}, ([], []), f"{', '.join(undecided)}: the proof does not decide how many passages there are.")
-    return Promoted(_values(request, row, solution), _times(solution))
+    times = [float(t) for t in solution.transits.exact("t")]
+    return Promoted(_values(request, row, solution), (times, list(solution.directions)))
+
+
+def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
+    """Return a scene solved, with its highest points where its swing is wanted, and more digits if they need these.
+
+    They are left out where these do not tell them either, as on a cone, where there are none.
+    """
+    from ..solver.solve import solve
+
+    sections = scene.run.sections or ()
+    if swing and HIGHEST not in sections:
+        for more in (0, MORE_DIGITS):
+            with suppress(UnreachableError):
+                return solve(scene, digits=digits + more, sections=[*sections, HIGHEST])
+    return solve(scene, digits=digits)
 
 
 def _values(request: Request, row: int, solution: Solution) -> dict[str, Any]:
     """Return the columns of a row that was solved."""
     rows = engine_rows(request.scene, request.table, [row])
-    columns, _ = columns_of(rows, *outcomes_of(solution, rows, request.wanted.apsides))
-    for word, found in solution.sections.items():
-        t, directions = found.table["t"], np.array(found.directions, int)
-        error = np.array([float(max(found.table.bound("t"), default=np.nan)) + np.spacing(np.max(t, initial=0))])
+    columns, _ = columns_of(rows, *outcomes_of(solution, rows))
+    for word in request.sections:
+        table, directions = solution.sections[word].table, np.array(solution.sections[word].directions, int)
+        t = table["t"]
+        error = np.array([float(max(table.bound("t"), default=np.nan)) + np.spacing(np.max(t, initial=0))])
         columns |= passages_listed(word, error, np.zeros(len(t), int), t, directions)[0]
     return {name: values[0] for name, values in columns.items()} | {
         "level": solution.level,
         "engine": solution.run.engine,
         "digits": solution.scene.run.digits,
     }
-
-
-def _times(solution: Solution) -> tuple[list[float], list[int]]:
-    return [float(t) for t in solution.transits.exact("t")], list(solution.directions)
 
 
 @dataclass(frozen=True)

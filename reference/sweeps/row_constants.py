@@ -28,7 +28,6 @@ Columns = Mapping[str, DoubleDouble]
 
 SITE = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
 POSITION, ANGLES = RELEASES.values()
-_NEARLY = 1e-9
 _SAME = 2.0**-94  # of the parts of a sum: if it is less, it is zero
 _NEWTON_STEPS, _CLOSE = 8, 2.0**-94  # to a rest position, in rad: the last step is at most as long
 _ZERO = DoubleDouble(np.zeros(1), np.zeros(1))
@@ -193,13 +192,6 @@ def _rest_position(k: Constants) -> Vector:
 
 def _balanced(n: Vector, k: Constants) -> Any:
     """Return where the force on the bob at rest has no component along the sphere: see `model.start.xdot_vanishes`."""
-    # in double first: few rows come near it
-    rough = k.converted(lambda value: getattr(value, "high", value))
-    high = (n[0].high, n[1].high, n[2].high)
-    pushed = force(high, (0, 0, 0), rough)
-    near = sum(map(abs, cross(high, pushed))) <= _NEARLY * sum(map(abs, pushed))
-    if not np.any(near):
-        return near
     across = cross(n, force(n, (0, 0, 0), k))
     return across[0].vanishes & across[1].vanishes & across[2].vanishes
 
