@@ -1,7 +1,8 @@
 """Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall).
 
 The limit on its output is that on any candidate's text (`text.MAX_BYTES`). Its descendants normally stay in its
-process group. One that begins a group or a session of its own is found as long as its parents run.
+process group. One that forks into a session of its own leaves the group, and its parent may have exited: it is
+recognised by a mark in the environment that it inherited.
 """
 
 from __future__ import annotations
@@ -9,14 +10,16 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import secrets
 import shlex
 import signal
 import statistics
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from reference import InputError, Scene
 from reference.errors import did_you_mean
@@ -25,12 +28,17 @@ from reference.system.interruption import terminable
 
 from .text import MAX_BYTES
 
+if TYPE_CHECKING:
+    from psutil import Process
+
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 SETTING = "{setting}"  # stands in a command for the step, tolerance or precision that is varied
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0
 REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
+MARK = "FOUCAULT_RUN"  # the variable of the environment that holds the marks of a run and of those around it
+ROUNDS = 100  # searches for descendants at most: a process may be started while the others are killed
 _TAIL = 400  # characters of stderr that a message quotes
 _FOR_A_SHELL = re.compile(r"\|.*|&&?|;|(\d*|&)[<>].*")  # unquoted words that only a shell obeys
 _NO_SHELL = "No shell is used. Put the words into quotes if they are meant as they stand, or run sh -c '...'."
@@ -114,7 +122,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     Raises:
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
     """
-    start = time.monotonic()
+    start, mark = time.monotonic(), secrets.token_hex(16)
     with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
         try:
@@ -123,6 +131,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=errors,
+                env={**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()},
                 start_new_session=True,
             )
         except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
@@ -133,7 +142,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
                 usage, exceeded = _end_of(process, (output, errors), timeout_s)
         finally:
             wall = time.monotonic() - start
-            _end_all(process)  # what it left running in the background
+            _end_all(process.pid, mark)  # what it left running in the background
             process.wait()
         tail = _tail(errors)
         if exceeded is not None:
@@ -167,23 +176,34 @@ def _end_of(
         elif max(os.fstat(stream.fileno()).st_size for stream in streams) > MAX_BYTES:
             exceeded = InputError, f"at most {MAX_BYTES} bytes of output"
         if exceeded is not None:
-            _end_all(process)
+            os.kill(process.pid, signal.SIGKILL)  # Popen.kill would take the status that is waited for
         time.sleep(min(0.02, waited / 50))
 
 
-def _end_all(process: subprocess.Popen[bytes]) -> None:
-    """Kill a process group and, while its leader runs, the descendants that have left it."""
+def _end_all(leader: int, mark: str) -> None:
+    """Kill a process group, and every process with the mark, until none is left."""
     import psutil
 
-    left = []
-    with contextlib.suppress(psutil.Error):
-        if process.returncode is None:
-            left = psutil.Process(process.pid).children(recursive=True)
     with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-    for child in left:
-        with contextlib.suppress(psutil.Error):
-            child.kill()
+        os.killpg(leader, signal.SIGKILL)
+    for _ in range(ROUNDS):
+        left = list(_marked(mark))
+        for process in left:
+            with contextlib.suppress(psutil.Error):
+                process.kill()
+        if not left:
+            return
+        psutil.wait_procs(left, timeout=0.1)
+
+
+def _marked(mark: str) -> Iterator[Process]:
+    """Yield the processes of this user that have the mark."""
+    import psutil
+
+    for process in psutil.process_iter(["environ", "status"]):
+        ended = process.info["status"] == psutil.STATUS_ZOMBIE
+        if not ended and mark in (process.info["environ"] or {}).get(MARK, ""):
+            yield process
 
 
 def _tail(errors: BinaryIO) -> str:

@@ -15,7 +15,7 @@ import pytest
 from interruption import PATIENCE_S, gone_within, interrupted
 from small_scenes import make_scene
 
-from compare.candidates.external import arguments, placeholders, run_program, timed
+from compare.candidates.external import MARK, arguments, placeholders, run_program, timed
 from reference import InputError
 
 
@@ -155,23 +155,33 @@ def test_what_a_program_leaves_running_is_ended(tmp_path):
     assert ends_within(int(note.read_text()), PATIENCE_S)
 
 
-SESSION = """
+DAEMON = """
 import os, signal, sys, time
 if os.fork() == 0:
     os.setsid()
-    with open(sys.argv[1], "w") as note:
-        note.write(f"{os.getpid()} {os.getsid(0)}")
-signal.pause()
+    if os.fork() == 0:
+        with open(sys.argv[1], "w") as note:
+            note.write(f"{os.getpid()} {os.getsid(0)}")
+        signal.pause()
+    os._exit(0)
+os.wait()
+while not (os.path.exists(sys.argv[1]) and open(sys.argv[1]).read()):
+    time.sleep(0.01)
 """
 
 
-def test_what_begins_a_session_of_its_own_is_ended_as_well(tmp_path):
+@pytest.mark.parametrize(("then", "late"), [("signal.pause()", True), ("print('done')", False)])
+def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, late):
     note = tmp_path / "pid"
-    with pytest.raises(InputError, match="--timeout"):
-        run_program([*python(SESSION), str(note)], timeout_s=4)
+    words = [*python(DAEMON + then), str(note)]
+    if late:
+        with pytest.raises(InputError, match="--timeout"):
+            run_program(words, timeout_s=4)
+    else:
+        run_program(words)[0].close()
     pid, session = map(int, note.read_text().split())
     assert session != os.getsid(0)
-    assert ends_within(pid, PATIENCE_S)
+    assert not alive(pid)  # at once: nothing of it runs on when this returns
 
 
 def test_nobody_elses_processes_are_ended_with_a_program():
@@ -179,6 +189,15 @@ def test_nobody_elses_processes_are_ended_with_a_program():
         run_program(python("print(1)"))[0].close()
         assert alive(bystander.pid)
         bystander.kill()
+
+
+def test_a_program_within_a_program_has_the_marks_of_both(monkeypatch):
+    monkeypatch.setenv(MARK, "outer")
+    output, _, _ = run_program(python(f"import os; print(os.environ[{MARK!r}])"))
+    with output:
+        outer, inner = output.read().split()
+    assert outer == b"outer"
+    assert len(inner) == 32
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
