@@ -12,6 +12,7 @@ The number of bytes and rows and the length of a line are limited. Errors name t
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import sys
@@ -88,6 +89,8 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
     with ExitStack() as stack:
         try:
             if str(source) == "-":
+                if sys.stdin is None:
+                    raise OSError(errno.EBADF, "Standard input is closed")
                 stream, name = sys.stdin.buffer, "standard input"
             else:
                 stream, name = stack.enter_context(open_at_once(Path(source))), plain(str(source))
