@@ -313,10 +313,13 @@ def test_the_output_of_a_program_is_read_from_a_pipe_also_if_it_comes_late(monke
     os.close(reader)
 
 
-def test_a_path_that_no_file_can_have_is_refused():
+def test_a_path_that_no_file_can_have_and_a_closed_standard_input_are_refused(monkeypatch):
     for path in ("a\0b", "\ud800"):
         with pytest.raises(InputError, match="No file has this path"):
             read(path)
+    monkeypatch.setattr("sys.stdin", None)
+    with pytest.raises(InputError, match="Standard input is closed"):
+        read("-")
 
 
 def test_a_device_without_end_is_refused_at_once():
