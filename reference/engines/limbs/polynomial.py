@@ -1,4 +1,4 @@
-"""A polynomial in double precision: its character on an interval, a crossing of zero, an extremum."""
+"""A polynomial in double precision: its character on an interval, a crossing of zero."""
 
 from __future__ import annotations
 
@@ -9,21 +9,6 @@ HALVINGS = 60  # more than a double has bits
 
 # of a polynomial on an interval: without a zero; monotone; convex or concave; none of these can be told
 FREE, MONOTONE, CONVEX, UNDECIDED = range(4)
-
-
-@compiled
-def recentre(g: Array, f: Array, size: int, low: float, high: float) -> None:
-    """Write to g the polynomial f in u, where -1 <= u <= 1 leads from `low` to `high`."""
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    for k in range(size):
-        g[k] = f[k]
-    for i in range(size - 1):
-        for k in range(size - 2, i - 1, -1):
-            g[k] += middle * g[k + 1]
-    power = 1.0
-    for k in range(size):
-        g[k] *= power
-        power *= half
 
 
 @compiled
@@ -57,15 +42,6 @@ def value_at(g: Array, size: int, u: float) -> float:
 
 
 @compiled
-def slope_at(g: Array, size: int, u: float) -> float:
-    """Return the polynomial's derivative."""
-    value = 0.0
-    for k in range(size - 1, 0, -1):
-        value = value * u + k * g[k]
-    return value
-
-
-@compiled
 def crossing(g: Array, size: int, low: float, high: float, before: int) -> float:
     """Return where the polynomial changes sign between `low` and `high`: Newton's method, safeguarded by bisection."""
     u = 0.5 * (low + high)
@@ -84,17 +60,3 @@ def crossing(g: Array, size: int, low: float, high: float, before: int) -> float
             return new
         u = new
     return u
-
-
-@compiled
-def extremum(g: Array, size: int) -> float:
-    """Return where the slope of a convex or concave polynomial changes sign on -1 <= u <= 1, or the nearer end."""
-    low, high = -1.0, 1.0
-    rising = slope_at(g, size, 1.0) > 0.0
-    for _ in range(HALVINGS):
-        u = 0.5 * (low + high)
-        if (slope_at(g, size, u) > 0.0) == rising:
-            high = u
-        else:
-            low = u
-    return high
