@@ -8,11 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from reference.engines.limbs.lanes import LANES
-from reference.engines.limbs.limb import RADIX, UNIT, Array
-from reference.engines.limbs.problem import limb_problem
+from reference.engines.limbs.limb import Array
 from reference.engines.limbs.run import Integration
 from reference.engines.limbs.size import LIMB_BITS
+from reference.engines.plan import Plan
 from reference.errors import InputError
+from reference.numbers.precision import NumberType
 from reference.scenes.inputs import Inputs
 
 STATES_BITS = 93  # the precision that five limbs hold of a swing of half a metre below 67 m
@@ -39,12 +40,12 @@ def states(inputs: Inputs, times: npt.ArrayLike, bits: int = STATES_BITS) -> tup
         raise InputError("times", moments.shape, "a list of finite numbers, at least one")
     if moments[0] < 0 or (np.diff(moments) <= 0).any():
         raise InputError("times", "a list that decreases or is negative", "increasing numbers from 0 on")
-    problem = limb_problem(inputs, bits)
-    limb_count = problem.model.limb_count
-    whole, remainders = limbs_of_doubles(moments, float(problem.grain), limb_count)
-    integration = Integration(problem, whole, remainders, seek=False)
+    exact_times = tuple(map(Fraction, moments.tolist()))
+    integration = Integration(Plan(inputs, "inertial", NumberType("limbs", bits), exact_times, transits=False))
     integration.finish(None)
-    rows = integration.out.states.reshape(len(whole), limb_count, LANES)[:, :, :6]
+    problem = integration.problem
+    limb_count = problem.model.limb_count
+    rows = integration.out.states.reshape(len(moments), limb_count, LANES)[:, :, :6]
     high, low = _two_doubles(rows, limb_count)
     length = inputs.length
     factors = [length / problem.unit**power for power in (0, 1)]
@@ -52,18 +53,6 @@ def states(inputs: Inputs, times: npt.ArrayLike, bits: int = STATES_BITS) -> tup
     top = np.array([parts[i // 3][0] for i in range(6)])
     bottom = np.array([parts[i // 3][1] for i in range(6)])
     return _product(high, low, top, bottom)
-
-
-def limbs_of_doubles(times: Array, grain: float, limb_count: int) -> tuple[npt.NDArray[np.int64], Array]:
-    """Return times in s as whole grains and the limbs of the remainders; exact, as the grain is a power of two."""
-    scaled = times / grain
-    whole = np.floor(scaled)
-    left = (scaled - whole) * UNIT
-    limbs = np.zeros((len(times), limb_count))
-    for q in range(limb_count):
-        limbs[:, q] = np.rint(left)
-        left = (left - limbs[:, q]) * RADIX
-    return whole.astype(np.int64), limbs.ravel()
 
 
 def _two_doubles(rows: Array, limb_count: int) -> tuple[Array, Array]:

@@ -155,8 +155,8 @@ def sign_of_xdot(now: Array, turn: Array, s: Series, limb_count: int) -> int:
 
 
 @compiled
-def sign_after_release(s: Series, multiplicity: int, limb_count: int) -> int:
-    """Return the sign of xdot just after a release at which it has a zero of this multiplicity."""
+def sign_at_start(s: Series, multiplicity: int, limb_count: int) -> int:
+    """Return the sign of xdot at a step's start, or just after it where it has a zero of this multiplicity there."""
     block = (multiplicity + 1) * limb_count * LANES
     for q in range(limb_count):
         s.scalar[q] = s.c[block + LANES * q + X]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...system.machine_code import kept
-from .dense_output import divide_place, evaluate, sign_after_release, sign_of_xdot, to_cartesian
+from .dense_output import divide_place, evaluate, sign_at_start, sign_of_xdot, to_cartesian
 from .lanes import LANES, OPTIONS, load, merged, store
 from .limb import Array, aligned
 from .recurrence import taylor_coefficients
@@ -139,7 +139,7 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
         m = counts[LENGTH]
         sum_series(state.rows, s, order, limb_count)
         if seek and counts[STEPS] == 0:
-            counts[SIGN] = _first_sign(state, model)
+            counts[SIGN] = sign_at_start(s, counts[MULTIPLICITY], limb_count)
         project(state.now, state.rows, s, m, limb_count)
         if seek and not _write_zeros(state, model, out):
             return DOUBTFUL
@@ -156,14 +156,6 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
         if counts[TIME] >= until:
             return GOOD
     return FULL
-
-
-@merged
-def _first_sign(state: MarchState, model: Model) -> int:
-    """Return the sign of xdot at release, or just after it."""
-    if state.counts[MULTIPLICITY] > 0:
-        return sign_after_release(state.s, state.counts[MULTIPLICITY], model.limb_count)
-    return sign_of_xdot(state.now, model.terms.turn, state.s, model.limb_count)
 
 
 @merged

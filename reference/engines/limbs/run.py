@@ -24,7 +24,7 @@ from ..plan import AT_REST, Pace, Plan, Report, Run
 from .lanes import LANES
 from .limb import Array, aligned, joined, split
 from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
-from .problem import LimbProblem, limb_problem
+from .problem import limb_problem
 from .series import TENSION, Counts, M, W, X
 from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
@@ -43,34 +43,33 @@ def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: i
 
     Shapes (times,) and (times * limb_count,).
     """
-    bits = fraction_bits(limb_count)
-    parts = [divmod(t.numerator * grain.denominator, t.denominator * grain.numerator) for t in times]
-    whole = np.array([top for top, _ in parts], dtype=np.int64)
-    pairs = zip(times, parts, strict=True)
-    remainders = [(remainder << bits) // (t.denominator * grain.numerator) for t, (_, remainder) in pairs]
-    return whole, split(remainders, limb_count).ravel()
+    unit = 1 << fraction_bits(limb_count)
+    fixed = [unit * t.numerator * grain.denominator // (t.denominator * grain.numerator) for t in times]
+    whole, remainders = zip(*(divmod(t, unit) for t in fixed), strict=True)
+    return np.array(whole, dtype=np.int64), split(remainders, limb_count).ravel()
 
 
 class Integration:
-    """An integration in progress: problem, state and output arrays.
+    """The integration of a plan, at its release or in progress: problem, state and output arrays.
 
     Args:
-        problem: what to integrate.
-        whole, remainders: output times in whole grains, and the limbs of the remainders.
-        seek: whether zeros of xdot are looked for.
+        plan: what to integrate.
         polynomials: for how many steps of each call of `advance` the coefficients are kept.
+        order: of the series; None for the cheapest.
+
+    Raises:
+        InputError: more bits than limbs can hold.
     """
 
-    def __init__(
-        self,
-        problem: LimbProblem,
-        whole: Counts,
-        remainders: Array,
-        seek: bool,
-        polynomials: int = 0,
-    ) -> None:
-        self.problem, self.seek = problem, seek
+    def __init__(self, plan: Plan, polynomials: int = 0, order: int | None = None) -> None:
+        prec = plan.number.prec
+        if prec > MOST_PREC:
+            advice = "Use the engine heyoka for more digits."
+            raise InputError("precision", prec, f"at most {MOST_PREC} bits", advice)
+        self.problem = problem = limb_problem(plan.inputs, prec, order, plan.other_steps)
+        self.seek = seek = plan.transits and not xdot_vanishes(problem.start)
         limb_count, model = problem.model.limb_count, problem.model
+        whole, remainders = limbs_of_fractions(plan.times, problem.grain, limb_count)
         multiplicity = zero_at_release(problem.start) if seek else 0
         self.state = state_at_release(problem.state, problem.first, multiplicity, model)
         room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
@@ -142,22 +141,6 @@ class Integration:
         return joined(limbs[:, :COLUMNS])
 
 
-def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -> Integration:
-    """Return the integration of a plan, at its release.
-
-    Raises:
-        InputError: more bits than limbs can hold.
-    """
-    if plan.number.prec > MOST_PREC:
-        raise InputError(
-            "precision", plan.number.prec, f"at most {MOST_PREC} bits", "Use the engine heyoka for more digits."
-        )
-    problem = limb_problem(plan.inputs, plan.number.prec, order, plan.other_steps)
-    whole, remainders = limbs_of_fractions(plan.times, problem.grain, problem.model.limb_count)
-    seek = plan.transits and not xdot_vanishes(problem.start)
-    return Integration(problem, whole, remainders, seek, polynomials)
-
-
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
     """Yield the Taylor steps of a run in order from t = 0, up to one beyond the last time; return its `Run`.
 
@@ -165,7 +148,7 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         plan: as for `run`.
         coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order follows.
     """
-    integration = integration_of(plan, POLYNOMIALS_PER_CALL, round(ORDER_PER_BIT * coefficient_bits))
+    integration = Integration(plan, POLYNOMIALS_PER_CALL, round(ORDER_PER_BIT * coefficient_bits))
     integration.until = FOR_EVER
     spent, ahead = 0.0, False
     grain, limb_count, last = integration.problem.grain, integration.problem.model.limb_count, plan.times[-1]
@@ -202,7 +185,7 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
         InputError: more bits than limbs can hold.
         IntegrationError: zeros of xdot stay in doubt, or no step is short enough. No numbers then.
     """
-    integration = integration_of(plan)
+    integration = Integration(plan)
     cpu_start = time.process_time()
     integration.finish(report, pace)
     return result(integration, plan, cpu_start)

@@ -23,6 +23,7 @@ LEAST_FACTOR = 0.9  # a step with at least this step-size factor is accepted as 
 SAFETY_FACTOR = 0.98  # of the next length, against the one that the last coefficients allow
 RESOLVED = 4.0  # units of the last limb: smaller coefficients say nothing about the decay of the series
 KEEP_FROM, KEEP_TO = 0.94, 1.03  # the length stays as it is while the new one would be within these multiples of it
+STEADY = LinearTerms._fields.index("steady")
 LN_2, ROOT_HALF = 0.6931471805599453, 0.7071067811865476
 
 _swapped_halves = shuffled((3, 4, 5, 0, 1, 2, -1, -1), "_swapped_halves")
@@ -58,12 +59,8 @@ class Model(NamedTuple):
 @compiled
 def scale_terms(to: LinearTerms, model: Model, m: int) -> None:
     """Write the linear terms for a step of m grains."""
-    _scale(to.turn, model.terms.turn, model.powers.turn, m, model.limb_count, DOUBLED)
-    _scale(to.steady, model.terms.steady, model.powers.steady, m, model.limb_count, 1.0)
-    if model.drag:
-        _scale(to.drag, model.terms.drag, model.powers.drag, m, model.limb_count, DOUBLED)
-        _scale(to.drag_tension, model.terms.drag_tension, model.powers.drag_tension, m, model.limb_count, DOUBLED)
-        _scale(to.drag_axial, model.terms.drag_axial, model.powers.drag_axial, m, model.limb_count, DOUBLED)
+    for i in range(len(to)):
+        _scale(to[i], model.terms[i], model.powers[i], m, model.limb_count, 1.0 if i == STEADY else DOUBLED)
 
 
 @compiled

@@ -20,7 +20,7 @@ SWINGS = {
 @pytest.mark.parametrize("swing", SWINGS.values(), ids=SWINGS.keys())
 def test_the_witness_of_limbs_has_fewer_limbs_and_every_step_is_another(swing):
     pytest.importorskip("numba")
-    from reference.engines.limbs.run import integration_of
+    from reference.engines.limbs.run import Integration
 
     limbs, steps = engines()["limbs"], 16
     scene = make_scene(site={"rotation_rate": "0"}, release={"x": "0.3", "y": "0.4", **swing})
@@ -28,7 +28,7 @@ def test_the_witness_of_limbs_has_fewer_limbs_and_every_step_is_another(swing):
         published = limbs.plan(scene.exact, prec, (Fraction(0), Fraction(1000)), transits=False)
         witness = limbs.witness(published, prec - 16)
         assert witness.number.prec <= prec - 16
-        one, other = (integration_of(plan, steps) for plan in (published, witness))
+        one, other = (Integration(plan, steps) for plan in (published, witness))
         assert other.problem.model.limb_count < one.problem.model.limb_count
         assert other.problem.model.order < one.problem.model.order
         assert other.problem.model.tolerance > one.problem.model.tolerance or prec == 384
