@@ -137,13 +137,11 @@ class Places:
         falls = horner(rates, low, self.bits)[0] * side < 0
         if not falls or horner(rates, high, self.bits)[0] * side < 0:
             return 0
-        while high - low > 1:
-            middle = (low + high) // 2
-            low, high = (middle, high) if horner(rates, middle, self.bits)[0] * side < 0 else (low, middle)
-        bottom = horner(self.g, high, self.bits)[0]
+        flat = Places(rates, self.least, self.bits, self.word).root(low, high, -side)
+        bottom = horner(self.g, flat, self.bits)[0]
         if abs(bottom) <= self.least:
             raise self._grazes()
-        return high if bottom * side < 0 else 0
+        return flat if bottom * side < 0 else 0
 
     def root(self, low: int, high: int, before: int) -> int:
         """Return the zero between two places, by Newton's method, or by halving where that leaves them."""

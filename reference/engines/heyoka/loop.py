@@ -23,7 +23,8 @@ from ..row_zeros import (
     describe_highest_points,
     describe_transits,
 )
-from .system import as_pairs, keep_on_disk, rates
+from .model import Numbers
+from .system import as_pairs, rates
 
 PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
 STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
@@ -48,10 +49,8 @@ class Integrator:
             numbers = [hy.par[len(names) + i] for i in range(len(XDOT))]
             rate[TRANSIT] = RowMotion(n, v, v).form(numbers)[0]
         events = [hy.nt_event(rate[kind], _recorder(noted)) for kind, noted in self._events.items()]
-        keep_on_disk(DOUBLE)
-        self._ta: Any = hy.taylor_adaptive(
-            as_pairs(state, rates(MODEL, k)(state, hy)), np.zeros(len(state)), tol=tolerance, nt_events=events
-        )
+        system = as_pairs(state, rates(MODEL, k)(state, hy))
+        self._ta = Numbers(DOUBLE).integrator(system, [0.0] * len(state), tol=tolerance, nt_events=events)
         self._parameters = len(names)
 
     def begin(self, k: Constants, state: Any, form: Any) -> None:

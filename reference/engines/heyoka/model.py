@@ -6,7 +6,6 @@ The modules that make heyoka's arrays import this one, so that its memory handle
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from numbers import Real
@@ -84,6 +83,12 @@ class Numbers:
         """Return each number of an array as an integer over 2**bits, cut off towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
+    def integrator(self, system: Any, state: Sequence[Any], **options: Any) -> Any:
+        """Compile a system of pairs (variable, rate), or a variational one; return heyoka's integrator of it."""
+        keep_on_disk(self.number)
+        start = np.array(state, dtype=self.dtype)
+        return hy.taylor_adaptive(system, start, fp_type=self.type, **self.keywords, **options)
+
     def propagated(self, integrator: Any, times: Sequence[Any], **options: Any) -> tuple[Any, int]:
         """Return the states of a heyoka integrator at increasing times from its own on, and the number of steps.
 
@@ -135,16 +140,12 @@ class Propagator:
         system: Any = as_pairs(state, derivatives(tuple(state), hy, *extra))
         if varied:
             system = hy.var_ode_sys(system, [hy.par[0]], order=1)
-        keywords = dict(self.numbers.keywords)
+        options = {}
         if tolerance is not None:
             if not (isinstance(tolerance, Real) and 0 < tolerance < 1):
                 raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
-            keywords["tol"] = self.numbers.of(Fraction(tolerance))
-        started = time.process_time()
-        zeros = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
-        keep_on_disk(number)
-        self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)
-        self.compile_s = time.process_time() - started
+            options["tol"] = self.numbers.of(Fraction(tolerance))
+        self._ta = self.numbers.integrator(system, [self.numbers.of(0)] * len(state), **options)
         self.steps = 0
 
     def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:

@@ -18,7 +18,7 @@ from ...model.start import Start
 from ...numbers.precision import NumberType
 from ..plan import Pace, Report
 from .model import RoundedModel
-from .system import keep_on_disk, system_of
+from .system import system_of
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
 SHORT_RUN = 2000  # span times rate of a run beyond long double that is too short for optimised code to pay
@@ -62,9 +62,9 @@ class Stepper:
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
         equations, xdot = system_of(formulation, self.model.k)
-        keywords = dict(self.numbers.keywords)
+        options: dict[str, Any] = {}
         if span is not None and float(span) * start.rate < SHORT_RUN:
-            keywords["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
+            options["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
         if events:
             zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 
@@ -72,12 +72,9 @@ class Stepper:
                 integrator.update_d_output(t)
                 zeros.append(Zero(t, int(direction), integrator.d_output.copy()))
 
-            event = hy.nt_event(xdot, callback=record, fp_type=self.numbers.type)
-            keywords["nt_events"] = [event]
-        state = np.array(self.model.release(start), dtype=self.numbers.dtype)
+            options["nt_events"] = [hy.nt_event(xdot, callback=record, fp_type=self.numbers.type)]
         started = time.process_time()
-        keep_on_disk(number)
-        self._ta: Any = hy.taylor_adaptive(equations, state, fp_type=self.numbers.type, **keywords)
+        self._ta = self.numbers.integrator(equations, self.model.release(start), **options)
         self.compile_s = time.process_time() - started
         self.order = int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
