@@ -140,7 +140,7 @@ class Propagator:
         system: Any = as_pairs(state, derivatives(tuple(state), hy, *extra))
         if varied:
             system = hy.var_ode_sys(system, [hy.par[0]], order=1)
-        options = {}
+        options: dict[str, Any] = {}
         if tolerance is not None:
             if not (isinstance(tolerance, Real) and 0 < tolerance < 1):
                 raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
