@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -23,6 +23,7 @@ OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time
 _SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
 _WRAP = 2  # names per line of a label
+_MEASURED = {"error_m": "m", "plane_error_arcsec": "arcsec"}  # errors and their units
 _NAMES = {
     "error_m": "largest error of position up to then, m",
     "plane_error_arcsec": "largest error of the swing plane, arcsec",
@@ -59,26 +60,13 @@ def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) 
 
 
 def text_table(report: dict[str, Any]) -> str:
-    """Return the report as text for a terminal."""
-    times = sorted({row["t"] for row in report["rows"]})
-    good = _by_approximation([row for row in report["limits"] if row["over"] == "time"], "limit")
-    rows: list[list[str]] = []
-    for name, errors in _by_approximation(report["rows"], "t").items():
-        values = [errors[t]["error_m"] for t in times]
-        first, *others = ["" if value is None else f"{value:.2e}" for value in values]
-        intervals = [good[name][limit]["good"] for limit, _, _ in LIMITS]
-        stays = [f"{ranges[0][1]:.4g} s" if ranges else "–" for ranges in intervals]
-        rows.append([name, first or "does not apply", *others, *stays])
-    heads = (*(f"{t:g} s" for t in times), *(f"within {name}" for name, _, _ in LIMITS))
-    lines = [
-        f"{report['scene']}: largest position error in m up to a time, and how long it stays within a limit",
-        *Table({"": "", **dict.fromkeys(heads, "number")}, rows).lines(),
-        "",
-    ]
-    for row in report["quantities"]:
-        error = "" if row["relative_error"] is None else f"  relative error {row['relative_error']:.1e}"
-        lines.append(f"{row['approximation']:22}{row['value'] or row['reason']} {row['unit']}{error}")
-    return "\n".join(lines)
+    """Return the report as text for a terminal: tables of its page, but for swing planes and sweeps."""
+    tables = {
+        f"{report['scene']}: largest errors of position": _errors(report, {"error_m": "m"}),
+        "Ranges of time in s within a limit": _limits(report, "time"),
+        "Single quantities": _quantities(report),
+    }
+    return "\n\n".join("\n".join([title, *table.lines()]) for title, table in tables.items())
 
 
 def _by_approximation(rows: Iterable[dict[str, Any]], key: str) -> dict[str, dict[Any, dict[str, Any]]]:
@@ -107,6 +95,7 @@ def page_text(scene: Scene, report: dict[str, Any]) -> str:
         )
         for over in OVERS[1:]
     ]
+    ranges = [_limits(report, over).html(f"Ranges of {over} in {UNITS[over]}") for over in OVERS]
     return page(
         f"{scene.id}: how accurate the approximations are",
         [
@@ -117,10 +106,10 @@ def page_text(scene: Scene, report: dict[str, Any]) -> str:
                     chart(over_time, "plane_error_arcsec"),
                     "Largest error of the direction of the swing plane up to each time.",
                 ),
-                _errors(report),
+                _errors(report, _MEASURED).html("Largest errors of position and of the swing plane's direction"),
             ),
-            section("Where each is accurate", *sweeps, *(_limits(report, over) for over in OVERS)),
-            section("Single quantities", _quantities(report)),
+            section("Where each is accurate", *sweeps, *ranges),
+            section("Single quantities", _quantities(report).html()),
             section("The approximations", _about()),
         ],
         lead=paragraph(
@@ -129,34 +118,33 @@ def page_text(scene: Scene, report: dict[str, Any]) -> str:
     )
 
 
-def _errors(report: dict[str, Any]) -> Html:
-    """Return a table with one row for each approximation: errors of position and swing plane up to each time."""
+def _errors(report: dict[str, Any], measured: Mapping[str, str]) -> Table:
+    """Return a table with one row for each approximation: errors up to each time, of which each has its unit."""
     times = sorted({row["t"] for row in report["rows"]})
-    heads = (*(f"m, up to {t:g} s" for t in times), *(f"arcsec, up to {t:g} s" for t in times))
+    heads = [f"{unit}, up to {t:g} s" for unit in measured.values() for t in times]
     rows = []
     for name, errors in _by_approximation(report["rows"], "t").items():
-        values = [errors[t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
+        values = [errors[t][what] for what in measured for t in times]
         remark = "" if errors[times[0]]["status"] == Status.OK else "does not apply to this scene"
         rows.append((name, *("" if value is None else f"{value:.3g}" for value in values), remark))
-    columns = {"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}
-    return Table(columns, rows).html("Largest errors of position and of the swing plane's direction")
+    return Table({"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}, rows)
 
 
-def _limits(report: dict[str, Any], over: str) -> Html:
+def _limits(report: dict[str, Any], over: str) -> Table:
     rows = [row for row in report["limits"] if row["over"] == over]
     columns = {"approximation": "", **{f"within {name}": "number" for name, _, _ in LIMITS}}
     cells = [
         (name, *(_intervals(good[limit]) for limit, _, _ in LIMITS))
         for name, good in _by_approximation(rows, "limit").items()
     ]
-    return Table(columns, cells).html(f"Ranges of {over} in {rows[0]['unit'] if rows else ''}")
+    return Table(columns, cells)
 
 
 def _intervals(row: dict[str, Any]) -> str:
     return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in row["good"]) or "nowhere"
 
 
-def _quantities(report: dict[str, Any]) -> Html:
+def _quantities(report: dict[str, Any]) -> Table:
     columns = {"approximation": "", "value": "number", "reference": "number", "unit": "", "relative error": "number"}
     rows = [
         (
@@ -165,7 +153,7 @@ def _quantities(report: dict[str, Any]) -> Html:
         )
         for row in report["quantities"]
     ]  # fmt: skip
-    return Table(columns, rows).html()
+    return Table(columns, rows)
 
 
 def _about() -> Html:

@@ -163,7 +163,7 @@ def text_table(document: dict[str, Any]) -> str:
                 errors = number(row.error_m), transit_error(row), number(row.h_drift)
                 measured.append((mark, curve.label, setting(row), *errors, cost(row), count(row.rhs_evaluations)))
             else:
-                failed.append(("", curve.label, setting(row), _why(row)))
+                failed.append(("", curve.label, setting(row), row.status.words, row.reason))
     columns = {"": "", "method": ""} | dict.fromkeys(
         ("setting", "error m", "transits s", "h drift", "CPU s", "calls"), "number"
     )
@@ -177,15 +177,9 @@ def text_table(document: dict[str, Any]) -> str:
     ]
     lost = {row.status for row in rows if row.failed}
     if failed:
-        reasons = Table({"": "", "method": "", "setting": "number", "reason": ""}, failed).lines()
+        reasons = Table({"": "", "method": "", "setting": "number", "status": "", "reason": ""}, failed).lines()
         lines += ["", "Failed:", *reasons, "", *advice(lost)]
     return "\n".join([*lines, *_orders_as_text(rows, bound_m), "", *sentences(document)]) + "\n"
-
-
-def _why(row: Row) -> str:
-    """Return status and reason, or the reason alone if it begins with the status."""
-    status = row.status.words
-    return row.reason if row.reason.startswith(status) else f"{status}: {row.reason}"
 
 
 def setting(row: Row | Cell) -> str:

@@ -20,7 +20,7 @@ from .row import failure
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
 SWEEP_S = 3600.0
 LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
-UNITS: dict[str, str] = {"amplitude": "m", "latitude": "degrees", "length": "m"}
+UNITS: dict[str, str] = {"time": "s", "amplitude": "m", "latitude": "degrees", "length": "m"}
 _DIGITS = 40  # of a release as it is written into a scene
 # extra times at which limits over time are looked for, in geometric progression from the first of them in s, so that
 # a limit that is exceeded within the first swing is located inside it

@@ -4,44 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import itemgetter
+from operator import attrgetter
 from pathlib import Path
-from typing import Any
 
-from pydantic.dataclasses import dataclass as checked
+from pydantic import TypeAdapter
 
 from reference import Golden, InputError, load, load_scene, scene_ids
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.place import changes
+from reference.errors import shortened
 from reference.scenes.shipped import data_root, in_checkout
 from reference.status import Status
 from reference.system.documents import json_document
 
+from ...studies.row import Row
+from ...studies.stability import Cell
+from ..pareto import rows_of
+
+LONGEST_REASON = 160  # characters of what is wrong with a study: every row may lack the same
+NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}  # of a cell in docs/studies, where there is none
 KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}  # they make no difference to a score
 
 
-@checked(frozen=True)
-class MethodResult:
-    """The result of one method on a scene.
-
-    Attributes:
-        method: its name, with its number type and formulation where they are told.
-        status: the outcome of its run.
-        digits: that it kept; None if they were not measured.
-        asked: the digits that it was asked for; None in a study of costs, where the least error counts.
-        error_m: its least error in m; None where digits were measured.
-        cpu_s: CPU seconds of the run.
-    """
-
-    method: str
-    status: Status
-    digits: float | None = None
-    asked: float | None = None
-    error_m: float | None = None
-    cpu_s: float | None = None
-
-
-@checked(frozen=True)
+@dataclass(frozen=True)
 class StudyResults:
     """Results of the kept studies for one scene: runs asked for the same digits, and the least error of each method.
 
@@ -51,22 +36,28 @@ class StudyResults:
         span_s: in s; 0 if there is no such study.
     """
 
-    asked: Sequence[MethodResult] = ()
-    least: Sequence[MethodResult] = ()
+    asked: Sequence[Cell] = ()
+    least: Sequence[Row] = ()
     span_s: float = 0.0
 
     def sentence(self) -> str:
         """Return it in short; empty if nothing is known."""
         if self.asked:
-            right = sum(result.status is Status.OK for result in self.asked)
-            wrong = [result.method for result in self.asked if result.status is Status.SILENTLY_WRONG]
+            right = sum(cell.status is Status.OK for cell in self.asked)
+            wrong = [run_name(cell) for cell in self.asked if cell.status is Status.SILENTLY_WRONG]
             return f"{right} of {len(self.asked)} runs of methods kept what was asked for" + (
                 f"; silently wrong: {', '.join(dict.fromkeys(wrong))}." if wrong else ", and none was silently wrong."
             )
         if self.least:
             best = self.least[0]
-            return f"{len(self.least)} methods; the most accurate, {best.method}, is {best.error_m:.1e} m off."
+            return f"{len(self.least)} methods; the most accurate, {run_name(best)}, is {best.error_m:.1e} m off."
         return ""
+
+
+def run_name(run: Cell | Row) -> str:
+    """Return the method of a run, with its number type and formulation where they are told."""
+    told = run.formulation if isinstance(run, Row) else run.precision.removeprefix("double, ")
+    return f"{run.method} {told}".strip()
 
 
 @dataclass(frozen=True)
@@ -160,20 +151,20 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     Raises:
         InputError: a file is no study.
     """
-    asked: dict[str, dict[str, MethodResult]] = {}
-    least: dict[str, tuple[float, list[MethodResult]]] = {}
+    asked: dict[str, dict[str, Cell]] = {}
+    least: dict[str, tuple[float, list[Row]]] = {}
     for path in sorted(folder.glob("*.json")) if folder is not None else ():
         try:
             document = json_document(path, "--studies")
             scene = document.get("scene")
             if scene is None:
                 for row in document["rows"]:
-                    result = _asked(row)  # which another study may hold as well
-                    asked.setdefault(str(row["scene"]), {}).setdefault(result.method, result)
+                    cell = TypeAdapter(Cell).validate_python(NOT_KEPT | row)
+                    asked.setdefault(cell.scene, {}).setdefault(run_name(cell), cell)  # the first study that has it
             elif document["t_end"] > least.get(scene, (0.0, []))[0]:
-                least[scene] = (float(document["t_end"]), _least(document["rows"]))
+                least[scene] = (float(document["t_end"]), _least(rows_of(document)))
         except (InputError, OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
-            reason = error.advice if isinstance(error, InputError) else f"{error}."
+            reason = error.advice if isinstance(error, InputError) else f"{shortened(str(error), LONGEST_REASON)}."
             raise InputError("--studies", str(path), "a study as `foucault study` writes it", reason) from None
     results = {}
     for name in {*asked, *least}:
@@ -182,16 +173,10 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     return results
 
 
-def _asked(row: dict[str, Any]) -> MethodResult:
-    name = f"{row['method']} {row['precision'].removeprefix('double, ')}".strip()
-    return MethodResult(name, Status(row["status"]), row.get("digits"), row.get("asked"), cpu_s=row.get("cpu_s"))
-
-
-def _least(rows: Sequence[dict[str, Any]]) -> list[MethodResult]:
+def _least(rows: Sequence[Row]) -> list[Row]:
     """Return the most accurate run of each method and formulation, the best first."""
-    best: dict[str, MethodResult] = {}
-    right = (row for row in rows if row["status"] == Status.OK and row.get("error_m") is not None)
-    for row in sorted(right, key=itemgetter("error_m")):
-        name = f"{row['method']} {row.get('formulation', '')}".strip()
-        best.setdefault(name, MethodResult(name, Status.OK, error_m=row["error_m"], cpu_s=row.get("cpu_s")))
+    best: dict[str, Row] = {}
+    right = (row for row in rows if row.measured and row.error_m is not None)
+    for row in sorted(right, key=attrgetter("error_m")):
+        best.setdefault(run_name(row), row)
     return list(best.values())

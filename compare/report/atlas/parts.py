@@ -28,7 +28,7 @@ from ...score.explanation import conventions
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
 from ..page import Html, Table, facts, text
-from .entry import Entry, MethodResult, StudyResults
+from .entry import Entry, StudyResults, run_name
 
 THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}  # of the proof's THEOREM.md
 
@@ -120,18 +120,18 @@ def methods(studied: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
     if studied.asked:
-        best_first = sorted(studied.asked, key=lambda result: -(result.digits if result.digits is not None else -1.0))
+        best_first = sorted(studied.asked, key=lambda cell: -(cell.digits if cell.digits is not None else -1.0))
         table = Table(
             {"method": "", "outcome": "", "asked for": "number", "digits kept": "number", "CPU s": "number"},
             [
-                (result.method, result.status.words, _one(result.asked), _one(result.digits), _cpu(result))
-                for result in best_first
+                (run_name(cell), cell.status.words, _one(cell.asked), _one(cell.digits), _cpu(cell.cpu_s))
+                for cell in best_first
             ],
-            ["" if result.status is Status.OK else "failed" for result in best_first],
+            ["" if cell.status is Status.OK else "failed" for cell in best_first],
         )
         parts.append(table.html("Runs that were asked for the same digits (docs/studies.md)"))
     if studied.least:
-        rows = [(result.method, f"{result.error_m:.2g} m", _cpu(result)) for result in studied.least]
+        rows = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
         least = Table({"method": "", "least error": "number", "its CPU s": "number"}, rows)
         parts.append(least.html(f"The most accurate run of each method over {studied.span_s:g} s"))
     return parts
@@ -141,8 +141,8 @@ def _one(digits: float | None) -> str:
     return "" if digits is None else f"{max(digits, 0.0):.1f}"
 
 
-def _cpu(result: MethodResult) -> str:
-    return "" if result.cpu_s is None else f"{result.cpu_s:.2g}"
+def _cpu(seconds: float | None) -> str:
+    return "" if seconds is None else f"{seconds:.2g}"
 
 
 def function_made(golden: Golden) -> dict[str, Any] | None:

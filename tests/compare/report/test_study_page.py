@@ -204,7 +204,7 @@ def test_the_text_table_has_every_row_and_the_sentences():
     assert len(marked) == 2
     assert all("heyoka_double" in line for line in marked)
     assert all(len(line) <= 100 for line in text.split("Failed:")[0].splitlines())
-    assert text.count("missed transits: ") == 2  # the row's reason, and what to do about it
+    assert text.count("missed transits") == 2  # the row's status, and what to do about it
     assert Status.MISSED_TRANSITS.advice in text
 
 
