@@ -95,8 +95,9 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
         array = np.load(stream, allow_pickle=False)
     except Exception as error:  # numpy raises several kinds of errors for a damaged file
         raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
-    words = array.dtype.names
-    return _of_arrays({word: array[word] for word in words} if words else {TABLE: array}, name, naming)
+    words = array.dtype.names  # of which none means transits: there is one for each row
+    records = {word: array[word] for word in words or () if word != TRANSITS}
+    return _of_arrays(records or {TABLE: array}, name, naming)
 
 
 def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidate:

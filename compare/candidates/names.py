@@ -278,10 +278,14 @@ def given(count: int, needed: Sequence[str], naming: Naming) -> Layout:
     if len(names) != count:
         expected = f"a name for each of the {count} columns, - for one that is not read"
         raise InputError(option, ",".join(names), expected)
-    unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
+    known = {name: meaning(name, {}) for name in names}
+    unknown = [name for name in names if name.strip() not in SKIPPED and known[name] is None]
     if unknown:
         expected = f"names of {', '.join(['t', *COLUMNS])}"
         raise InputError(option, ", ".join(unknown), expected, "Write - for a column that is not read.")
+    missing = set(needed) - {column.column for column in known.values() if column}
+    if missing:
+        raise InputError(option, ",".join(names), f"a column {min(missing)} among them")
     return layout(names, needed, naming, option)
 
 

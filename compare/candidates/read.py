@@ -37,7 +37,7 @@ from reference.system.documents import open_at_once
 from .arrays import AS_NAMED, read_archive, read_array
 from .candidate import Candidate, Deviation, checked_transits
 from .names import NEEDED, Naming
-from .text import COMMENT, MAX_BYTES, MAX_LINE, Header, Spelling, is_number, spelling
+from .text import COMMENT, MARKS, MAX_BYTES, MAX_LINE, MAX_LINES, Header, Spelling, is_number, spelling
 
 _TELLING = 6  # bytes that tell an archive from text
 CHUNK = 1 << 22
@@ -99,6 +99,9 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
                 pipe, stream = stream, stack.enter_context(SpooledTemporaryFile(CHUNK))
                 while stream.tell() <= MAX_BYTES and (data := pipe.read(CHUNK)):
                     stream.write(data)
+                if not stream.tell() and str(source) != "-":
+                    advice = "Nobody writes to this pipe: start the program first, or let --run start it"
+                    raise OSError(errno.EPIPE, advice)
                 stream.seek(0)
             start = stream.tell()
             if stream.seek(0, os.SEEK_END) > MAX_BYTES:
@@ -175,13 +178,17 @@ class ColumnReader:
             if len(data) > MAX_LINE:
                 got = f"a line of more than {MAX_LINE} bytes"
                 raise InputError(self.name, got, "lines of numbers", "Is it text?")
+            if self.line > MAX_LINES:
+                got, most = f"more than {MAX_LINES} lines", f"at most {MAX_LINES}, comments and empty ones included"
+                raise InputError(self.name, got, most, "Thin the output out.")
             if not self.fields and b"\0" in data:
                 raise InputError(self.name, "a zero byte", "text", "Binary data is read from .npz only.")
-            text = data.decode(errors="replace").strip().removeprefix("\ufeff")
+            text = data.decode("utf-8", "replace").strip()
+            text = text if self.fields else text.removeprefix("\ufeff")
             if not text:
                 continue
-            self.cut_off = not data.endswith(b"\n")
-            if remark := COMMENT.match(text):
+            self.cut_off = data[-1:] != b"\n"
+            if text[0] in MARKS and (remark := COMMENT.match(text)):
                 if not self.fields:
                     self.header.add(self.line, remark[1], True)
                 if remark[1].split()[:1] == ["P"] and not self.alone:

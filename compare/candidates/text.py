@@ -1,4 +1,4 @@
-"""Text as lines and fields: bytes split within limits, what separates fields, how numbers are spelled, the header."""
+"""Text as lines and fields: limits, what separates fields, how numbers are spelled, the header."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from reference import InputError
 from .names import Layout, Naming, advice, by_number, given, layout, meaning
 
 MAX_BYTES = 1 << 30
-MAX_LINE = 1 << 16
+MAX_LINE = 1 << 20
+MAX_LINES = 4_000_000
+MARKS = frozenset("#%!/")  # with which a comment begins
 COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
 FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
 APART = re.compile(r"\s{2,}|\t")
-MOST = 1000  # lines above the first row, beyond which there is none
+MOST = 1000  # lines above the first row that are looked at
 FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
 BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
 
@@ -108,9 +110,11 @@ class Header:
             InputError: there are too many before the first row.
         """
         self.lines.append((number, text, comment))
-        if len(self.lines) > MOST and not comment:
-            where, expected = f"{self.name}: line {number}", "a row of numbers before it"
-            raise InputError(where, text[:80], expected, advice(self.needed))
+        if len(self.lines) > MOST:
+            if not comment:
+                where, expected = f"{self.name}: line {number}", "a row of numbers before it"
+                raise InputError(where, text[:80], expected, advice(self.needed))
+            del self.lines[0]
 
     def layout(self, row: str, spelled: Spelling, number: int) -> Layout:
         """Return which column stands where, from the first row and its line.

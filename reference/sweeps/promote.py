@@ -85,7 +85,7 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     untold = rows.rising[0] > 0 and abs(motion.v[2][0]) < soon * fall[0] and not (t[1:2] < 2 * soon).any()
     high = slice(0 if untold else 1, -1)
     t, azimuth = t[high.start :], azimuth[high]
-    bent = fall >= LEAST_BEND * (rows.rate * across) ** 2
+    bent = fall > LEAST_BEND * (rows.rate * across) ** 2
     if decided and len(t) and bent[high].all():
         run.apsides[0], run.apsis_first[0], run.apsis_last[0] = len(t), t[0], t[-1]
         run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(np.round(np.diff(azimuth) / np.pi))
@@ -143,17 +143,17 @@ def promoted(
 
 
 def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
-    """Return a scene solved, with its highest points where its swing is wanted, and more digits if they need these.
+    """Return a scene solved, with its highest points where its swing is wanted and they can be told.
 
-    They are left out where these do not tell them either, as on a cone, where there are none.
+    A cone has none. With drag they take more digits.
     """
     from ..solver.solve import solve
 
     sections = scene.run.sections or ()
     if swing and HIGHEST not in sections:
-        for more in (0, MORE_DIGITS):
-            with suppress(UnreachableError):
-                return solve(scene, digits=digits + more, sections=[*sections, HIGHEST])
+        with suppress(UnreachableError):
+            more = MORE_DIGITS if scene.exact.drag else 0
+            return solve(scene, digits=digits + more, sections=[*sections, HIGHEST])
     return solve(scene, digits=digits)
 
 

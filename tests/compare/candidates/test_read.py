@@ -323,7 +323,7 @@ def test_a_path_that_no_file_can_have_and_a_closed_standard_input_are_refused(mo
 
 
 def test_a_device_without_end_is_refused_at_once():
-    with pytest.raises(InputError, match="a line of more than 65536 bytes"):
+    with pytest.raises(InputError, match="a line of more than 1048576 bytes"):
         read("/dev/zero")
 
 
@@ -446,6 +446,8 @@ print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) // 1024)
         (b"", b"\0", 1 << 28, "line of more than"),
         (b"", b"0\n", 1 << 28, "header"),
         (b"t,x,y\n", b"0,0,0\n", 1 << 25, "more than 2000000 rows"),
+        (b"t,x,y\n", b"\n", 1 << 23, "more than 4000000 lines"),
+        pytest.param(b"t,x,y\n", b"# all is well\n", 1 << 26, "more than 4000000 lines", marks=pytest.mark.long),
         pytest.param(b"PK\x03\x04", b"\0", (1 << 30) + 1, "more than 1073741824 bytes", marks=pytest.mark.long),
     ],
 )
