@@ -7,6 +7,7 @@ import json
 import os
 import re
 import stat
+import sys
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -58,7 +59,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
             raise InputError(field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words")
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(field, str(path), "a TOML file", f"{str(error)[:_SAID]}.") from None
+        raise InputError(field, str(path), "a TOML file", _reason(error)) from None
 
 
 def texts_of(module: str) -> dict[str, Any]:
@@ -72,7 +73,7 @@ def json_document(path: Path, field: str) -> dict[str, Any]:
     try:
         document = json.loads(data.decode())
     except (ValueError, RecursionError) as error:
-        raise InputError(field, str(path), "a JSON document", f"{str(error)[:_SAID]}.") from None
+        raise InputError(field, str(path), "a JSON document", _reason(error)) from None
     if not isinstance(document, dict):
         raise InputError(field, str(path), "a JSON document of keys and values")
     return document
@@ -122,3 +123,12 @@ def regular(path: Path, field: str, most: int, expected: str) -> Iterator[Binary
 def _read(path: Path, field: str, most: int, expected: str) -> bytes:
     with regular(path, field, most, expected) as stream:
         return stream.read()
+
+
+def _reason(error: Exception) -> str:
+    """Return what a parser found wrong, in a sentence."""
+    if isinstance(error, RecursionError):
+        return "Its lists or tables are nested too deeply."
+    if isinstance(error, UnicodeDecodeError | tomllib.TOMLDecodeError | json.JSONDecodeError):
+        return f"{str(error)[:_SAID]}."
+    return f"A whole number has at most {sys.get_int_max_str_digits()} digits."
