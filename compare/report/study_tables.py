@@ -42,7 +42,8 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
         if any(reached):
             order = [math.inf if cpu_s is None else cpu_s for cpu_s in reversed(reached)]
             cells = [
-                strong(cpu(cpu_s)) if cpu_s == best else cpu(cpu_s) for cpu_s, best in zip(reached, least, strict=True)
+                strong(cpu(cpu_s)) if cpu_s is not None and cpu_s == best else cpu(cpu_s)
+                for cpu_s, best in zip(reached, least, strict=True)
             ]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}

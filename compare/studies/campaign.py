@@ -33,8 +33,10 @@ JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that 
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
 LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}  # that are always there, besides those that methods require
 DISTRIBUTIONS = {"sksundae": "scikit-sundae"}  # of modules that are called otherwise
-# of all libraries but JAX, which `methods.diffrax` tells itself
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+ONE_THREAD = {
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"),
+    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
+}
 
 Item = TypeVar("Item", bound=tuple[Any, ...])
 Result = TypeVar("Result", bound=Any)  # a dataclass with a status
@@ -169,9 +171,9 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
 
 @contextmanager
 def single_thread() -> Iterator[None]:
-    """Have processes that are started meanwhile use one thread in every library."""
+    """Have processes that are started meanwhile use one thread in every library; the user's own XLA_FLAGS stay."""
     before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(ONE_THREAD)
+    os.environ.update({name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not before[name]})
     try:
         yield
     finally:

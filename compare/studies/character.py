@@ -165,7 +165,7 @@ def reason_of(
             ]
         )
     if status == Status.SILENTLY_WRONG and digits is not None:
-        head = f"success was reported with {max(digits, 0):.1f} digits where {requested:.1f} were asked for"
+        head = f"success was reported with {digits:.1f} digits where {requested:.1f} were asked for"
         return _sentence([head, *(causes or [_accumulated(row)])])
     return _sentence(causes or ["no measured property of the scene explains it"]) + reported
 

@@ -76,7 +76,7 @@ class Bench:
         times = self.truth.times
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
-        base, outcome, costs_s = self._run(base, method, probe_times, repeats=2)
+        base, outcome, costs_s = self._run(base, method, probe_times, repeats=2, budget_s=2 * self.limit_s / PROBE)
         probe_s = min(costs_s)  # the first run warms up
         expected_s, rows = probe_s * float(times[-1] / probe_times[-1]), min(len(times), longest)
         if outcome.status != Status.OK or rows <= len(probe_times) or probe_s > self.limit_s:
@@ -94,17 +94,19 @@ class Bench:
         share = float(times[-1] / times[rows - 1])
         return self._finished(base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share)
 
-    def _run(self, base: Row, method: Method, times: Array, repeats: int) -> tuple[Row, Outcome, list[float]]:
+    def _run(
+        self, base: Row, method: Method, times: Array, repeats: int, budget_s: float = REPEAT_S
+    ) -> tuple[Row, Outcome, list[float]]:
         """Run a method to the end of `times`; return the row with what compiling took, the outcome, and CPU seconds.
 
-        It is repeated while that is cheap, and if it came to its end.
+        It is repeated while all runs take less than `budget_s`, and if it came to its end.
         """
         started = _spent_s()
         work = method.prepare(Problem.of(self.scene, base.formulation, times), base.setting)
         base = replace(base, compile_s=(base.compile_s or 0.0) + _spent_s() - started)
         outcome, cpu_s = timed(work)
         costs_s = [cpu_s]
-        while outcome.status == Status.OK and len(costs_s) < repeats and sum(costs_s) + cpu_s < REPEAT_S:
+        while outcome.status == Status.OK and len(costs_s) < repeats and sum(costs_s) + cpu_s < budget_s:
             costs_s.append(timed(work)[1])
         return base, outcome, costs_s
 

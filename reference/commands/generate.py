@@ -145,7 +145,9 @@ def command(
     if no_confirm:
         refuse({"--confirm": confirm}, "with --no-confirm")
     usual = making_of(scene, name, folder)
-    confirm = "none" if no_confirm else confirm and chosen("--confirm", confirm, CONFIRMATIONS)
+    if confirm is not None:
+        chosen("--confirm", confirm, CONFIRMATIONS)
+    confirm = "none" if no_confirm else confirm
     given = {"engine": None if engine == AUTO else engine, "audit": audit, "confirm": confirm, "function": function}
     asked: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     making = replace(usual, **asked, tables=usual.tables and not no_tables)

@@ -49,6 +49,8 @@ class PrintedTable:
         """Return a column as the nearest doubles, shape (rows,)."""
         return np.array([float(text) for text in self.decimals(name)], dtype=np.float64)
 
+    array = __getitem__
+
     def exact(self, name: str) -> list[Fraction]:
         """Return the exact values of the printed decimals of a column."""
         return [Fraction(text) for text in self.decimals(name)]

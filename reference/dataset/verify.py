@@ -165,10 +165,11 @@ def _how_it_differs(old: str | None, new: Content) -> str:
         return "recomputing gives other coefficients"
     if old is None:
         return "recomputing gives this file too"
-    pairs = enumerate(zip_longest(old.split("\n"), new.split("\n"), fillvalue="nothing"), 1)
+    # with their ends, which may be all that differs
+    pairs = enumerate(zip_longest(*(text.splitlines(keepends=True) for text in (old, new)), fillvalue="nothing"), 1)
     differing = [(number, *lines) for number, lines in pairs if lines[0] != lines[1]]
     number, before, after = differing[0]
-    return f"{_differ(len(differing), 'line')}; line {number} is {before}, recomputed {after}"
+    return f"{_differ(len(differing), 'line')}; line {number} is {before.rstrip()}, recomputed {after.rstrip()}"
 
 
 def _differ(count: int, what: str) -> str:

@@ -5,7 +5,7 @@ The decimals follow from the bounds, and so does whether a proof decides each di
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -221,7 +221,7 @@ def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
 
 
 def separated(
-    found: Iterable[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
+    found: Sequence[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
 ) -> Passages[T]:
     """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
 

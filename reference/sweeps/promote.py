@@ -94,7 +94,7 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     aside = np.max(off / (across[1:-1] * float(length)), initial=0) + np.spacing(2 * np.pi)
     reach = np.max(off, initial=position[0])
     leaning = np.where(reach < length, reach, position) / float(length) + np.spacing(run.largest_angle)
-    return *of_swing(run, late, aside), np.where(decided or not (found or bent.any()), leaning, np.nan)
+    return *of_swing(run, late, aside), np.where(decided or not bent.any(), leaning, np.nan)
 
 
 def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:

@@ -141,7 +141,8 @@ def test_what_is_not_the_very_result_of_a_proof_is_not_written(solution, texts, 
     moved = [replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by)) for z in proved.transits]
     for forged in (replace(proved), replace(proved, transits=tuple(moved)), None):
         with pytest.raises(DatasetError, match="not what was proved"):
-            reference.write(replace(solution, proof=replace(solution.proof, proved=forged)), tmp_path / "forged")
+            proof = replace(solution.proof, enclosure=replace(solution.proof.enclosure, proved=forged))
+            reference.write(replace(solution, proof=proof), tmp_path / "forged")
     assert [*tmp_path.iterdir()] == []
 
 
