@@ -139,6 +139,7 @@ class ColumnReader:
         self.name, self.alone = name, len(needed) == 1
         self.header = Header(name, needed, naming)
         self.spelled, self.layout, self.fields = Spelling(None), AS_NAMED, 0  # of a row, once one has been seen
+        self.respelled = False
         self.rows: list[str] = []
         self.transits: list[float] = []  # that comments of foucPend name
         self.line = 0
@@ -194,7 +195,7 @@ class ColumnReader:
                 if remark[1].split()[:1] == ["P"] and not self.alone:
                     self._take_transit(remark[1])
             elif self.fields or self._begins(text):
-                row, separator = self.spelled.plain(text), self.spelled.separator
+                row, separator = self.spelled.plain(text) if self.respelled else text, self.spelled.separator
                 count = row.count(separator) + 1 if separator else len(row.split())
                 if count != self.fields:
                     got, expected = f"{count} fields", f"{self.fields} as in the first row"
@@ -221,6 +222,7 @@ class ColumnReader:
         made = self.header.layout(text, spelled, self.line)
         said = (*made.conventions, *([DECIMAL_COMMA] if spelled.decimal_comma else []))
         self.spelled, self.layout, self.fields = spelled, replace(made, conventions=said), len(spelled.fields(text))
+        self.respelled = spelled != Spelling(spelled.separator)
         return True
 
 
