@@ -166,8 +166,9 @@ def _how_it_differs(old: str | None, new: Content) -> str:
     if old is None:
         return "recomputing gives this file too"
     # with their ends, which may be all that differs
-    pairs = enumerate(zip_longest(*(text.splitlines(keepends=True) for text in (old, new)), fillvalue="nothing"), 1)
-    differing = [(number, *lines) for number, lines in pairs if lines[0] != lines[1]]
+    lines, others = (text.splitlines(keepends=True) for text in (old, new))
+    pairs = enumerate(zip_longest(lines, others, fillvalue="nothing"), 1)
+    differing = [(number, *pair) for number, pair in pairs if pair[0] != pair[1]]
     number, before, after = differing[0]
     return f"{_differ(len(differing), 'line')}; line {number} is {before.rstrip()}, recomputed {after.rstrip()}"
 
