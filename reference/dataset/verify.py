@@ -170,7 +170,8 @@ def _how_it_differs(old: str | None, new: Content) -> str:
     pairs = enumerate(zip_longest(lines, others, fillvalue="nothing"), 1)
     differing = [(number, *pair) for number, pair in pairs if pair[0] != pair[1]]
     number, before, after = differing[0]
-    return f"{_differ(len(differing), 'line')}; line {number} is {before.rstrip()}, recomputed {after.rstrip()}"
+    shown = repr if before.rstrip() == after.rstrip() else str.rstrip
+    return f"{_differ(len(differing), 'line')}; line {number} is {shown(before)}, recomputed {shown(after)}"
 
 
 def _differ(count: int, what: str) -> str:
