@@ -269,7 +269,7 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
 
 
 def given(count: int, needed: Sequence[str], naming: Naming) -> Layout:
-    """Return the layout of so many columns that the user names.
+    """Return the layout of a file whose columns the user names.
 
     Raises:
         InputError: there are more or fewer names, one is not known, or one that is needed is missing.
