@@ -1,4 +1,4 @@
-"""The swing of a motion about rest: its plane, its highest points, frequency and precession from them.
+"""The swing plane of samples in double: its highest points, frequency and precession. A solved scene: solver/swing.py.
 
 A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its rest position. Let
 Z = X + iY be the displacement in the plane at right angles to the plumb line (X east, Y north), Z' its rate on the

@@ -1,4 +1,4 @@
-"""The constants of the equations of motion, from a scene's exact inputs: what g means (`gravity_is`) takes effect here.
+"""The constants of the equations of motion. A measured ("effective") g holds the centrifugal force: then R = 0 here.
 
 Constants are combined here in high precision and rounded once: a run that added gravity and the centrifugal force in
 double would carry that rounding error to its end. A constant that is zero by the exact inputs (at a pole, on the

@@ -1,4 +1,4 @@
-"""Number types and precision: bits, guard bits, decimal digits, exact conversions and rounding, mpmath contexts.
+"""Number types (double, long double, MPFR: `cheapest_type`), bits, decimal digits, exact conversions, rounding.
 
 Precision is always an argument: there is one mpmath context for each, and the global one is never touched.
 """

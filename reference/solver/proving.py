@@ -225,11 +225,13 @@ def _zero_gap(name: str, zeros: Passages[Table], seen: Table, signs: list[int], 
     """
     if len(seen) != len(zeros.directions) and not zeros.possible:
         raise IntegrationError(f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}.")
-    found, gaps = iter(zip(seen.exact("t"), signs, strict=True)), [Fraction(0)]
-    rows = zip(zeros.table.exact("t"), zeros.directions, zeros.table.bound("t"), late, strict=True)
-    for k, (t, direction, bound, off) in enumerate(rows, 1):
-        gap = next((abs(t - x) for x, sign in found if sign == direction and abs(t - x) <= bound + off), None)
+    bits = max(zeros.table.bits, seen.bits)
+    found, gaps = iter(zip(seen.whole("t", bits), signs, strict=True)), [0]
+    limits = (math.floor((bound + off) * 2**bits) for bound, off in zip(zeros.table.bound("t"), late, strict=True))
+    rows = zip(zeros.table.whole("t", bits), zeros.directions, limits, strict=True)
+    for k, (t, direction, limit) in enumerate(rows, 1):
+        gap = next((abs(t - x) for x, sign in found if sign == direction and abs(t - x) <= limit), None)
         if gap is None:
-            raise IntegrationError(f"heyoka does not find {name} {k} of the enclosure, at t = {float(t)} s.")
+            raise IntegrationError(f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s.")
         gaps.append(gap)
-    return max(gaps)
+    return Fraction(max(gaps), 2**bits)

@@ -1,4 +1,4 @@
-"""Frequency and precession of a swing from its highest points, as intervals that follow from their bounds."""
+"""Frequency and precession of a solved scene, from its highest points: intervals that follow from their bounds."""
 
 from __future__ import annotations
 

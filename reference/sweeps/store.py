@@ -1,4 +1,4 @@
-"""A sweep on disk: a folder with its plan and its parts in Parquet.
+"""A sweep on disk: a folder with its plan and its parts in Parquet, each sealed, and written whole or not at all.
 
 `plan.json` says all that decides a number, `rows/part-00000000.parquet` … hold the rows, `transits/part-…` their
 transits where these are wanted, `summary.json` comes last. A part appears whole or not at all, and is sealed with the
