@@ -35,7 +35,7 @@ class Outside(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """What rows and transits say of a pendulum whose inputs are uncertain.
+    """The verdict on a file of measurements: its rows and transits that contradict what is proved for uncertain inputs.
 
     Attributes:
         name: of the candidate.

@@ -54,7 +54,7 @@ Uncertain = Annotated[
 ]
 BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"  # why an option is refused
 EndTime = Annotated[str | None, option("--t-end", "End at this time, in s (default: the scene's).", "S")]
-Workers = Annotated[int | None, option("--workers", "Use so many cores (default: all).", "N")]
+Workers = Annotated[int | None, option("--workers", "Use this many cores (default: all).", "N")]
 Cluster = Annotated[str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")]
 SECTION = option(
     "--section", "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.", "WORD"
