@@ -35,7 +35,7 @@ class Outside(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """The verdict on a file of measurements: its rows and transits that contradict what is proved for uncertain inputs.
+    """The verdict on a file of measurements: rows and transits that contradict what is proved for uncertain inputs.
 
     Attributes:
         name: of the candidate.
