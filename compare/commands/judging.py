@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -183,6 +183,36 @@ class Judging:
     def _trial(self, word: str, candidate: Path | None, transits: Path | None, earlier: object) -> Score:
         return self.score(load_scene(word), self._read(candidate), self.times(transits), earlier)
 
+    def hold(
+        self, files: list[str] | None, transits: str | None, section: str | None, truth: Ranges | Scene, as_json: bool
+    ) -> None:
+        """Hold files, or transits alone, against ranges, or passages of a section against a scene; print the outcome.
+
+        Exit status 1 where one disagrees.
+        """
+        scene = truth.scene if isinstance(truth, Ranges) else truth
+        word = "" if section is None else _one_section(section, transits, scene)
+        if not files and transits is None:
+            raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
+        times, tolerance = self.times(transits), self.options["tolerance"]
+        found: list[Measured | PassageScore] = []
+        for rows in [self._read(file) for file in files or ()] or [None]:
+            with stoppable("nothing was written"), progress() as show:
+                label = "the truth" if truth is scene else "the proof"
+                report: Any = show(f"{label} of {scene.id}", float(scene.exact.t_end))
+                if isinstance(truth, Ranges):
+                    found.append(measured(rows, times, truth, tolerance or 0.0, str(transits), report, word or None))
+                else:
+                    assert times is not None
+                    found.append(score_passages(str(transits), times, scene, word, tolerance, announce, report))
+        if as_json:
+            emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
+        else:
+            for line in (line for one in found for line in one.lines()):
+                typer.echo(line)
+        if any(one.verdict == APART for one in found):
+            raise typer.Exit(1)
+
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
         return None if name is None else read_transits(name, self.naming.units)
@@ -206,54 +236,7 @@ def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
     return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), Intervals((), ()), [], (), "")
 
 
-def hold(
-    files: list[str],
-    transits: str | None,
-    section: str | None,
-    ranges: Ranges,
-    naming: Naming,
-    tolerance: float | None,
-    as_json: bool,
-) -> None:
-    """Hold files, or transits alone, against ranges, and print what comes of it; exit status 1 where one disagrees."""
-    if not files and transits is None:
-        raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
-    if section is not None:
-        section = _word(section, transits, ranges.scene)
-    times, found = None if transits is None else read_transits(transits, naming.units), []
-    names: list[str | None] = [*files] or [None]
-    for file in names:
-        rows = None if file is None else read(Path(file), columns=naming.columns, units=naming.units)
-        with stoppable("nothing was written"), progress() as show:
-            report: Any = show(f"the proof of {ranges.scene.id}", float(ranges.scene.exact.t_end))
-            found.append(measured(rows, times, ranges, tolerance or 0.0, str(transits), report, section))
-    _tell(found, as_json)
-
-
-def hold_passages(
-    transits: str | None, section: str, scene: Scene, naming: Naming, tolerance: float | None, as_json: bool
-) -> None:
-    """Score the passages of a section, and print what comes of it; exit status 1 where they disagree."""
-    section = _word(section, transits, scene)
-    times = read_transits(str(transits), naming.units)
-    with stoppable("nothing was written"), progress() as show:
-        report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-        found = score_passages(str(transits), times, scene, section, tolerance, announce, report)
-    _tell([found], as_json)
-
-
-def _tell(found: Sequence[Measured | PassageScore], as_json: bool) -> None:
-    """Print what was found; exit status 1 where something disagrees."""
-    if as_json:
-        emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
-    else:
-        for line in (line for one in found for line in one.lines()):
-            typer.echo(line)
-    if any(one.verdict == APART for one in found):
-        raise typer.Exit(1)
-
-
-def _word(section: str, transits: str | None, scene: Scene) -> str:
+def _one_section(section: str, transits: str | None, scene: Scene) -> str:
     """Return the word of the one section that transits are passages of, as scenes write it."""
     if transits is None:
         refuse({"--section": section}, "without --transits")

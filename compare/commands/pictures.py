@@ -13,6 +13,7 @@ from reference.commands.terminal import (
     AsJson,
     Assignments,
     EndTime,
+    chosen,
     completion,
     emit,
     option,
@@ -20,7 +21,7 @@ from reference.commands.terminal import (
     replacements,
     stoppable,
 )
-from reference.errors import did_you_mean, in_words
+from reference.errors import in_words
 from reference.scenes.shipped import golden_root, seals
 
 from .options import announce, completion_of_lists, listed
@@ -68,8 +69,7 @@ def plot(
 
     wanted = listed(what, "--what")
     for word in wanted or ():
-        if word not in PICTURES:
-            raise InputError("--what", word, in_words(PICTURES), did_you_mean(word, PICTURES, ""))
+        chosen("--what", word, PICTURES)
     target = out or Path(f"{'stdin' if source == '-' else Path(source).stem}.svg")
     check_target(target, "--out")
     motion = _motion(source, t_end, set_)

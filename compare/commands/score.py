@@ -148,7 +148,7 @@ def command(
     --repeats and ranges. Exit status 0: agrees (with --baseline: no worse), 1: disagrees, 2: cannot be judged.
     """
     from ..candidates.names import Naming
-    from .judging import hold, hold_passages, ranges_named, ranges_to_prove
+    from .judging import Judging, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
@@ -176,16 +176,12 @@ def command(
             unused: dict[str, object] = {"--run": run, "--approximation": approximation, "--covers": covers}
             unused |= {"--baseline": baseline, "--plot": plot, "--junit": junit, "--github": github}
             unused |= {"--as-model": as_model, "--no-diagnosis": no_diagnosis}
-            if ranges is not None:
-                refuse(unused, BESIDE_RANGES)
-                hold(list(candidates or ()), transits, section, ranges, naming, tolerance, as_json)
-                return
-            refuse(unused, "together with --section")
-            if candidates:
+            refuse(unused, "together with --section" if ranges is None else BESIDE_RANGES)
+            if ranges is None and candidates:
                 advice = "Its passages stand in one file: `foucault score SCENE --transits FILE --section WORD`."
                 raise InputError("CANDIDATE", candidates[0], "no file beside that of --transits", advice)
             read_as = scene if reading else scene.with_values(["inputs=binary64"])  # as programs in double have them
-            hold_passages(transits, str(section), read_as, naming, tolerance, as_json)
+            Judging(naming, {"tolerance": tolerance}).hold(candidates, transits, section, ranges or read_as, as_json)
             return
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
@@ -205,7 +201,6 @@ def command(
 
         check_target(plot)
     from .experimenting import Runnable
-    from .judging import Judging
 
     end = None if t_end is None else float(scene.exact.t_end)
     limits: dict[str, Any] = {"tolerance": tolerance, "covers": covers or 0.0, "t_end": end}
@@ -254,12 +249,10 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
         emit(of_outcome(outcomes[0]) if len(outcomes) == 1 else suite_document(outcomes))
         return
     lines = [line for outcome in outcomes for line in outcome.lines]
-    if github:  # nothing in them is a command to it
+    if github:  # nothing in them is a command to it; the annotations are
         token = token_hex()
-        lines = [f"::stop-commands::{token}", *lines, f"::{token}::"]
+        lines = [f"::stop-commands::{token}", *lines, f"::{token}::", *map(annotation, outcomes)]
     for line in lines:
         typer.echo(line)
     if github:
-        for outcome in outcomes:
-            typer.echo(annotation(outcome))
         append_summary(summary(outcomes))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -197,9 +196,8 @@ def methods(as_json: AsJson = False) -> None:
         emit({"methods": integrators, "approximations": analytic})
         return
     width = max(map(len, (*METHODS, *APPROXIMATIONS)))
-    lists: dict[str, Sequence[Mapping[str, str | None]]] = {"Methods (study, stability)": integrators}
-    lists["Approximations (score --approximation, study --approximations)"] = analytic
-    for heading, listed_there in lists.items():
+    headings = "Methods (study, stability)", "Approximations (score --approximation, study --approximations)"
+    for heading, listed_there in zip(headings, (integrators, analytic), strict=True):
         typer.echo(f"{heading}:")
         for each in listed_there:
             missing = f"  [{each['missing']}]" if each.get("missing") else ""

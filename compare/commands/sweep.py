@@ -133,10 +133,8 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
         if out is None:
             raise InputError("SCENE", "nothing", "a scene, or --out DIR with a sweep to go on with")
         return Store.opened(out).request
-    given = {
-        "--t-end": ("run.t_end", options["--t-end"]),
-        "--section": ("run.sections", ",".join(options["--section"]) if options["--section"] else None),
-    }
+    sections = ",".join(options["--section"]) if options["--section"] else None
+    given = {"--t-end": ("run.t_end", options["--t-end"]), "--section": ("run.sections", sections)}
     scene = load_scene(scene_word, replacements(options["--set"], given, _NO_GRID))
     chosen = {word.strip("-"): value for word, value in options.items() if value is not None and word not in ON_SCENE}
     if "want" in chosen:

@@ -88,13 +88,10 @@ def page_text(scene: Scene, report: dict[str, Any]) -> str:
     within = min(SWEEP_S, t_end)
     over_time = error_table(scene, chosen, t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
     same_line = "Approximations with nearly equal errors share a line."
-    sweeps = [
-        figure(
-            chart(sweep(scene, chosen, over, within)),
-            f"Largest position error within {within:g} s, as a function of {over}.",
-        )
-        for over in OVERS[1:]
-    ]
+    sweeps = []
+    for over in OVERS[1:]:
+        caption = f"Largest position error within {within:g} s, as a function of {over}."
+        sweeps.append(figure(chart(sweep(scene, chosen, over, within)), caption))
     ranges = [_limits(report, over).html(f"Ranges of {over} in {UNITS[over]}") for over in OVERS]
     return page(
         f"{scene.id}: how accurate the approximations are",

@@ -32,9 +32,7 @@ LONGEST_NAME = 40  # characters of a file's name above its picture
 
 def path(axes: Any, motion: Motion) -> None:
     """Draw the path from above: the whole of it, or some swings spread over the span, or the rows alone."""
-    size = float(np.abs(motion.rows[:, :2]).max()) or 1.0
-    if len(motion.line):
-        size = max(size, float(np.nanmax(np.abs(motion.line[:, :2]))))
+    size = float(np.nanmax(np.abs(np.concatenate([motion.rows, motion.line])[:, :2]))) or 1.0
     scale, unit = length_unit(size)
     line, rows = _line(motion) * scale, _few(motion.rows, LINE) * scale
     first = POINTS + 1 if motion.swings else len(line)
@@ -127,9 +125,8 @@ def motion_svgs(motion: Motion) -> list[str]:
             axes = figure.subplots()
             draw(axes, motion)
             text = svg_text(figure, f"{motion.name}-{name}", f"{motion.name}: {axes.get_title('left')}", "lines panel")
-        text = _ELEMENT.sub(
-            lambda element: _ROUNDED.sub(r"\1", element[0]), _FONTS.sub("font-family: sans-serif", text)
-        )
+        text = _FONTS.sub("font-family: sans-serif", text)
+        text = _ELEMENT.sub(lambda element: _ROUNDED.sub(r"\1", element[0]), text)
         elements.append(_MARKERS.sub(_strokes, text))
     return elements
 
@@ -167,7 +164,7 @@ def time_unit(span: float) -> tuple[float, str]:
     for seconds, word, least in ((86_400.0, "d", 3.0), (3600.0, "h", 2.0), (60.0, "min", 10.0), (1.0, "s", 1.0)):
         if span >= least * seconds:
             return 1 / seconds, word
-    return (1e3, "ms") if span < 1 else (1.0, "s")
+    return 1e3, "ms"
 
 
 def _shown(motion: Motion) -> str:

@@ -19,6 +19,8 @@ from typing import Any
 
 from reference.errors import plain_lines
 
+from ..candidates.text import is_number
+
 MARK = '<meta name="generator" content="foucault">'  # in every page; shows that a folder was written by us
 _POLICY = (
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
@@ -201,10 +203,4 @@ def _harmless(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     line = plain_lines(value)
-    if not line.startswith(_FORMULA):
-        return line
-    try:
-        float(line)
-    except ValueError:
-        return f"'{line}"
-    return line
+    return f"'{line}" if line.startswith(_FORMULA) and not is_number(line) else line

@@ -19,6 +19,7 @@ from ..studies.row import Row
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named
 PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
+SMALL = 1.5e-3  # numbers below this are written with an exponent
 ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
 
 
@@ -69,15 +70,11 @@ def curves(rows: Sequence[Row]) -> list[Curve]:
     for row in rows:
         usual.setdefault(row.method, row.formulation)
         groups.setdefault((row.method, row.formulation), []).append(row)
-    return [
-        Curve(
-            method,
-            formulation,
-            usual[method] == formulation,
-            tuple(sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)),
-        )
-        for (method, formulation), group in groups.items()
-    ]
+    found = []
+    for (method, formulation), group in groups.items():
+        ladder = sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)
+        found.append(Curve(method, formulation, usual[method] == formulation, tuple(ladder)))
+    return found
 
 
 def error_of(row: Row, bound_m: float) -> float:
@@ -172,9 +169,8 @@ def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
     if others:
         (fewer, less), (more, dearer) = costs[-2:]
         if more - fewer > 1:
-            text += (
-                f"; from {fewer:.0f} to {more:.0f} a further digit costs {seconds((dearer - less) / (more - fewer))}"
-            )
+            further = seconds((dearer - less) / (more - fewer))
+            text += f"; from {fewer:.0f} to {more:.0f} a further digit costs {further}"
     return f"{text}."
 
 
@@ -185,9 +181,9 @@ def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
         alike = list(group)
         (first_m, costs), (last_m, _) = alike[0], alike[-1]
         if len(alike) > 1 and all(others == costs for _, others in alike):
-            yield _sentence(rows, f"From {_metres(first_m)} to {_metres(last_m)}", costs, bound_m)
+            yield _sentence(rows, f"From {tidy(first_m)} m to {tidy(last_m)} m", costs, bound_m)
         else:
-            yield from (_sentence(rows, f"At {_metres(error_m)}", costs, bound_m) for error_m, costs in alike)
+            yield from (_sentence(rows, f"At {tidy(error_m)} m", costs, bound_m) for error_m, costs in alike)
 
 
 def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: float) -> str:
@@ -249,8 +245,12 @@ def seconds(cpu_s: float) -> str:
     return f"{cpu_s * 1e3:.3g} ms" if cpu_s < 0.1 else f"{cpu_s:.3g} s" if cpu_s < 1000 else f"{cpu_s:.0f} s"
 
 
-def _metres(error_m: float) -> str:
-    return f"1e{round(math.log10(error_m))} m"
+def tidy(value: float) -> str:
+    """Return a number with three digits, small ones with an exponent: 1e-4, 2.22e-16, 0.05, 113."""
+    if not 0 < abs(value) < SMALL:
+        return f"{value:.3g}"
+    digits, _, exponent = f"{value:.2e}".partition("e")
+    return f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}"
 
 
 def _measured(rows: Sequence[Row]) -> list[Row]:

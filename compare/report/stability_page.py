@@ -20,8 +20,9 @@ from ..studies.stability import WRONG, Cell
 from ..studies.users_program import NUMBER
 from .folder import Report
 from .page import Html, Table, facts, figure, findings, page, paragraph, section
+from .pareto import tidy
 from .stability_charts import LETTERS, error_growth, heat_map
-from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, tidy, words
+from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
@@ -83,13 +84,11 @@ def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each program of the user's a sentence: on which scenes it breaks, and how."""
     for name in dict.fromkeys(cell.method for cell in cells if cell.precision == NUMBER):
         tried = [cell for cell in cells if cell.method == name and cell.status not in NOT_TRIED]
-        breaks = [
-            f"{cell.scene} ({cell.status.words})"
-            if cell.wrong_from_s is None
-            else f"{cell.scene} (wrong from t = {cell.wrong_from_s:g} s on)"
-            for cell in tried
-            if cell.status != Status.OK
-        ]
+        breaks = []
+        for cell in tried:
+            if cell.status != Status.OK:
+                how = cell.status.words if cell.wrong_from_s is None else f"wrong from t = {cell.wrong_from_s:g} s on"
+                breaks.append(f"{cell.scene} ({how})")
         yield f"{name} breaks on {len(breaks)} of {len(tried)} scenes{': ' if breaks else ''}{', '.join(breaks)}."
 
 
@@ -123,23 +122,17 @@ def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
     cells, runs = _parsed(document)
     letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
+    kept = f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}."
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
     wrong, magnified = ([cell for cell in failures if cell.status == status] for status in COUNTED)
     parts = [
         section("Findings", findings(headlines(cells))),
-        section(
-            "Digits kept",
-            figure(
-                heat_map(cells),
-                f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}.",
-            ),
-        ),
+        section("Digits kept", figure(heat_map(cells), kept)),
         section("Silently wrong", _runs(wrong, reasons=True)),
-        *(
-            [section("Ill-conditioned: the motion magnifies errors", _runs(magnified, reasons=True))]
-            if magnified
-            else []
-        ),
+    ]
+    if magnified:
+        parts.append(section("Ill-conditioned: the motion magnifies errors", _runs(magnified, reasons=True)))
+    parts += [
         section("Other failures", _runs([cell for cell in failures if cell.status not in COUNTED], reasons=True)),
         section("What each run was asked for, and what it kept", _runs(cells)),
         section("What the words mean", words({cell.status for cell in cells})),
@@ -154,14 +147,11 @@ def page_text(document: dict[str, Any]) -> str:
     if programs:
         parts.append(section("Programs", _programs(programs)))
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
-    return page(
-        "Stiff and extreme scenes: what breaks, and when",
-        parts,
-        lead=paragraph(
-            "Each method was asked for the same number of digits on every scene, and its result was compared with the "
-            f"reference solution{_LEAD_OF_PROGRAMS if programs else ''}."
-        ),
+    lead = paragraph(
+        "Each method was asked for the same number of digits on every scene, and its result was compared with the "
+        f"reference solution{_LEAD_OF_PROGRAMS if programs else ''}."
     )
+    return page("Stiff and extreme scenes: what breaks, and when", parts, lead=lead)
 
 
 def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:

@@ -178,12 +178,11 @@ def _staircase(best: Sequence[Row], bound_m: float) -> Line:
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:
     """Draw failed rows that have a cost as crosses in a strip along the top, in the colour of their family."""
-    failed = [row for row in rows if row.failed and row.cpu_s]
     strip = {"transform": axes.transAxes, "zorder": 0}
     axes.fill([0, 1, 1, 0], [_STRIP, _STRIP, 1, 1], color=BAND, linewidth=0, **strip)
     middle = (1 + _STRIP) / 2
     axes.text(0.995, middle, "failed", ha="right", va="center_baseline", color=FAINT, fontsize=8, **strip)
-    for row in failed:
+    for row in (row for row in rows if row.failed and row.cpu_s):
         axes.plot(
             [row.cpu_s], [middle], marker="x", markersize=5, color=FAMILY_COLOURS[family_of(row.method)],
             transform=axes.get_xaxis_transform(), zorder=5,
@@ -197,9 +196,8 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
     is fitted, the fit is a broad and faint line, and its exponent stands beside the name.
     """
     laws = costs_of_digits(rows, bound_m)
-    shown = [
-        curve for curve in curves(rows) if curve.own and family_of(curve.method) in (Family.MANY_DIGITS, Family.HEYOKA)
-    ]
+    families = Family.MANY_DIGITS, Family.HEYOKA
+    shown = [curve for curve in curves(rows) if curve.own and family_of(curve.method) in families]
     if not any(curve.kind == "precision" and curve.measured for curve in shown):
         return None
 
@@ -241,11 +239,9 @@ def _known(axes: Any, bound_m: float) -> None:
 def right_hand_sides(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
     shown = [curve for curve in curves(rows) if curve.own]
-    return _single(
-        ladders(shown, attrgetter("rhs_evaluations"), partial(error_of, bound_m=bound_m)),
-        bound_m,
-        ("evaluations", "evaluations of the right-hand side", "Error against evaluations of the right-hand side"),
-    )
+    lines = ladders(shown, attrgetter("rhs_evaluations"), partial(error_of, bound_m=bound_m))
+    evaluations = "evaluations of the right-hand side"
+    return _single(lines, bound_m, ("evaluations", evaluations, f"Error against {evaluations}"))
 
 
 def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:

@@ -22,21 +22,19 @@ def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     conclusions, coarse = sentences(document), not of_digits(rows, bound_m)
+    main = findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m.")
     failed, lost = study_tables.failures(rows), {row.status for row in rows if row.failed}
     limit = f"{document['limit_s']:g} CPU seconds"
     measured = [words.format(limit=limit, repeat_s=REPEAT_S, repeats=REPEATS) for words in TEXTS["measured"]]
     parts = [
-        section(
-            "Main results",
-            findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m."),
-        ),
+        section("Main results", main),
         *([section("Least cost of an error", study_tables.costs(rows, bound_m))] if coarse else []),
         *_pictures(rows, bound_m),
         *([section("The Pareto front", study_tables.pareto_front(rows, bound_m))] if coarse else []),
         section("Every row", study_tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed, study_tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, measured)),
-        section("The methods", study_tables.methods(rows, bound_m, document["programs"], document["candidates"])),
+        section("The methods", study_tables.methods(rows, bound_m, document["programs"])),
     ]
     return page(f"Error against run time: {document['title'] or document['scene']}", parts, lead=_lead(document))
 

@@ -22,11 +22,10 @@ from ..studies.stability import Cell
 from ..studies.study import ObservedOrder, orders
 from ..studies.users_program import FILE
 from .page import Html, Table, strong
-from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, sentences
+from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, sentences, tidy
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
-SMALL = 1.5e-3  # settings below this are written with an exponent
 BUSY = 1.0  # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
 SPREAD = 0.2  # difference of repeated costs over their median; with more, ratios of costs are doubtful
 
@@ -113,12 +112,10 @@ def advice(statuses: Collection[Status]) -> list[str]:
     return [f"{status.words}: {status.advice}" for status in Status if status in statuses and status.advice]
 
 
-def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str]) -> Html:
+def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
     listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
-    of_method: dict[str, ObservedOrder] = {}
-    for order in orders(rows, bound_m):
-        of_method.setdefault(order.method, order)  # the first formulation is the method's own
+    of_method = {order.method: order for order in reversed(orders(rows, bound_m))}  # in its own formulation, the first
     body = [
         (
             method.id, method.title, method.order or ABSENT, observed(of_method.get(method.id)),
@@ -126,11 +123,10 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], fi
         )
         for method in listed
     ]  # fmt: skip
-    yours = {name: (shortened(command, LONGEST_COMMAND), "--run") for name, command in programs.items()}
-    yours |= dict.fromkeys(files, ("", "--candidates"))
-    rest = [(name, command, "", "", source, "", "") for name, (command, source) in yours.items()]
+    yours = [(name, shortened(command, LONGEST_COMMAND), "", "", "--run", "", "") for name, command in programs.items()]
+    yours += [(row.method, "", "", "", "--candidates", "", "") for row in rows if row.kind == FILE]
     columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
-    return Table(columns, [*body, *rest]).html(TEXTS["orders"])
+    return Table(columns, [*body, *yours]).html(TEXTS["orders"])
 
 
 def observed(order: ObservedOrder | None) -> str:
@@ -192,14 +188,6 @@ def setting(row: Row | Cell) -> str:
     return tidy(row.setting) + {"step": " s", "precision": " bits"}.get(row.kind, "")
 
 
-def tidy(value: float) -> str:
-    """Return a number with three digits, small ones with an exponent: 1e-4, 2.22e-16, 0.05, 113."""
-    if not 0 < abs(value) < SMALL:
-        return f"{value:.3g}"
-    digits, _, exponent = f"{value:.2e}".partition("e")
-    return f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}"
-
-
 def number(value: float | None) -> str:
     """Return a number with three digits and an exponent; empty for None."""
     return "" if value is None else f"{value:.2e}"
@@ -241,13 +229,10 @@ def busy(rows: Sequence[Row | Cell]) -> str:
     if loads:
         parts.append(f"{median(loads):.1f} processes for each core (median), {max(loads):.1f} at most")
     if spreads:
-        parts.append(f"repeats of a run differ by {100 * median(spreads):.0f} % (median), {100 * max(spreads):.0f} %")
-        parts[-1] += " at most"
-    if not parts:
-        return "not known"
-    text = "; ".join(parts)
-    crowded, uneven = bool(loads) and median(loads) > BUSY, bool(spreads) and median(spreads) > SPREAD
-    if not (crowded or uneven):
-        return text
+        usual, most = (f"{100 * spread:.0f} %" for spread in (median(spreads), max(spreads)))
+        parts.append(f"repeats of a run differ by {usual} (median), {most} at most")
+    text = "; ".join(parts) or "not known"
     doubt = "ratios of costs drift too, most where vectors are wide (AVX-512)"
-    return f"{text}. The machine was busy: {doubt}" if crowded else f"{text}. Costs were uneven: {doubt}"
+    if loads and median(loads) > BUSY:
+        return f"{text}. The machine was busy: {doubt}"
+    return f"{text}. Costs were uneven: {doubt}" if spreads and median(spreads) > SPREAD else text

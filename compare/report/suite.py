@@ -127,11 +127,9 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
     if score is None:
         return outcome.scene, outcome.verdict, "", "", "", "", "", outcome.name
     errors, transits = score.errors, score.transits
-    matched = (
-        ""
-        if transits is None
-        else f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra"
-    )
+    matched = ""
+    if transits is not None:
+        matched = f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra"
     numbers = percent(score.covered), f"{errors.max_m:.2g} m", f"{score.tolerance_m:.2g} m", f"{errors.digits:.1f}"
     return outcome.scene, outcome.verdict, *numbers, matched, outcome.name
 
@@ -178,11 +176,8 @@ def append_summary(text: str) -> None:
     if not name:
         return
     path = Path(name)
-    with (
-        writing(SUMMARY, path, "a file that can be written to"),
-        path.open("a", encoding="utf-8", errors="backslashreplace") as stream,
-    ):
-        stream.write(text)
+    with writing(SUMMARY, path, "a file that can be written to"), path.open("ab") as stream:
+        stream.write(text.encode(errors="backslashreplace"))
 
 
 def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:

@@ -139,9 +139,8 @@ def check(request: Request, path: Path) -> None:
     check_target(path)
     table = request.table
     if table.typed is None or len(table.shape) > 2 or set(table.values) & set(TEXTS):
-        raise InputError(
-            "--plot", str(path), "one or two fields varied by --over, both numbers", "Or draw the columns."
-        )
+        expected = "one or two fields varied by --over, both numbers"
+        raise InputError("--plot", str(path), expected, "Or draw the columns.")
     if not _drawn(request):
         raise InputError("--plot", str(path), "--want with frequency or precession")
 
@@ -188,10 +187,8 @@ def _map(figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str,
     low, high = np.nanmin(grid, initial=np.inf), np.nanmax(grid, initial=-np.inf)
     signed = low < 0 < high
     most = max(-low, high)
-    span = {"vmin": -most, "vmax": most} if signed else {}
-    mesh = panel.pcolormesh(
-        np.sort(x), np.sort(y), grid, cmap="RdBu_r" if signed else "cividis", **span, rasterized=True
-    )
+    style = {"vmin": -most, "vmax": most, "cmap": "RdBu_r"} if signed else {"cmap": "cividis"}
+    mesh = panel.pcolormesh(np.sort(x), np.sort(y), grid, **style, rasterized=True)
     panel.set_ylabel(_label(key))
     bar = figure.colorbar(mesh, ax=panel, label=label)
     bar.formatter.set_useOffset(False)

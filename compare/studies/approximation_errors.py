@@ -85,15 +85,15 @@ class ReferenceMotion:
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
         return {"error_m": np.maximum.accumulate(position), "plane_error_arcsec": np.fmax.accumulate(plane)}
 
-    def largest(self, motion: Motion, marks: Sequence[float]) -> list[tuple[float | None, float | None, Status, str]]:
-        """Return position error, plane error, status and reason of an approximation up to each of some times."""
+    def largest(self, motion: Motion, marks: Sequence[float]) -> list[TimeRow]:
+        """Return the largest errors of an approximation up to each of some times in s."""
         try:
             errors = self.errors(motion)
         except FoucaultError as error:
-            return [(None, None, *failure(error))] * len(marks)
+            return [TimeRow(motion.id, t, None, None, *failure(error)) for t in marks]
         places = np.searchsorted(self.times, np.array(marks) * (1 + 1e-12), side="right") - 1
-        rows = zip(*(error[places].tolist() for error in errors.values()), strict=True)
-        return [(position, None if np.isnan(plane) else plane, Status.OK, "") for position, plane in rows]
+        rows = zip(marks, *(error[places].tolist() for error in errors.values()), strict=True)
+        return [TimeRow(motion.id, t, position, None if np.isnan(plane) else plane) for t, position, plane in rows]
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
@@ -118,11 +118,7 @@ def error_table(scene: Scene, chosen: Iterable[Motion], t_end: float, times: Seq
     """
     marks = [*(t for t in times if t < t_end), t_end]
     truth = ReferenceMotion(scene, t_end, marks)
-    return [
-        TimeRow(motion.id, t, *errors)
-        for motion in chosen
-        for t, errors in zip(marks, truth.largest(motion, marks), strict=True)
-    ]
+    return [row for motion in chosen for row in truth.largest(motion, marks)]
 
 
 def quantity_table(scene: Scene) -> list[QuantityRow]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import Any
 
 import numpy as np
 
@@ -63,7 +62,8 @@ def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[S
     rows = []
     for value in sweep_values(scene, over):
         truth = ReferenceMotion(varied(scene, over, value), t)
-        rows += [SweepRow(motion.id, t, *truth.largest(motion, [t])[0], over=over, value=value) for motion in chosen]
+        found = [row for motion in chosen for row in truth.largest(motion, [t])]
+        rows += [SweepRow(**vars(row), over=over, value=value) for row in found]
     return rows
 
 
@@ -81,7 +81,7 @@ def limits(scene: Scene, chosen: Sequence[Motion], over: str, t_end: float) -> l
         return _time_limits(scene, chosen, t_end)
     rows, limit_rows = sweep(scene, chosen, over, t_end), []
     for motion in chosen:
-        of_one = sorted((row for row in rows if row.approximation == motion.id), key=lambda row: row.value)
+        of_one = [row for row in rows if row.approximation == motion.id]
         nowhere = all(row.error_m is None for row in of_one)
         outcome = (of_one[0].status, of_one[0].reason) if nowhere else (Status.OK, "")
         for name, quantity, limit in LIMITS:
@@ -100,8 +100,7 @@ def _time_limits(scene: Scene, chosen: Iterable[Motion], t_end: float) -> list[L
             rows += [LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS]
             continue
         for name, quantity, limit in LIMITS:
-            above = np.flatnonzero(~(errors[quantity] <= limit))
-            last = len(truth.times) - 1 if not len(above) else int(above[0]) - 1
+            last = int(np.logical_and.accumulate(errors[quantity] <= limit).sum()) - 1  # before the first above it
             rows.append(LimitRow(motion.id, "time", "s", name, ((0.0, float(truth.times[last])),) if last > 0 else ()))
     return rows
 
@@ -146,34 +145,21 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
         InputError: no scene can have the value.
     """
     text = repr(float(value))
+    if over == "latitude" or (over == "length" and scene.exact.position is None):
+        return scene.with_values({over: text})
+    case = Case.of_scene(scene)
+    (x, y), (vx, vy), target = case.position[:2], case.velocity[:2], case.ctx.mpf(text)
+    document = scene.model_dump(exclude_none=True)
     if over == "length":
-        return _lengthened(scene, text)
-    return _displaced(scene, text) if over == "amplitude" else scene.with_values([f"site.latitude={text}"])
-
-
-def _lengthened(scene: Scene, text: str) -> Scene:
-    if scene.exact.position is None:
-        return scene.with_values([f"pendulum.length={text}"])
-    case = Case.of_scene(scene)
-    document = scene.model_dump(exclude_none=True) | {"release": _release(case, case.ctx.mpf(text) / case.length, 0)}
-    document["pendulum"]["length"] = text
+        document["pendulum"]["length"] = text
+        centre_y, ratio = 0, target / case.length
+    else:
+        centre_y = case.ctx.mpf(case.rest[1]) * case.length
+        amplitude = case.ctx.hypot(x, y - centre_y)
+        if not amplitude:
+            got = f"x = {scene.release.x}, y = {scene.release.y}"
+            raise InputError("release", got, "a release away from the rest position")
+        ratio = target / amplitude
+    release = {"x": x * ratio, "y": centre_y + (y - centre_y) * ratio, "vx": vx * ratio, "vy": vy * ratio}
+    document["release"] = {name: str(case.ctx.nstr(number, _DIGITS)) for name, number in release.items()}
     return parse_scene(document)
-
-
-def _displaced(scene: Scene, text: str) -> Scene:
-    case = Case.of_scene(scene)
-    rest_y = case.ctx.mpf(case.rest[1]) * case.length
-    amplitude = case.ctx.hypot(case.position[0], case.position[1] - rest_y)
-    if not amplitude:
-        raise InputError(
-            "release", f"x = {scene.release.x}, y = {scene.release.y}", "a release away from the rest position"
-        )
-    release = _release(case, case.ctx.mpf(text) / amplitude, rest_y)
-    return parse_scene(scene.model_dump(exclude_none=True) | {"release": release})
-
-
-def _release(case: Case, ratio: Any, rest_y: Any) -> dict[str, str]:
-    """Return the release with its distance from the point x = 0, y = rest_y, and its velocity, times a ratio."""
-    (x, y), (vx, vy) = case.position[:2], case.velocity[:2]
-    values = {"x": x * ratio, "y": rest_y + (y - rest_y) * ratio, "vx": vx * ratio, "vy": vy * ratio}
-    return {name: str(case.ctx.nstr(value, _DIGITS)) for name, value in values.items()}

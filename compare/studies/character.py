@@ -7,6 +7,7 @@ motion, without those that a formulation adds off the sphere.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,22 +75,18 @@ def character(scene: Scene, times: Array, states: Array) -> Character:
     length = float(k.length)
     chosen = np.unique(np.linspace(0, len(times) - 1, SAMPLES).astype(int))
     scaled = states / length
-    sizes, decays, ratios, pulls = [0.0], [0.0], [1.0], []
-    for state in scaled[chosen]:
-        rates = np.linalg.eigvals(_tangent_jacobian(state, k))
-        size = np.abs(rates)
-        sizes.append(float(size.max()))
-        decays.append(float(-rates.real.min()))
-        nonzero = size[size > 1e-12 * max(size.max(), 1e-300)]
-        ratios.append(float(nonzero.max() / nonzero.min()) if len(nonzero) else 1.0)
-        pulls.append(float(tension(tuple(state[:3]), tuple(state[3:]), k)))
+    rates = np.array([np.linalg.eigvals(_tangent_jacobian(state, k)) for state in scaled[chosen]])
+    sizes = np.abs(rates)
+    largest = np.maximum(sizes.max(axis=1, keepdims=True), 1e-300)  # at each state
+    least = np.where(sizes > 1e-12 * largest, sizes, largest)  # without the rates that are zero
+    columns = tuple(scaled[chosen].T)
     aside = np.hypot(scaled[:, 0], scaled[:, 1])
     return Character(
-        fastest=max(sizes),
-        damping=max(decays),
-        ratio=max(ratios),
+        fastest=float(sizes.max()),
+        damping=max(0.0, float(-rates.real.min())),
+        ratio=float((largest / least).max()),
         magnified=_magnified(scene, times[chosen], length),
-        least_tension=min(pulls),
+        least_tension=float(tension(columns[:3], columns[3:], k).min()),
         nearest=float(aside.min()),
         amplitude=float(aside.max()),
         span=float(times[-1]),
@@ -101,18 +98,11 @@ def _tangent_jacobian(state: Array, k: Constants) -> Array:
     model = FORMULATIONS["space"]
     n, v = state[:3], state[3:]
     size = np.array([1.0] * 3 + [max(1.0, float(np.abs(v).max()))] * 3)
-    columns = []
-    for i in range(6):
-        nudge = np.zeros(6)
-        nudge[i] = _NUDGE * size[i]
-        ahead, behind = (
-            np.array(model.derivatives(tuple(state + side * nudge), k, math), dtype=np.float64) for side in (1, -1)
-        )
-        columns.append((ahead - behind) / (2 * nudge[i]))
-    jacobian = np.array(columns).T
+    nudges = np.diag(_NUDGE * size)  # a column for each displacement
+    ahead, behind = (np.array(model.derivatives(tuple(state[:, None] + moved), k, math)) for moved in (nudges, -nudges))
+    jacobian = (ahead - behind) / (2 * _NUDGE * size)
     normals = np.array([np.concatenate([n, np.zeros(3)]), np.concatenate([v, n])])
-    scaled = normals * size  # positions and rates in comparable units before the tangent space is taken
-    _, _, basis = np.linalg.svd(scaled)
+    _, _, basis = np.linalg.svd(normals * size)  # positions and rates in comparable units
     tangent = basis[2:].T
     return np.asarray(tangent.T @ (jacobian * size / size[:, None]) @ tangent)
 
@@ -128,7 +118,7 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     factors = [1.0]
     for name in names:
         displacement = response.derivative(f"release.{name}")[:, :3]
-        sizes = np.sqrt((displacement**2).sum(axis=1))
+        sizes = np.linalg.norm(displacement, axis=1)
         at_release = float(sizes[0]) if name in ("angle", "azimuth") else 1.0
         if at_release > 1e-12 * length:
             factors.append(float(sizes.max()) / at_release)
@@ -148,52 +138,36 @@ def reason_of(
         return ""
     if status in (Status.NOT_INSTALLED, Status.REFUSED):
         return row.reason
-    causes = [*_causes(row, status, traits)]
+    causes = list(_causes(row, status, traits))
     reported = f" It reported: {row.reason.rstrip('.')}." if row.reason and status != Status.OUT_OF_TIME else ""
     if status == Status.OUT_OF_TIME:
-        cost = (
-            f"the whole span would take about {row.cpu_s:.2g} s; the limit is {limit_s:g} s"
-            if row.cpu_s
-            else row.reason
-        )
-        return _sentence([cost, *causes])
+        cost = f"the whole span would take about {row.cpu_s:.2g} s; the limit is {limit_s:g} s" if row.cpu_s else ""
+        return _sentence([cost or row.reason, *causes])
     if status == Status.ILL_CONDITIONED and digits is not None:
-        return _sentence(
-            [
-                f"the flow magnifies an error at the release {traits.magnified:.1g} times; the result is off by "
-                f"{10 ** (requested - digits):.1g} times what was asked for"
-            ]
-        )
+        magnified = f"the flow magnifies an error at the release {traits.magnified:.1g} times"
+        return _sentence([magnified, f"the result is off by {10 ** (requested - digits):.1g} times what was asked for"])
     if status == Status.SILENTLY_WRONG and digits is not None:
         head = f"success was reported with {digits:.1f} digits where {requested:.1f} were asked for"
         return _sentence([head, *(causes or [_accumulated(row)])])
     return _sentence(causes or ["no measured property of the scene explains it"]) + reported
 
 
-def _causes(row: Row, status: Status, traits: Character) -> list[str]:
-    causes = []
+def _causes(row: Row, status: Status, traits: Character) -> Iterator[str]:
     if traits.stiff:
         steps = traits.damping * traits.span / EXPLICIT_REACH
         text = f"stiff: rates up to {traits.damping:.2g}/s, a factor of {traits.ratio:.1g} apart"
-        causes.append(f"{text}, so that an explicit method needs about {steps:.1g} steps")
+        yield f"{text}, so that an explicit method needs about {steps:.1g} steps"
     if row.formulation in ("angles", "lagrangian") and traits.nearest < 1e-3:
-        causes.append(
-            f"the path passes the vertical within {traits.nearest:.1g} of the length, where the azimuth jumps"
-        )
+        yield f"the path passes the vertical within {traits.nearest:.1g} of the length, where the azimuth jumps"
     if row.formulation == "plane" and traits.amplitude > 0.99:
-        causes.append("the path reaches the height of the suspension, where x and y do not determine the state")
+        yield "the path reaches the height of the suspension, where x and y do not determine the state"
     if row.formulation == "space" and traits.least_tension < 0:
-        text = f"the rod is pushed (least tension {traits.least_tension:.2g}/s²): |r| - l grows exponentially"
-        causes.append(text)
+        yield f"the rod is pushed (least tension {traits.least_tension:.2g}/s²): |r| - l grows exponentially"
     if status != Status.OUT_OF_TIME and traits.magnified > 1e3:
-        causes.append(f"the flow amplifies an error at the release {traits.magnified:.1g} times")
+        yield f"the flow amplifies an error at the release {traits.magnified:.1g} times"
     if status == Status.SILENTLY_WRONG and 0 < traits.amplitude < 1e-5 and row.kind != "precision":
-        lost = -math.log10(traits.amplitude)
-        causes.append(
-            f"the amplitude is {traits.amplitude:.1g} of the length: "
-            f"cancellation against z ≈ −l costs {lost:.0f} digits"
-        )
-    return causes
+        cancelled = f"cancellation against z ≈ −l costs {-math.log10(traits.amplitude):.0f} digits"
+        yield f"the amplitude is {traits.amplitude:.1g} of the length: {cancelled}"
 
 
 def _accumulated(row: Row) -> str:

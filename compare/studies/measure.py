@@ -85,9 +85,8 @@ class Bench:
             part = times[: max(2 * len(probe_times), int(self.limit_s / 4 / expected_s * len(times)))]
             if len(part) < rows:
                 base, outcome, costs_s = self._run(base, method, part, repeats=1)
-                expected_s = costs_s[0] + max(0.0, costs_s[0] - probe_s) * float(
-                    (times[-1] - part[-1]) / (part[-1] - probe_times[-1])
-                )
+                left = float((times[-1] - part[-1]) / (part[-1] - probe_times[-1]))
+                expected_s = costs_s[0] + max(0.0, costs_s[0] - probe_s) * left
                 if outcome.status != Status.OK or expected_s > self.limit_s:
                     return self._finished(base, method, outcome, costs_s, part, expected_s)
         base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
@@ -152,12 +151,11 @@ class Bench:
         if not len(transits):
             return row
         problem = Problem.of(self.scene, row.formulation, np.concatenate([[0.0], transits]))
-        work = method.prepare(problem, row.setting)
-        outcome = work()
+        outcome = method.prepare(problem, row.setting)()
         if outcome.status != Status.OK:
             return row
         errors_s, floor_s = self.truth.transit_errors(self.scene, outcome)
-        gaps = np.diff(np.concatenate([[0.0], transits, [np.inf]]))
+        gaps = np.diff(transits, prepend=0.0, append=np.inf)
         missed = errors_s > MISSED * np.minimum(gaps[1:], gaps[:-1])
         if missed.any():
             first = float(transits[np.argmax(missed)])

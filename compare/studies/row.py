@@ -28,10 +28,8 @@ _NUDGE = 1e-6  # of the time in which the motion changes
 
 def failure(error: Exception) -> tuple[Status, str]:
     """Return status and reason of a run that raised one of `FAILURES`."""
-    if isinstance(error, IntegrationError):
-        return Status.GAVE_UP, str(error)
     if isinstance(error, FoucaultError):
-        return Status.REFUSED, str(error)
+        return Status.GAVE_UP if isinstance(error, IntegrationError) else Status.REFUSED, str(error)
     return Status.GAVE_UP, f"{type(error).__name__}: {error}"
 
 
@@ -154,9 +152,7 @@ class GridTruth:
         n, v = (states[:, parts] / k.length for parts in (slice(0, 3), slice(3, 6)))
         a = np.array(np.broadcast_arrays(*acceleration(tuple(n.T), tuple(v.T), k))).T
         nudge = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())  # s, in which little changes
-        ahead, behind = (
-            np.asarray(acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]) for dt in (nudge, -nudge)
-        )
+        ahead, behind = (acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0] for dt in (nudge, -nudge))
         away = difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])  # of the doubles, in s
         with np.errstate(divide="ignore", invalid="ignore"):
             errors_s = np.abs(away - vx / (a[:, 0] * k.length))

@@ -146,12 +146,6 @@ def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_en
     solving(solved + t / t_end, scenes)
 
 
-def _precision(method: str, formulation: str | None) -> str:
-    if method not in METHODS:
-        return users_program.NUMBER
-    return METHODS[method].number + (f", {formulation}" if formulation else "")
-
-
 @dataclass(frozen=True)
 class _Cells(Measurement[Item, Cell]):
     """Methods and programs on scenes."""
@@ -183,9 +177,12 @@ class _Cells(Measurement[Item, Cell]):
 
     def failed(self, item: Item, status: Status, reason: str) -> Cell:
         method, formulation, setting, scene = item
-        kind = METHODS[method].setting if method in METHODS else "step"
+        kind, number = "step", users_program.NUMBER
+        if method in METHODS:
+            kind, number = METHODS[method].setting, METHODS[method].number
+        precision = f"{number}, {formulation}" if formulation else number
         used = None if kind == "step" else setting  # a step depends on the scene's rates
-        asked, precision = digits_asked(method, setting), _precision(method, formulation)
+        asked = digits_asked(method, setting)
         return Cell(scene, method, precision, status, None, asked, None, reason, setting=used, kind=kind)
 
     def _judged(self, item: Item, row: Row, traits: Character, amplitude: float) -> Cell:

@@ -24,7 +24,7 @@ from .campaign import Counted, campaign, machine
 from .measure import Bench, OnScene
 from .row import Row
 from .study_plan import Item, on_doubles, plan
-from .users_program import file_row
+from .users_program import FILE, file_row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
 PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
@@ -45,7 +45,6 @@ class Study:
         rows: every method at every setting, failed ones included.
         programs: commands of the user's programs, by the names that the rows call them by.
         machine: processor, system and versions of libraries.
-        candidates: names of the rows that are files.
     """
 
     scene: Scene
@@ -55,7 +54,6 @@ class Study:
     rows: list[Row]
     machine: dict[str, str]
     programs: Mapping[str, str] = field(default_factory=dict)
-    candidates: Sequence[str] = ()
 
     def __repr__(self) -> str:
         """Return the scene, the span, and how many rows have a cost and an error."""
@@ -76,7 +74,7 @@ class Study:
             },
             "machine": self.machine,
             "programs": dict(self.programs),
-            "candidates": list(self.candidates),
+            "candidates": [row.method for row in self.rows if row.kind == FILE],
             "orders": [asdict(order) for order in orders(self.rows, float(self.golden.manifest.bounds.position_m))],
             "rows": [asdict(row) for row in self.rows],
         }
@@ -143,20 +141,12 @@ def study(
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
     commands = programs or {}
-    runs = _MethodRuns(
-        [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
-        PATIENCE * limit_s,
-        commands,
-        problem,
-        golden.path,
-        limit_s,
-    )
-    rows = campaign(
-        runs, list(items or plan(requested, methods, formulations)), journal_path=journal_path, report=report
-    )
-    files = [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
-    names = tuple(candidates or ())
-    return Study(problem, float(problem.exact.t_end), limit_s, golden, [*rows, *files], machine(), commands, names)
+    recipe = [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s]
+    runs = _MethodRuns(recipe, PATIENCE * limit_s, commands, problem, golden.path, limit_s)
+    chosen = items or plan(requested, methods, formulations)
+    rows = campaign(runs, chosen, journal_path=journal_path, report=report)
+    rows += [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
+    return Study(problem, float(problem.exact.t_end), limit_s, golden, rows, machine(), commands)
 
 
 @dataclass(frozen=True)
@@ -196,12 +186,10 @@ def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
 
 
 def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -> ObservedOrder:
-    declared = METHODS[method].order or 0
     laws = [law for law in _laws(rows, bound_m) if law.standard_error <= TOLD_APART]
-    if not laws:
-        return ObservedOrder(method, formulation, declared)
-    law = max(laws, key=lambda law: (law.points, -law.standard_error))
-    return ObservedOrder(method, formulation, declared, -law.exponent, law.standard_error, law.points)
+    law = max(laws, key=lambda law: (law.points, -law.standard_error), default=None)
+    observed = () if law is None else (-law.exponent, law.standard_error, law.points)
+    return ObservedOrder(method, formulation, METHODS[method].order or 0, *observed)
 
 
 def _laws(rows: Sequence[Row], bound_m: float) -> Iterator[PowerLaw]:

@@ -116,12 +116,8 @@ def bits_of(text: str) -> list[int]:
     except ValueError:
         precisions = []
     if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > MOST_BITS:
-        raise InputError(
-            "--precisions",
-            text,
-            f"bits from {DOUBLE_BITS} to {MOST_BITS}, such as 53,64,113,256,512",
-            "Separate them by commas.",
-        )
+        expected = f"bits from {DOUBLE_BITS} to {MOST_BITS}, such as 53,64,113,256,512"
+        raise InputError("--precisions", text, expected, "Separate them by commas.")
     return precisions
 
 

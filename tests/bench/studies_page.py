@@ -14,9 +14,9 @@ from pydantic import TypeAdapter
 from scipy.stats import kendalltau
 
 from compare.methods import METHODS
-from compare.report.pareto import TARGETS_M, Curve, cost_at, cost_of, curves, rows_of, seconds, sentences
+from compare.report.pareto import TARGETS_M, Curve, cost_at, cost_of, curves, rows_of, seconds, sentences, tidy
 from compare.report.stability_page import headlines
-from compare.report.study_tables import busy, setting, tidy
+from compare.report.study_tables import busy, setting
 from compare.studies.campaign import JUDGED
 from compare.studies.long_runs import DAY_S, FROM, SCENE
 from compare.studies.row import Row

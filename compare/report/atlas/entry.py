@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import attrgetter
 from pathlib import Path
 
@@ -26,28 +27,27 @@ NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}  # of a cell in docs/st
 KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}  # they make no difference to a score
 
 
-@dataclass(frozen=True)
+@dataclass
 class StudyResults:
     """Results of the kept studies for one scene: runs asked for the same digits, and the least error of each method.
 
     Attributes:
-        asked: runs that were asked for the same digits.
+        asked: runs that were asked for the same digits, by name.
         least: the most accurate run of each method over `span_s`.
         span_s: in s; 0 if there is no such study.
     """
 
-    asked: Sequence[Cell] = ()
+    asked: dict[str, Cell] = field(default_factory=dict)
     least: Sequence[Row] = ()
     span_s: float = 0.0
 
     def sentence(self) -> str:
         """Return it in short; empty if nothing is known."""
         if self.asked:
-            right = sum(cell.status is Status.OK for cell in self.asked)
-            wrong = [run_name(cell) for cell in self.asked if cell.status is Status.SILENTLY_WRONG]
-            return f"{right} of {len(self.asked)} runs of methods kept what was asked for" + (
-                f"; silently wrong: {', '.join(dict.fromkeys(wrong))}." if wrong else ", and none was silently wrong."
-            )
+            right = sum(cell.status is Status.OK for cell in self.asked.values())
+            wrong = [name for name, cell in self.asked.items() if cell.status is Status.SILENTLY_WRONG]
+            said = f"; silently wrong: {', '.join(wrong)}" if wrong else ", and none was silently wrong"
+            return f"{right} of {len(self.asked)} runs of methods kept what was asked for{said}."
         if self.least:
             best = self.least[0]
             return f"{len(self.least)} methods; the most accurate, {run_name(best)}, is {best.error_m:.1e} m off."
@@ -151,8 +151,7 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     Raises:
         InputError: a file is no study.
     """
-    asked: dict[str, dict[str, Cell]] = {}
-    least: dict[str, tuple[float, list[Row]]] = {}
+    results: dict[str, StudyResults] = defaultdict(StudyResults)
     for path in sorted(folder.glob("*.json")) if folder is not None else ():
         try:
             document = json_document(path, "--studies")
@@ -160,16 +159,12 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
             if scene is None:
                 for row in document["rows"]:
                     cell = TypeAdapter(Cell).validate_python(NOT_KEPT | row)
-                    asked.setdefault(cell.scene, {}).setdefault(run_name(cell), cell)  # the first study that has it
-            elif document["t_end"] > least.get(scene, (0.0, []))[0]:
-                least[scene] = (float(document["t_end"]), _least(rows_of(document)))
+                    results[cell.scene].asked.setdefault(run_name(cell), cell)  # the first study that has it
+            elif document["t_end"] > results[scene].span_s:
+                results[scene].least, results[scene].span_s = _least(rows_of(document)), float(document["t_end"])
         except (InputError, OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
             reason = error.advice if isinstance(error, InputError) else f"{shortened(str(error), LONGEST_REASON)}."
             raise InputError("--studies", str(path), "a study as `foucault study` writes it", reason) from None
-    results = {}
-    for name in {*asked, *least}:
-        span_s, best = least.get(name, (0.0, []))
-        results[name] = StudyResults(tuple(asked.get(name, {}).values()), best, span_s)
     return results
 
 

@@ -70,7 +70,7 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any
         made: the golden function, None if it has none.
         beside: the file beside the page that holds the function; None if the page itself does.
     """
-    first, *others = entry.datasets
+    (first, *others), title = entry.datasets, entry.golden.manifest.title.rstrip(".")
     fared = parts.methods(entry.studied)
     readings = [Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}") for golden in others]
     return page(
@@ -84,7 +84,7 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any
             section("Inputs", paragraph("SI units, angles in degrees."), parts.inputs(entry.golden)),
         ],
         lead=Html(
-            f"{paragraph(_sentence(entry))}\n{parts.flags(entry)}\n"
+            f"{paragraph(f'{title}.')}\n{parts.flags(entry)}\n"
             f'<p><a href="index.html">All scenes</a> · {text(entry.golden.manifest.source)}</p>'
         ),
         script=Html(
@@ -99,10 +99,6 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any
 def scenes_of(count: int) -> str:
     """Return how many scenes there are, in words."""
     return f"{count} scene{'' if count == 1 else 's'}"
-
-
-def _sentence(entry: Entry) -> str:
-    return f"{entry.golden.manifest.title.rstrip('.')}."
 
 
 def _card(entry: Entry, thumb: str) -> str:
@@ -133,11 +129,9 @@ def _choice(name: str, words: Iterable[str]) -> str:
 def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html:
     golden = entry.judged
     times = ", ".join(f"{t:.15g}" for t in golden.t[:3])
-    transits = (
-        " A second file with the times of xdot = 0 in a column t has your transits judged as well."
-        if golden.manifest.counts.transits
-        else ""
-    )
+    transits = ""
+    if golden.manifest.counts.transits:
+        transits = " A second file with the times of xdot = 0 in a column t has your transits judged as well."
     wanted = f"a row for {times} … s, or for some of them"
     known = "the golden rows alone: the dataset has no golden function"
     if made:

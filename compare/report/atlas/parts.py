@@ -120,19 +120,18 @@ def methods(studied: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
     if studied.asked:
-        best_first = sorted(studied.asked, key=lambda cell: -(cell.digits if cell.digits is not None else -1.0))
-        table = Table(
-            {"method": "", "outcome": "", "asked for": "number", "digits kept": "number", "CPU s": "number"},
-            [
-                (run_name(cell), cell.status.words, _one(cell.asked), _one(cell.digits), _cpu(cell.cpu_s))
-                for cell in best_first
-            ],
-            ["" if cell.status is Status.OK else "failed" for cell in best_first],
-        )
-        parts.append(table.html("Runs that were asked for the same digits (docs/studies.md)"))
+        columns = {"method": "", "outcome": "", **dict.fromkeys(("asked for", "digits kept", "CPU s"), "number")}
+        rows, kinds = [], []
+        kept = {name: -1.0 if cell.digits is None else cell.digits for name, cell in studied.asked.items()}
+        for name in sorted(kept, key=kept.__getitem__, reverse=True):
+            cell = studied.asked[name]
+            rows.append((name, cell.status.words, _one(cell.asked), _one(cell.digits), _cpu(cell.cpu_s)))
+            kinds.append("" if cell.status is Status.OK else "failed")
+        asked = Table(columns, rows, kinds)
+        parts.append(asked.html("Runs that were asked for the same digits (docs/studies.md)"))
     if studied.least:
-        rows = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
-        least = Table({"method": "", "least error": "number", "its CPU s": "number"}, rows)
+        runs = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
+        least = Table({"method": "", "least error": "number", "its CPU s": "number"}, runs)
         parts.append(least.html(f"The most accurate run of each method over {studied.span_s:g} s"))
     return parts
 

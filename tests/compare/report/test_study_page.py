@@ -18,7 +18,8 @@ from places import ROOT
 from compare.report import page as parts
 from compare.report import study_page
 from compare.report.page import Html, Table
-from compare.report.study_tables import busy, cpu, setting, text_table, tidy
+from compare.report.pareto import tidy
+from compare.report.study_tables import busy, cpu, setting, text_table
 from compare.studies.campaign import load_per_core
 from compare.studies.row import Row
 from reference.status import Status

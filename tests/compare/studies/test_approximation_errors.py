@@ -102,12 +102,12 @@ def test_limits_over_time_are_where_the_error_passes_them():
     truth = ReferenceMotion(PARIS, 7200.0)
     for row in rows:
         _, quantity, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
-        (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(quantity)
+        start, end = row.good[0]
         at_end, later = truth.largest(APPROXIMATIONS[row.approximation], [end, min(end + 17.0, 7200.0)])
         assert start == 0.0
-        assert at_end[index] <= limit
+        assert getattr(at_end, quantity) <= limit
         if end < 7200.0:
-            assert later[index] > limit * 0.999
+            assert getattr(later, quantity) > limit * 0.999
 
 
 def test_intervals_end_where_the_logarithm_of_the_error_meets_the_limit():
