@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -33,6 +34,17 @@ EDITS = {
     "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace('"t,x,y,z,vx,vy,vz"', "its header"),
 }
 HEADER = "t,x,y,z,vx,vy,vz,ax"
+IN_TURN = """
+import json, sys
+from foucault import main
+for words in json.loads(sys.argv[1]):
+    sys.argv[1:] = words
+    try:
+        main()
+    except SystemExit as end:
+        if end.code:
+            raise
+"""
 
 
 @pytest.fixture(scope="module")
@@ -56,15 +68,17 @@ def test_the_recipe_names_the_files_that_have_to_be_touched_and_no_others():
 
 
 def test_a_column_is_made_and_verified_at_levels_of_runs_and_of_proof(copy, tmp_path, size):
-    sheets, env = [], {**os.environ, "PYTHONPATH": str(copy)}
+    levels, env = ("self_consistent", "enclosed"), {**os.environ, "PYTHONPATH": str(copy)}
     env |= size({"NUMBA_DISABLE_JIT": "1"}, {})  # heyoka alone: limbs would be compiled for the copy
-    for level in ("self_consistent", "enclosed"):
-        words = ["generate", "paris", "--t-end", "120", "--digits", "20", "--level", level, "--out", tmp_path / level]
-        for command in (words, ["verify", tmp_path / level]):
-            run = [sys.executable, "-m", "foucault", *map(str, command)]
-            done = subprocess.run(run, check=False, cwd=copy, env=env, capture_output=True, text=True)
-            assert done.returncode == 0, done.stderr
-        sheets.append((tmp_path / level / "grid.csv").read_text("utf-8").splitlines())
+    lines = []
+    for level in levels:
+        out = str(tmp_path / level)
+        lines += [["generate", "paris", "--t-end", "120", "--digits", "20", "--level", level, "--out", out]]
+        lines += [["verify", out]]
+    run = [sys.executable, "-c", IN_TURN, json.dumps(lines)]
+    done = subprocess.run(run, check=False, cwd=copy, env=env, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    sheets = [(tmp_path / level / "grid.csv").read_text("utf-8").splitlines() for level in levels]
     runs, proof = ([line.split(",") for line in sheet] for sheet in sheets)
     assert ",".join(runs[0]) == ",".join(proof[0]) == HEADER
     assert [row[-1] for row in runs] == [row[-1] for row in proof]  # two ways to compute ax, the same digits

@@ -14,6 +14,7 @@ import tomllib
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 import causes_page
@@ -22,7 +23,7 @@ import functions_page
 import numpy as np
 import pytest
 import typer
-from pages import PAGES, blocks, code_spans, commands, of_language, output, shows, write_files
+from pages import PAGES, blocks, code_spans, commands, of_language, output, output_here, shows, write_files
 from places import ROOT
 
 import compare
@@ -64,42 +65,48 @@ LANGUAGES = {
 }
 
 
+@pytest.fixture
+def typed(foucault, capfd):
+    """What a line prints in a folder; the README's are all typed in a shell, by a test of its own."""
+    return partial(output_here, foucault=foucault, capfd=capfd)
+
+
 def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them():
     languages = {page: {block.language for block in blocks(page)} for page in PAGES}
     assert {page: words for page, words in languages.items() if words} == LANGUAGES
 
 
-def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path):
+def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed):
     assert write_files(TUTORIAL, tmp_path) == ["pendulum.py", "sphere.py", "test_pendulum.py", "mine.toml"]
     for command, shown in commands(TUTORIAL):
-        got = output(command, tmp_path)
+        got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
 
 
-def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path):
+def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, typed):
     assert write_files(SCENE, tmp_path) == ["church.toml"]
     for command, shown in commands(SCENE):
-        got = output(command, tmp_path)
+        got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     template = reference.load_scene(tmp_path / "mine.toml")
     assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
 
 
-def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path):
+def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
     assert write_files(MEASURED, tmp_path) == ["hall.toml", "passages.csv"]
     for command, shown in commands(MEASURED):
-        got = output(command, tmp_path)
+        got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
     (tmp_path / "late.csv").write_text(late, encoding="utf-8")
-    assert "late.csv disagrees" in output('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
+    assert "late.csv disagrees" in typed('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
 
 
-def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path):
+def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path, typed):
     assert write_files(ORACLE, tmp_path) == ["swing.py"]
     (command, shown), *_ = commands(ORACLE)
-    got = output(command, tmp_path)
+    got = typed(command, tmp_path)
     assert shows(shown, got), got
 
 
@@ -136,7 +143,7 @@ def test_the_page_on_scenes_has_every_field_with_its_default_unit_and_meaning():
         assert f"| `{name}` | {default} | {unit} | {info.description} |" in page
 
 
-def test_drag_and_azimuth_are_what_the_page_on_scenes_says(tmp_path):
+def test_drag_and_azimuth_are_what_the_page_on_scenes_says(tmp_path, typed):
     """A cord of 12.3 m at 51.48 degrees, pulled 5 degrees to the south-west, half as wide after 20 minutes."""
     path = tmp_path / "hall.toml"
     path.write_text(
@@ -151,7 +158,7 @@ def test_drag_and_azimuth_are_what_the_page_on_scenes_says(tmp_path):
     width = np.hypot(x, y)
     swing = 36  # rows of one swing
     assert width[-swing:].max() / width[:swing].max() == pytest.approx(0.5, rel=0.005)
-    motion = json.loads(output(f"foucault show {path} --json", tmp_path))["motion"]
+    motion = json.loads(typed(f"foucault show {path} --json", tmp_path))["motion"]
     sidereal = -15.0410671786 * math.sin(math.radians(51.48))
     assert motion["precession_deg_per_h"] == pytest.approx(sidereal, rel=0.004)  # the rest is what Airy found
     assert motion["full_turn_h"] == pytest.approx(360 / abs(motion["precession_deg_per_h"]))
@@ -175,9 +182,9 @@ def test_the_error_budget_is_that_of_the_dataset():
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-def test_the_experiments_of_the_oracle_measure_what_the_page_shows(tmp_path):
+def test_the_experiments_of_the_oracle_measure_what_the_page_shows(tmp_path, typed):
     for command, shown in list(commands(ORACLE))[1:]:
-        got = output(command.replace("/tmp/", f"{tmp_path}/"), ROOT).replace(f"{tmp_path}/", "/tmp/")
+        got = typed(command.replace("/tmp/", f"{tmp_path}/"), ROOT).replace(f"{tmp_path}/", "/tmp/")
         assert shows(shown, got), f"{command}\n{got}"
     kept = {path.stem for path in (tmp_path / "runs").iterdir()}
     assert kept == {"as_given", "experiments", "no_rotation", "quarter_g"}
@@ -198,14 +205,14 @@ def test_the_lines_of_python_on_a_page_print_what_it_shows(page):
     assert runner.summarize(verbose=False).failed == 0
 
 
-def test_the_programs_and_the_test_of_the_page_on_python_pass(tmp_path):
+def test_the_programs_and_the_test_of_the_page_on_python_pass(tmp_path, typed):
     program, gates, box, limits, name = write_files(API, tmp_path)
-    assert -67 < float(output(f"python {program}", tmp_path)) < -66.99
-    assert 8.21 < Fraction(output(f"python {gates}", tmp_path)) < 8.22  # half a swing
-    low, high = map(float, output(f"python {box}", tmp_path).split())
+    assert -67 < float(typed(f"python {program}", tmp_path)) < -66.99
+    assert 8.21 < Fraction(typed(f"python {gates}", tmp_path)) < 8.22  # half a swing
+    low, high = map(float, typed(f"python {box}", tmp_path).split())
     assert low < 599.898 < high < low + 0.01  # what the point's own transit is: 599.8984 s
-    assert output(f"python {limits}", tmp_path).startswith("pendulum.length moves the period by 1.2e-04 s at most: 93.")
-    assert output(f"python -m pytest -q {name}", tmp_path).startswith(".  ")
+    assert typed(f"python {limits}", tmp_path).startswith("pendulum.length moves the period by 1.2e-04 s at most: 93.")
+    assert typed(f"python -m pytest -q {name}", tmp_path).startswith(".  ")
 
 
 def shell(page: str) -> Iterator[list[str]]:
@@ -215,11 +222,11 @@ def shell(page: str) -> Iterator[list[str]]:
             yield shlex.split(line, comments=True)
 
 
-def test_the_tables_of_the_page_on_sweeps_are_what_is_printed(tmp_path):
+def test_the_tables_of_the_page_on_sweeps_are_what_is_printed(tmp_path, typed):
     """Digit by digit but the last, and the size of the errors: octet and heyoka round differently."""
     lengths = []
     for command, shown in commands(SWEEPS):
-        pairs = [*zip(shown.splitlines(), output(command, tmp_path).splitlines(), strict=False)]
+        pairs = [*zip(shown.splitlines(), typed(command, tmp_path).splitlines(), strict=False)]
         for number, (line, printed) in enumerate(pairs[:-1]):
             if number == 0 or "rows" in line:
                 assert line.split() == printed.split()

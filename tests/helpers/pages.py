@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import os
 import re
+import runpy
+import shlex
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+import pytest
 from markdown_it import MarkdownIt
 from places import ROOT
 
@@ -70,16 +74,58 @@ def write_files(page: str, folder: Path) -> list[str]:
     return names
 
 
-def output(command: str, folder: Path) -> str:
-    """Return what a command prints in a folder, stdout first; `foucault` and `python` are those of the tests."""
-    path = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
-    done = subprocess.run(
-        command, shell=True, capture_output=True, text=True, check=False, cwd=folder, env={**os.environ, **path}
-    )
+def _path() -> str:
+    """Return the PATH by which `foucault` and `python` are those of the tests."""
+    return f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+
+
+def _both(out: str, err: str) -> str:
+    """Return stdout and then stderr, without what depends on the machine."""
     once = r"First use on this machine: .*"  # where nothing has compiled the engines yet
     slow = r".*: about .* after \d+ s"
-    said = re.sub(rf"^(?:{once}|{slow})\n", "", done.stderr, flags=re.M)
-    return done.stdout + said
+    return out + re.sub(rf"^(?:{once}|{slow})\n", "", err, flags=re.M)
+
+
+def output(command: str, folder: Path) -> str:
+    """Return what a command prints in a folder, stdout first; `foucault` and `python` are those of the tests."""
+    done = subprocess.run(
+        command,
+        shell=True,
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=folder,
+        env={**os.environ, "PATH": _path()},
+    )
+    return _both(done.stdout, done.stderr)
+
+
+def output_here(
+    command: str,
+    folder: Path,
+    foucault: Callable[..., tuple[int, str, str]],
+    capfd: pytest.CaptureFixture[str],
+) -> str:
+    """Return the same; `foucault` and Python's programs run in this process where the line has nothing for a shell.
+
+    Args:
+        command: the line.
+        folder: where it is typed.
+        foucault: the fixture of that name.
+        capfd: pytest's.
+    """
+    plain = re.fullmatch(r'(foucault|python) ([^|<>;$]+)(; echo "exit status \$\?")?', command)
+    if plain is None or plain[2].startswith("-"):
+        return output(command, folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("PATH", _path())
+        if plain[1] == "python":
+            capfd.readouterr()
+            runpy.run_path(plain[2], run_name="__main__")
+            return _both(*capfd.readouterr())
+        status, out, err = foucault(*shlex.split(plain[2]))
+    return _both(out, err) + (f"exit status {status}\n" if plain[3] else "")
 
 
 def shows(shown: str, got: str) -> bool:

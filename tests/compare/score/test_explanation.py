@@ -166,7 +166,7 @@ def told(made: Case, times: np.ndarray, columns: dict[str, np.ndarray]) -> Expla
 def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
     mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
-    count, right, whole, agree, wrong = size(12, 300), 0, 0, 0, {}
+    count, right, whole, agree, wrong = size(8, 300), 0, 0, 0, {}
     begun = time.process_time()
     for number in range(count):
         made = case(number)
@@ -206,13 +206,14 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
         (4713, 124, {"integrator_semi_implicit_euler_drift"}),  # on a swing of 69 degrees
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
         pytest.param(17, 169, {"integrator_leapfrog"}, marks=LONG),  # in single precision
-        (90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}),  # its clock seemed to be off
+        # its clock seemed to be off
+        pytest.param(90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}, marks=LONG),
         # beside a clock, which g and the rate stand for
         pytest.param(20, 78, {"integrator_semi_implicit_euler_drift"}, marks=LONG),
         (70007, 146, {"coriolis_sign", "radians"}),  # whose rate is that of the Earth, but for its sign
         (61126, 110, {"linear_in_angle", "rounded_rate"}),  # in single precision, times too
         (61126, 153, {"pendulum.length", "solar_day"}),
-        (61126, 193, {"integrator_rk4"}),  # on a wide swing, beside a model
+        pytest.param(61126, 193, {"integrator_rk4"}, marks=LONG),  # on a wide swing, beside a model
         (83003, 50, {"linspace_clock", "integrator_explicit_euler"}),  # of whose rows the steps are run for a third
         # a step a row, on a swing of half a cord
         pytest.param(81001, 43, {"integrator_rk4", "pendulum.length"}, marks=LONG),
@@ -248,10 +249,10 @@ def test_what_was_once_told_wrongly(mistaken: Path, seed: int, number: int) -> N
     ("seed", "number"),
     [
         *((17, n) for n in (55, 118, 204, 224, 288)),
-        *((23, 102), (5001, 24), (4713, 289)),
+        *((23, 102), (4713, 289)),
         *(
             pytest.param(*one, marks=LONG)
-            for one in ((17, 94), (17, 100), (23, 70), (4711, 133), (4711, 138), (4713, 207))
+            for one in ((17, 94), (17, 100), (23, 70), (4711, 133), (4711, 138), (4713, 207), (5001, 24))
         ),
     ],
 )
@@ -270,7 +271,7 @@ def test_mistakes_corrected_as_told_end_at_agreement(
     """Two or three mistakes; one that is told is mended, whichever, and what is left is told again."""
     ends: Counter[str] = Counter()
     number = 0
-    while ends.total() < size(3, 60):
+    while ends.total() < size(2, 60):
         made = case(number, seed=20)
         if len(made.parts) > 1:
             ends[corrected(made, mistaken)] += 1
@@ -307,7 +308,7 @@ def test_nothing_is_said_of_right_programs(mistaken: Path, size: Callable[[int, 
 
 
 def test_nothing_is_named_of_a_smooth_random_error(mistaken: Path, size: Callable[[int, int], int]) -> None:
-    for number in range(size(4, 100)):
+    for number in range(size(2, 100)):
         made = case(number, seed=19, most=0)
         times, columns = made.rows(mistaken)
         scale = 10 ** made.rng.uniform(-5, -1) * made.allowed_m * 1e6

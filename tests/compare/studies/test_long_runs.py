@@ -13,6 +13,7 @@ from reference import load_scene
 ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4", "plane", 0.1))
 
 
+@pytest.mark.usefixtures("here")
 def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path: Path) -> None:
     scene = load_scene("paris", ["inputs=binary64", "run.t_end=7200"])
     journal_path = tmp_path / "long.jsonl"
@@ -32,6 +33,7 @@ def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path:
     assert [(row.method, row.formulation, row.setting) for row in again] == list(ITEMS)
 
 
+@pytest.mark.usefixtures("here")
 def test_what_cannot_run_is_a_row_with_its_reason() -> None:
     upright = load_scene("two_radians", ["inputs=binary64", "run.t_end=1", "run.transits=false"])
     (row,) = long_runs([("rk4", "plane", 0.1)], upright)

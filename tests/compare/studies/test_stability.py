@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from here import measured_here
 
 from compare.methods import METHODS, Problem
 from compare.methods.rhs.problem import suited
@@ -53,7 +54,9 @@ def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
     scenes = (("near_inverted", "10", "0.125"), ("creeping", "1", "0.0125"), ("hard", "10", "1"))
     names = [shortened(folder, *scene) for scene in scenes]
     methods = ["heyoka_double", "scipy_dop853", "scipy_radau", "rkmk4"]
-    measured = stability(names, methods, limit_s=0.5, journal_path=journal_path)
+    with pytest.MonkeyPatch.context() as patch:
+        measured_here(patch)
+        measured = stability(names, methods, limit_s=0.5, journal_path=journal_path)
     assert stability(names, methods, limit_s=0.5, journal_path=journal_path) == measured  # from the journal
     return measured
 
@@ -113,12 +116,14 @@ def test_the_headline_counts_the_methods_own_failures_only() -> None:
     assert "1e-9" in page_text(document).partition("What each run was asked for")[2].partition("</table>")[0]
 
 
+@pytest.mark.usefixtures("here")
 def test_a_method_that_is_asked_for_nothing_unusual_is_ill_conditioned_where_the_flow_is() -> None:
     (cell,) = stability(["separatrix"], ["gauss_legendre"])
     assert cell.status == "ill_conditioned", cell
     assert cell.digits is not None and cell.digits < cell.asked - 3
 
 
+@pytest.mark.usefixtures("here")
 def test_a_stiff_start_is_not_extrapolated_into_out_of_time(tmp_path: Path) -> None:
     """A start of 1e-5 s takes nearly all of the run's time, so 64 times the probe's is far beyond the limit."""
     (cell,) = stability([shortened(tmp_path, "creeping_far", "0.01", "0.00005")], ["scipy_radau"], limit_s=1.0)
@@ -132,6 +137,7 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
             assert cell.digits is not None and cell.digits < cell.asked - 3
 
 
+@pytest.mark.usefixtures("here")
 def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_are_measured(tmp_path: Path) -> None:
     own = tmp_path / "stiff.toml"
     own.write_text('id = "stiff"\n[pendulum]\ndrag = "1e9"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "600"\n')

@@ -69,12 +69,14 @@ def test_a_run_beyond_the_limit_is_extrapolated_and_says_so(short: Scene) -> Non
     assert row.reason.startswith("measured to t = ")
 
 
+@pytest.mark.usefixtures("here")
 def test_a_study_is_one_call_and_says_in_a_line_what_it_holds(bench: Bench) -> None:
     assert doctest.testmod(import_module("compare.studies.study")).failed == 0
     row = bench.row(METHODS["rk4"], "plane", 4.0)
     assert repr(row).startswith("Row(rk4 in plane at 4: missed_transits, ")
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("t_end", one_in(2, [10.0, 59.0, 100.1, 90.0]))
 def test_a_span_that_is_no_multiple_of_the_grid_step_is_measured_to_its_end(t_end: float) -> None:
     result = study("paris", items=[("rk4", "plane", 0.1), ("rk4", "plane", 0.05)], t_end=t_end)
@@ -86,6 +88,7 @@ def test_a_span_that_is_no_multiple_of_the_grid_step_is_measured_to_its_end(t_en
     assert coarse is not None and fine is not None and coarse / fine == pytest.approx(16, rel=0.3)
 
 
+@pytest.mark.usefixtures("here")
 def test_the_grid_that_is_asked_for_is_the_one_that_is_measured_on() -> None:
     result = study("paris", items=[("rk4", "plane", 0.1)], t_end=60.0)
     finer = study(load_scene("paris", ["run.grid_step=20"]), items=[("rk4", "plane", 0.1)], t_end=60.0)
@@ -119,6 +122,7 @@ def no_such_number(word: str) -> float:
     raise AssertionError(f"{word} in JSON")
 
 
+@pytest.mark.usefixtures("here")
 def test_json_of_the_shortest_span_has_no_nan(foucault) -> None:
     words = ("study", "paris", "--t-end", "10", "--methods", "rk4", "--no-formulations", "--json")
     status, out, _ = foucault(*words)
@@ -136,6 +140,7 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
     assert (row.status, row.reason, row.cpu_s) == ("not_installed", "not installed (x)", None)
 
 
+@pytest.mark.usefixtures("here")
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path) -> None:
     short = load_scene("paris", ["run.t_end=20", "inputs=binary64"])
     items = [item for item in plan(short, ["rk4", "heyoka_double"], False) if item[2] != 0.002]
@@ -175,6 +180,7 @@ def test_a_study_of_approximations_that_is_stopped_says_that_nothing_was_kept(fo
     assert (status, "nothing was kept" in err) == (130, True)
 
 
+@pytest.mark.usefixtures("here")
 def test_somebody_elses_program_is_a_row_of_the_study(foucault, tmp_path: Path) -> None:
     script = tmp_path / "still.py"
     script.write_text(
@@ -202,6 +208,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return good, still
 
 
+@pytest.mark.usefixtures("here")
 def test_somebodys_files_are_rows_of_the_study_with_the_time_that_is_stated(foucault, files, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("study", "paris", "--methods", "rkmk4", "--t-end", "120", "--out", out, "--cpu", "0.25,-")
@@ -252,6 +259,7 @@ def test_files_that_cannot_be_rows_are_refused_before_any_work(foucault, files, 
     assert message in err
 
 
+@pytest.mark.usefixtures("here")
 def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     times: list[float] = []
@@ -260,6 +268,7 @@ def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, m
     assert times == sorted(times) and 0 < times[0] <= times[-1] <= 600
 
 
+@pytest.mark.usefixtures("here")
 def test_the_precision_ladder_gains_digits_with_bits() -> None:
     bits = bits_of("53,64,113,160")
     scene, digits = precision_scene(load_scene("paris"), bits, whole=False)

@@ -62,7 +62,7 @@ def differences(one, other):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_engines_agree_over_a_list(name, size):
-    lists = [solved(name, engine, size(5, 1)) for engine in ("heyoka", "octet")]
+    lists = [solved(name, engine, size(15, 1)) for engine in ("heyoka", "octet")]
     pairs = [pair for pair in zip(*lists, strict=True) if not any(map(is_left, pair))]
     wrong = {one["row"]: differences(one, other) for one, other in pairs}
     assert {row: columns for row, columns in wrong.items() if columns} == {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -23,9 +24,10 @@ NEAR = 1e-6  # s, of DOP853 in double
 
 
 @pytest.fixture(scope="module")
-def drawn():
-    """Forty random scenes, words of sections, and of each its passages by limbs at 110 bits."""
-    many, generator = list(random_kinds("sections", 40, SPAN)), random.Random("sections")
+def drawn(pytestconfig):
+    """Random scenes of all kinds, words of sections, and of each its passages by limbs at 110 bits."""
+    count = 40 if pytestconfig.getoption("--long") else 20
+    many, generator = list(random_kinds("sections", count, SPAN)), random.Random("sections")
     words = [
         "highest",
         "lowest",
@@ -69,7 +71,7 @@ def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, e
     tally(
         f"sections of sweeps, {engine}: {count} passages, {undecided} undecided, largest error {worst:.2f} of its own"
     )
-    assert count > 3000
+    assert count > 75 * len(many)
     assert worst < 1
     assert undecided < 0.05 * len(many) * len(words)
 
@@ -88,16 +90,26 @@ def test_passages_of_limbs_are_those_of_scipy(drawn):
 WORDS = ["gate 0@0", "gate 90", "highest", "turn 90"]
 
 
+@cache
+def solved(release, latitude):
+    """Times and directions of each section of a scene, of which every engine is to give the same."""
+    scene = at_paris(release).with_values([f"site.latitude={latitude}"])
+    found = solve(scene, level="computed", digits=22, transits=False).sections
+    return {word: (found[word].table.exact("t"), found[word].directions) for word in WORDS}
+
+
+def at_paris(release):
+    return load_scene("paris", ["run.t_end=100", f"run.sections={'; '.join(WORDS)}", *release.split()])
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("release", ["release.x=0.5 release.y=0", "release.x=0 release.y=0.5", "release.x=1e-9"])
 def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_solver_gives(engine, release):
-    scene = load_scene("paris", ["run.t_end=100", *release.split()])
-    swept = sweep(scene, ["site.latitude=-30,45,90"], engine=engine, sections=WORDS, workers=1)
-    for number, row in enumerate(swept.rows()):
+    latitudes = ["-30", "45", "90"]
+    swept = sweep(at_paris(release), [f"site.latitude={','.join(latitudes)}"], engine=engine, workers=1)
+    for latitude, row in zip(latitudes, swept.rows(), strict=True):
         assert row["status"] == "ok", row["reason"]
-        truth = solve(swept.request.scene_of(number), level="computed", digits=22, transits=False)
-        for word in WORDS:
-            times, directions = truth.sections[word].table.exact("t"), truth.sections[word].directions
+        for word, (times, directions) in solved(release, latitude).items():
             assert row[f"{word}: passages"] == len(times), word
             if times:
                 assert abs(row[f"{word}: t_first_s"] - times[0]) <= row[f"{word}: t_error_s"], word
