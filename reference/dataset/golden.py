@@ -205,12 +205,14 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
         within: error aimed at, relative to the cord length; the bound that was reached is `bound_m`.
 
     Raises:
-        InputError: a time is not finite, negative, or more than a grid step beyond the end of the dataset.
+        InputError: a time is not finite, negative, or more than a grid step beyond the end of the dataset; or none is.
         UnreachableError: the scene cannot be solved so closely.
     """
-    requested = np.unique(np.asarray(times, dtype=np.float64).ravel())
     grid = golden.times
-    _check(requested, grid)
+    end = 2 * grid[-1] - grid[-2]  # where a program that counts steps may end, but for the rounding of its times
+    requested = np.unique(moments_of(times, end, ROUNDED))
+    if not requested.size:
+        raise InputError("t", "no times", "at least one time in s")
     exact = [Fraction(t) for t in requested.tolist()]
     row = {t: i for i, t in enumerate(grid)}
     if row.keys() >= set(exact):
@@ -237,13 +239,3 @@ def states_at(golden: Golden, times: npt.ArrayLike) -> States:
     bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
     rounding = {name: float(np.spacing(size)) for name, size in zip(STATE, largest, strict=True)}
     return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
-
-
-def _check(times: Array, grid: tuple[Fraction, ...]) -> None:
-    if not len(times):
-        raise InputError("t", "no times", "at least one time in s")
-    end = 2 * grid[-1] - grid[-2]  # where a program that counts steps may end, but for the rounding of its times
-    if not np.isfinite(times).all() or times[0] < 0 or times[-1] > float(end) * (1 + ROUNDED):
-        outside = times[~np.isfinite(times)] if not np.isfinite(times).all() else times[[0]] if times[0] < 0 else times
-        advice = f"The scene ends at run.t_end = {float(grid[-1]):.17g}: --set run.t_end=… solves a longer one."
-        raise InputError("t", f"{outside[-1]:.17g}", f"times from 0 to {float(end):.17g} s", advice)

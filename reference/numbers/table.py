@@ -50,14 +50,10 @@ class Table(Framed):
             errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
         return cls(columns, bits, values, errors)
 
-    def with_errors(self, errors: Mapping[str, Fraction] | Sequence[Mapping[str, Fraction]]) -> Table:
-        """Return the table with error bounds by column name, for all rows or one mapping a row, rounded up."""
-
-        def fixed(row: Mapping[str, Fraction]) -> tuple[int, ...]:
-            return tuple(math.ceil(row[name] * (1 << self.bits)) for name in self.columns)
-
-        rows = [fixed(errors)] * len(self) if isinstance(errors, Mapping) else [fixed(row) for row in errors]
-        return Table(self.columns, self.bits, self.values, rows)
+    def with_errors(self, errors: Mapping[str, Fraction]) -> Table:
+        """Return the table with error bounds for all rows, by column name, rounded up."""
+        bounds = tuple(math.ceil(errors[name] * (1 << self.bits)) for name in self.columns)
+        return Table(self.columns, self.bits, self.values, [bounds] * len(self))
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -65,12 +61,10 @@ class Table(Framed):
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
-        return self.array(name)
-
-    def array(self, name: str) -> Array:
-        """Return a column as the nearest doubles, shape (rows,)."""
         i, unit = self._place(name), 1 << self.bits
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
+
+    array = __getitem__
 
     def to_pandas(self) -> Any:
         """Return the columns as a pandas.DataFrame of the nearest doubles.

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from .inputs import GravityIs, NotNegative, Number, NumberOrInf, Positive, Refused, within
+from .inputs import OR_INF, GravityIs, NotNegative, Number, Positive, Refused, checked, within
 
 MAX_DIGITS = 1000
 
@@ -92,7 +92,7 @@ class Site(SceneTable):
     )
     rotation_rate: Number = field("7.292115e-5", "rad/s", "rate at which the Earth turns")
     equatorial_radius: NotNegative = field("6378137", "m", "radius of the ellipsoid at the equator")
-    inverse_flattening: Annotated[NumberOrInf, within("1", open_low=True)] = field(
+    inverse_flattening: Annotated[Number, within("1", open_low=True), OR_INF] = field(
         "298.257223564", "", 'inverse flattening of the ellipsoid; "inf" for a sphere'
     )
 
@@ -114,10 +114,7 @@ class Release(SceneTable):
     azimuth_rate: Number | None = field(None, "degrees/s", "rate of the azimuth")
 
 
-def _digits(value: int) -> int:
-    if not 1 <= value <= MAX_DIGITS:
-        raise Refused(f"a whole number from 1 to {MAX_DIGITS}")
-    return value
+Digits = Annotated[int, checked(lambda digits: 1 <= digits <= MAX_DIGITS, f"a whole number from 1 to {MAX_DIGITS}")]
 
 
 class RunTable(SceneTable):
@@ -125,7 +122,7 @@ class RunTable(SceneTable):
 
     t_end: Annotated[Number, within("0", "1e15", open_low=True)] = field("86400", "s", "end of the motion")
     grid_step: Positive = field("60", "s", "time between two rows of the grid")
-    digits: Annotated[int, AfterValidator(_digits)] = field(40, "", f"significant digits, at most {MAX_DIGITS}")
+    digits: Digits = field(40, "", f"significant digits, at most {MAX_DIGITS}")
     level: Level = field("confirmed", "", "what has to stand behind every digit; enclosed is a proof")
     transits: bool = field(True, "", "whether the times of the transits are sought")
     sections: Sections = field(

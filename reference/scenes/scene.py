@@ -14,12 +14,12 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
-from .inputs import RELEASES, SITE, Inputs, Line, Refused, Widths, as_read, explained
+from .inputs import RELEASES, SITE, Inputs, Line, Widths, as_read, checked, explained
 from .shipped import data_root, scene_ids
 
 MAX_ROWS = 2_000_000
@@ -27,18 +27,13 @@ LEAST_T_END = Fraction(1, 10**300)
 
 Reading = Literal["decimal", "binary64"]
 
-_ID = re.compile(r"[a-z][a-z0-9_]*")
-
 
 def is_scene_id(word: str) -> bool:
     """Return whether a word can be a scene's id, and so a folder and a command-line argument."""
-    return _ID.fullmatch(word) is not None and len(word) <= 64
+    return re.fullmatch("[a-z][a-z0-9_]{0,63}", word) is not None
 
 
-def _identifier(text: str) -> str:
-    if not is_scene_id(text):
-        raise Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
-    return text
+Id = Annotated[str, checked(is_scene_id, "a lower-case letter followed by letters, digits or _ (at most 64)")]
 
 
 class Scene(SceneTable):
@@ -47,7 +42,7 @@ class Scene(SceneTable):
     `exact` gives the numbers as fractions, in the reading that `inputs` names.
     """
 
-    id: Annotated[str, AfterValidator(_identifier)] = field(..., "", "name of the scene and of its folder")
+    id: Id = field(..., "", "name of the scene and of its folder")
     title: Line = field("", "", "what it is, in one line")
     source: Line = field("", "", "where its numbers come from")
     flags: tuple[Line, ...] = field((), "", "words for what is difficult in it")
@@ -66,8 +61,7 @@ class Scene(SceneTable):
             return as_read(text or "0", self.inputs)
 
         inverse, kind = self.site.inverse_flattening, "position" if self.release.angle is None else "angles"
-        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE}
-        numbers |= {"position": None, "angles": None}
+        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE} | dict.fromkeys(RELEASES)
         numbers[kind] = tuple(read(getattr(self.release, name)) for name in RELEASES[kind])
         return Inputs(
             length=read(self.pendulum.length),
@@ -122,8 +116,7 @@ def field_names() -> list[str]:
     for top, info in Scene.model_fields.items():
         if top == "uncertain":  # `--uncertain` says these
             continue
-        kind = info.annotation
-        inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, SceneTable) else ()
+        inside = getattr(info.annotation, "model_fields", ())
         names += [f"{top}.{key}" for key in inside] or [top]
     return names
 
