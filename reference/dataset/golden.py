@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import DatasetError, InputError
-from ..numbers.columns import POSITION, STATE, VELOCITY, GridColumns
+from ..numbers.columns import POSITION, STATE, GridColumns
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
 from ..scenes.fields import Level
@@ -99,14 +99,22 @@ class Golden(GridColumns):
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, with their bounds.
 
-        They come from the golden function, or the scene is solved again (needs heyoka, takes longer).
+        They come from the golden function, or the scene is solved again (needs heyoka, takes longer) and its numbers
+        are rounded to doubles.
 
         Raises:
             InputError: a time is not finite, or outside of the dataset's span.
         """
         if self.function is not None:
             return self.function.at(t)
-        return states_at(self, t)
+        moments = moments_of(t, self.times[-1])
+        if not moments.size:
+            return States.of(moments, np.empty((6, 0)), {})
+        found = dense(self, moments)
+        rows = found.states[np.searchsorted(found.t, moments.ravel())]
+        rounding = dict(zip(STATE, np.spacing(np.abs(found.states).max(axis=0)).tolist(), strict=True))
+        bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
+        return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
 
     @property
     def level(self) -> Level:
@@ -189,11 +197,8 @@ class Dense:
         states = np.array([[float(x) for x in column] for column in exact]).T
         pairs = (zip(column, near, strict=True) for column, near in zip(exact, states.T.tolist(), strict=True))
         low = np.array([[float(x - Fraction(y)) for x, y in pair] for pair in pairs]).T
-        bounds = (
-            max(max(table.bound(name)) + PAIR * max(map(abs, exact[STATE.index(name)])) for name in kind)
-            for kind in (POSITION, VELOCITY)
-        )
-        return cls(times, states, low, *map(float, bounds))
+        off = [max(table.bound(name)) + PAIR * max(map(abs, column)) for name, column in zip(STATE, exact, strict=True)]
+        return cls(times, states, low, float(max(off[:3])), float(max(off[3:])))
 
 
 def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
@@ -222,20 +227,3 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     solution = solve_at(golden.scene, exact, math.ceil(-math.log10(within)) + 1)
     row = {t: i for i, t in enumerate(solution.times)}
     return Dense.of(requested, solution.grid, [row[t] for t in exact])
-
-
-def states_at(golden: Golden, times: npt.ArrayLike) -> States:
-    """Return the states at times of any shape and in any order, rounded to doubles.
-
-    Raises:
-        InputError: a time is not finite, or outside of the dataset's span.
-    """
-    moments = moments_of(times, golden.times[-1])
-    if not moments.size:
-        return States.of(moments, np.empty((6, 0)), {})
-    found = dense(golden, moments)
-    rows = found.states[np.searchsorted(found.t, moments.ravel())]
-    largest = np.abs(found.states).max(axis=0)
-    bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
-    rounding = {name: float(np.spacing(size)) for name, size in zip(STATE, largest, strict=True)}
-    return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace as with_fields
 from fractions import Fraction
 from pathlib import Path
@@ -134,9 +134,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
     return ranges, texts
 
 
-def _zeros(
-    rows: Sequence[Sequence[str]], columns: tuple[str, ...], possible: Sequence[Mapping[str, str]]
-) -> Passages[Intervals]:
+def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]) -> Passages[Intervals]:
     return Passages(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],

@@ -183,11 +183,10 @@ def _by_full_name(widths: object) -> object:
     """Return widths by names such as pendulum.length, which without quotes is a table in a table for TOML."""
     if not isinstance(widths, Mapping):
         return widths
-    nested = (
-        {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
-        for top, inner in widths.items()
-    )
-    return {name: width for table in nested for name, width in table.items()}
+    full: dict[str, object] = {}
+    for top, inner in widths.items():
+        full |= {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
+    return full
 
 
 Width = Annotated[
@@ -220,9 +219,8 @@ def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
         got = ", ".join(map(str, got)) if isinstance(got, tuple) else got
         return InputError(field, got, cause.expected, cause.advice)
     if kind == "extra_forbidden":
-        return InputError(
-            field, got, "a field that scenes have", did_you_mean(field, known, "`foucault show SCENE` lists them.")
-        )
+        advice = did_you_mean(field, known, "`foucault show SCENE` lists them.")
+        return InputError(field, got, "a field that scenes have", advice)
     if kind == "missing" and field == "release":
         return InputError(field, "nothing", "a table with x and y, or with angle and azimuth")
     if kind == "missing":

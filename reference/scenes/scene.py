@@ -75,9 +75,7 @@ class Scene(SceneTable):
 
     def with_values(self, values: Words) -> Scene:
         """Return the scene with fields replaced, by words `section.key=value` or `x0=value`, or a mapping of keys."""
-        document = self.model_dump(exclude_none=True)
-        _assign(document, values)
-        return parse_scene(document)
+        return _with_values(self.model_dump(exclude_none=True), values)
 
 
 Words = str | Iterable[str] | Mapping[str, Any]  # one word `key=value`, several, or a mapping from keys to values
@@ -96,8 +94,8 @@ def _word(value: Any) -> str:
     return str(value)
 
 
-def _assign(document: dict[str, Any], values: Words) -> None:
-    """Replace fields of a scene that is given as nested mappings."""
+def _with_values(document: dict[str, Any], values: Words) -> Scene:
+    """Return a scene that is given as nested mappings, with fields replaced."""
     for assignment in words_of(values):
         key, sign, value = assignment.partition("=")
         section, _, name = full_name(key).rpartition(".")
@@ -108,6 +106,7 @@ def _assign(document: dict[str, Any], values: Words) -> None:
             raise InputError("--set", assignment, f"a section, and {section} is a single field")
         flags = (section, name) == ("", "flags")
         table[name] = [flag for flag in value.split(",") if flag] if flags else value.strip()
+    return parse_scene(document)
 
 
 def field_names() -> list[str]:
@@ -245,8 +244,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document and is_scene_id(own_name):
         document["id"] = own_name
-    _assign(document, values)
-    return parse_scene(document)
+    return _with_values(document, values)
 
 
 AnyScene = Scene | str | Path | Mapping[str, Any]

@@ -71,10 +71,8 @@ class Pilot:
     @property
     def cautious(self) -> dict[str, Fraction]:
         """Errors to assume where no second run checks them: with a safety factor, a floor, and the same for x and y."""
-        floored = {
-            name: ESTIMATE_FACTOR * max(error, LEAST_ULPS * self.largest[name] / 2**self.prec)
-            for name, error in self.errors.items()
-        }
+        least = {name: LEAST_ULPS * size / 2**self.prec for name, size in self.largest.items()}
+        floored = {name: ESTIMATE_FACTOR * max(error, least[name]) for name, error in self.errors.items()}
         return {name: max(floored[column] for column in HORIZONTAL.get(name, (name,))) for name in floored}
 
     def estimates(self, prec: int) -> dict[str, Fraction]:
