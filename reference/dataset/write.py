@@ -105,8 +105,7 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
     check_target(folder)
     with writable_place(folder) as (work, target):
         new = filled(work, texts)
-        problems = problems_of(new)
-        if problems:
+        if problems := problems_of(new):
             raise DatasetError(str(folder), problems)
         if solution is not None:
             contents = {path.name: path.read_bytes() for path in new.iterdir()}
