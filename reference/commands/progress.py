@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Iterator
@@ -109,7 +110,6 @@ def _rough(amount: float) -> str:
 
 def in_words(seconds: float) -> str:
     """Return a rough time in the unit that suits it: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
-    for unit, length, until in (("seconds", 1, 90), ("minutes", 60, 5400), ("hours", 3600, 172800)):
-        if seconds < until:
-            return f"{float(f'{seconds / length:.2g}'):g} {unit}"
-    return f"{float(f'{seconds / 86400:.2g}'):g} days"
+    scales = (("seconds", 1, 90), ("minutes", 60, 5400), ("hours", 3600, 172800), ("days", 86400, math.inf))
+    unit, length = next((unit, length) for unit, length, until in scales if seconds < until)
+    return f"{float(f'{seconds / length:.2g}'):g} {unit}"

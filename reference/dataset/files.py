@@ -112,10 +112,8 @@ def read_manifest(folder: Path) -> Manifest:
         return DatasetError(str(folder), [f"{MANIFEST} {problem}"])
 
     try:
-        if MANIFEST not in os.listdir(folder):
+        if not (folder / MANIFEST).is_file():
             raise _no_dataset(folder)
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        raise _no_dataset(folder) from None
     except OSError as error:
         raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
     try:

@@ -189,26 +189,23 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
 def _wrong_in_release(scene: Scene) -> Iterator[InputError]:
     release = scene.release
     fields = set(release.model_dump(exclude_none=True))
-    cartesian, angular = fields & {"x", "y", "vx", "vy"}, fields & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
-    if cartesian and angular:
-        kinds = "either x, y (vx, vy) or angle, azimuth (and rates)"
-        yield InputError("release", ", ".join(sorted(fields)), kinds, "Keep one kind.")
-        return
-    if not fields:
+    kinds = [names for names in RELEASES.values() if fields & {*names}]
+    if not kinds:
         yield InputError("release", "nothing", "x and y, or angle and azimuth")
         return
-    needed = ("x", "y") if cartesian else ("angle", "azimuth")
+    if len(kinds) > 1:
+        expected = "either x, y (vx, vy) or angle, azimuth (and rates)"
+        yield InputError("release", ", ".join(sorted(fields)), expected, "Keep one kind.")
+        return
+    needed = kinds[0][:2]
     missing = [name for name in needed if name not in fields]
     for name in missing:
         yield InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
     position, length = scene.exact.position, scene.exact.length
     if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
-        yield InputError(
-            "release",
-            f"x = {release.x}, y = {release.y}",
-            f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²",
-            "For a release at or above the horizontal give angle and azimuth.",
-        )
+        got = f"x = {release.x}, y = {release.y}"
+        expected = f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²"
+        yield InputError("release", got, expected, "For a release at or above the horizontal give angle and azimuth.")
 
 
 def _wrong_in_run(scene: Scene) -> Iterator[InputError]:
