@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import DatasetError, InputError
-from ..numbers.columns import POSITION, STATE, GridColumns
+from ..numbers.columns import POSITION, STATE, GridColumns, place_of
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
 from ..scenes.fields import Level
@@ -65,9 +65,7 @@ class PrintedTable:
 
     def decimals(self, name: str) -> list[str]:
         """Return a column as printed."""
-        if name not in self.columns:
-            raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")
-        i = self.columns.index(name)
+        i = place_of(name, self.columns)
         return [row[i] for row in self._sheet.rows]
 
 
