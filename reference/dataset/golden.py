@@ -208,12 +208,12 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
         within: error aimed at, relative to the cord length; the bound that was reached is `bound_m`.
 
     Raises:
-        InputError: a time is not finite, negative, or more than a grid step beyond the end of the dataset; or none is.
+        InputError: there is no time, or one is not finite, negative, or more than a grid step beyond the dataset's end.
         UnreachableError: the scene cannot be solved so closely.
     """
     grid = golden.times
-    end = 2 * grid[-1] - grid[-2]  # where a program that counts steps may end, but for the rounding of its times
-    requested = np.unique(moments_of(times, end, ROUNDED))
+    later = float(grid[-1] - grid[-2]) + ROUNDED * float(grid[-1])  # a program that counts steps may end with one more
+    requested = np.unique(moments_of(times, grid[-1], later))
     if not requested.size:
         raise InputError("t", "no times", "at least one time in s")
     exact = [Fraction(t) for t in requested.tolist()]
