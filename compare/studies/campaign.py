@@ -12,7 +12,7 @@ import os
 import platform
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -149,8 +149,8 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
     """Yield the result of each item; after a hang or a crash a new process goes on with the next one."""
     remaining = list(items)
     while remaining:
-        with single_thread():
-            worker = Worker(measured, measurement, remaining)
+        own = {name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not os.environ.get(name)}
+        worker = Worker(measured, measurement, remaining, env=own)
         starting_s, patience_s = STARTING_S, measurement.patience_s
         try:
             while remaining:
@@ -167,18 +167,6 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
         finally:
             worker.kill()
             worker.stop()
-
-
-@contextmanager
-def single_thread() -> Iterator[None]:
-    """Have processes that are started meanwhile use one thread in every library; the user's own XLA_FLAGS stay."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update({name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not before[name]})
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
 
 
 def machine() -> dict[str, str]:

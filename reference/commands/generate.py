@@ -110,14 +110,10 @@ def command(
     proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
     proving |= {"--no-confirm": no_confirm, "--function": function, "--no-function": function is False}
     proving["--no-tables"] = no_tables
+    engine_asked = None if engine == AUTO else engine
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {
-            "--set": set_,
-            "--section": section,
-            "--uncertain": uncertain,
-            "--engine": engine if engine != AUTO else None,
-        }
+        unused |= {"--set": set_, "--section": section, "--uncertain": uncertain, "--engine": engine_asked}
         refuse(unused, "with --all")
         from .generate_all import generate_all
 
@@ -148,7 +144,7 @@ def command(
     if confirm is not None:
         chosen("--confirm", confirm, CONFIRMATIONS)
     confirm = "none" if no_confirm else confirm
-    given = {"engine": None if engine == AUTO else engine, "audit": audit, "confirm": confirm, "function": function}
+    given = {"engine": engine_asked, "audit": audit, "confirm": confirm, "function": function}
     asked: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     making = replace(usual, **asked, tables=usual.tables and not no_tables)
     if not (making.tables or making.function):
@@ -169,9 +165,8 @@ def command(
     rows = f"{len(solution.times)} grid times, {measured['transits']} transits"
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}{confirmed}")
     if solution.not_checked:
-        typer.echo(
-            f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True
-        )
+        unseen = "The proof finds all transits; no run with event detection confirms them"
+        typer.echo(f"{unseen}: {solution.not_checked}", err=True)
     typer.echo(f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps")
     typer.echo(f"CPU: run {run.cpu_s:.2f} s, check {measured['check_cpu_s']:.2f} s, pilot {solution.pilot_s:.2f} s")
 

@@ -61,11 +61,8 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
     readings = [name.removesuffix(BINARY64) for name in seals() if name.endswith(BINARY64)]
     scenes = [load_scene(name, replaced) for name in scene_ids()]
     scenes += [load_scene(name, ["inputs=binary64", *replaced]) for name in readings]
-    every = []
-    for scene in scenes:
-        name = dataset_id(scene)
-        folder = out / name if out is not None else default_folder(scene, name)
-        every.append(Job(scene, name, folder))
+    named = [(scene, dataset_id(scene)) for scene in scenes]
+    every = [Job(scene, name, out / name if out else default_folder(scene, name)) for scene, name in named]
     return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any, Protocol
@@ -72,23 +73,20 @@ def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> 
     return move
 
 
-def notice(
-    label: str, total: float = 0, unit: str = "s simulated", clock: Callable[[], float] = time.monotonic
-) -> Move:
+def notice(label: str, total: float = 0, unit: str = "s simulated") -> Move:
     """Return the function that moves a piece of work on, and says once how long all of it will take, if it is long.
 
     Args:
         label: what is done.
         total: how much of it there is, in `unit`.
         unit: of completed and total.
-        clock: returns a time in s.
     """
-    begun, known, given, last = clock(), total, False, 0.0
+    begun, known, given, last = time.monotonic(), total, False, 0.0
     first: tuple[float, float] | None = None  # time and part done at the first move, also of a second try
 
     def move(completed: float, total: float | None = None, item: str = "") -> None:
         nonlocal first, last, given
-        now, total = clock(), known if total is None else total
+        now, total = time.monotonic(), known if total is None else total
         if first is None or completed < last:
             first = now, completed
         last = completed
@@ -112,7 +110,6 @@ def _rough(amount: float) -> str:
 
 def in_words(seconds: float) -> str:
     """Return a rough time in the unit that suits it: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
-    for unit, length, until in (("seconds", 1, 90), ("minutes", 60, 5400), ("hours", 3600, 172800)):
-        if seconds < until:
-            return f"{float(f'{seconds / length:.2g}'):g} {unit}"
-    return f"{float(f'{seconds / 86400:.2g}'):g} days"
+    scales = (("seconds", 1, 90), ("minutes", 60, 5400), ("hours", 3600, 172800), ("days", 86400, math.inf))
+    unit, length = next((unit, length) for unit, length, until in scales if seconds < until)
+    return f"{float(f'{seconds / length:.2g}'):g} {unit}"

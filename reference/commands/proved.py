@@ -51,10 +51,7 @@ def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
     ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*asked, "highest"))])
     tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in asked}}
-    first = {
-        word: [list(ends(*interval)) for interval in table.exact("t")[:FIRST] if len(table)]
-        for word, table in tables.items()
-    }
+    first = {word: [list(ends(*t)) for t in table.exact("t")[:FIRST]] for word, table in tables.items()}
     return {
         "over_s": scene.run.t_end,
         "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},

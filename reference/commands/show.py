@@ -72,9 +72,8 @@ def command(
         typer.echo(scene_file(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
         return
     if scene_word is None:
-        raise InputError(
-            "SCENE", "nothing", "a scene's id or the path of a TOML file", "`foucault scenes` lists the ids."
-        )
+        expected = "a scene's id or the path of a TOML file"
+        raise InputError("SCENE", "nothing", expected, "`foucault scenes` lists the ids.")
     scene = load_scene(scene_word, set_ or ())
     document: dict[str, Any] = {
         **scene.model_dump(exclude_none=True),

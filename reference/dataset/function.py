@@ -70,8 +70,7 @@ def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunctio
         "times: must increase from 0": count > 0 and float.fromhex(record.times[0]) == 0,
         "function.f64 has another size": len(data) == 8 * count * len(record.components) * (record.degree + 1),
     }
-    broken = [rule for rule, holds in rules.items() if not holds]
-    if broken:
+    if broken := [rule for rule, holds in rules.items() if not holds]:
         raise ValueError(broken[0])
     function = GoldenFunction.of(record.model_dump(), record.bounds, data)
     if any(b <= a for a, b in pairwise(function.times)) or not np.isfinite(function.coefficients).all():

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import DatasetError, InputError
-from ..numbers.columns import POSITION, STATE, VELOCITY, GridColumns
+from ..numbers.columns import POSITION, STATE, GridColumns, place_of
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
 from ..scenes.fields import Level
@@ -65,9 +65,7 @@ class PrintedTable:
 
     def decimals(self, name: str) -> list[str]:
         """Return a column as printed."""
-        if name not in self.columns:
-            raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")
-        i = self.columns.index(name)
+        i = place_of(name, self.columns)
         return [row[i] for row in self._sheet.rows]
 
 
@@ -99,14 +97,22 @@ class Golden(GridColumns):
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, with their bounds.
 
-        They come from the golden function, or the scene is solved again (needs heyoka, takes longer).
+        They come from the golden function, or the scene is solved again (needs heyoka, takes longer) and its numbers
+        are rounded to doubles.
 
         Raises:
             InputError: a time is not finite, or outside of the dataset's span.
         """
         if self.function is not None:
             return self.function.at(t)
-        return states_at(self, t)
+        moments = moments_of(t, self.times[-1])
+        if not moments.size:
+            return States.of(moments, np.empty((6, 0)), {})
+        found = dense(self, moments)
+        rows = found.states[np.searchsorted(found.t, moments.ravel())]
+        rounding = dict(zip(STATE, np.spacing(np.abs(found.states).max(axis=0)).tolist(), strict=True))
+        bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
+        return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
 
     @property
     def level(self) -> Level:
@@ -189,11 +195,8 @@ class Dense:
         states = np.array([[float(x) for x in column] for column in exact]).T
         pairs = (zip(column, near, strict=True) for column, near in zip(exact, states.T.tolist(), strict=True))
         low = np.array([[float(x - Fraction(y)) for x, y in pair] for pair in pairs]).T
-        bounds = (
-            max(max(table.bound(name)) + PAIR * max(map(abs, exact[STATE.index(name)])) for name in kind)
-            for kind in (POSITION, VELOCITY)
-        )
-        return cls(times, states, low, *map(float, bounds))
+        off = [max(table.bound(name)) + PAIR * max(map(abs, column)) for name, column in zip(STATE, exact, strict=True)]
+        return cls(times, states, low, float(max(off[:3])), float(max(off[3:])))
 
 
 def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
@@ -205,12 +208,14 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
         within: error aimed at, relative to the cord length; the bound that was reached is `bound_m`.
 
     Raises:
-        InputError: a time is not finite, negative, or more than a grid step beyond the end of the dataset.
+        InputError: there is no time, or one is not finite, negative, or more than a grid step beyond the dataset's end.
         UnreachableError: the scene cannot be solved so closely.
     """
-    requested = np.unique(np.asarray(times, dtype=np.float64).ravel())
     grid = golden.times
-    _check(requested, grid)
+    later = float(grid[-1] - grid[-2]) + ROUNDED * float(grid[-1])  # a program that counts steps may end with one more
+    requested = np.unique(moments_of(times, grid[-1], later))
+    if not requested.size:
+        raise InputError("t", "no times", "at least one time in s")
     exact = [Fraction(t) for t in requested.tolist()]
     row = {t: i for i, t in enumerate(grid)}
     if row.keys() >= set(exact):
@@ -220,30 +225,3 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     solution = solve_at(golden.scene, exact, math.ceil(-math.log10(within)) + 1)
     row = {t: i for i, t in enumerate(solution.times)}
     return Dense.of(requested, solution.grid, [row[t] for t in exact])
-
-
-def states_at(golden: Golden, times: npt.ArrayLike) -> States:
-    """Return the states at times of any shape and in any order, rounded to doubles.
-
-    Raises:
-        InputError: a time is not finite, or outside of the dataset's span.
-    """
-    moments = moments_of(times, golden.times[-1])
-    if not moments.size:
-        return States.of(moments, np.empty((6, 0)), {})
-    found = dense(golden, moments)
-    rows = found.states[np.searchsorted(found.t, moments.ravel())]
-    largest = np.abs(found.states).max(axis=0)
-    bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
-    rounding = {name: float(np.spacing(size)) for name, size in zip(STATE, largest, strict=True)}
-    return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
-
-
-def _check(times: Array, grid: tuple[Fraction, ...]) -> None:
-    if not len(times):
-        raise InputError("t", "no times", "at least one time in s")
-    end = 2 * grid[-1] - grid[-2]  # where a program that counts steps may end, but for the rounding of its times
-    if not np.isfinite(times).all() or times[0] < 0 or times[-1] > float(end) * (1 + ROUNDED):
-        outside = times[~np.isfinite(times)] if not np.isfinite(times).all() else times[[0]] if times[0] < 0 else times
-        advice = f"The scene ends at run.t_end = {float(grid[-1]):.17g}: --set run.t_end=… solves a longer one."
-        raise InputError("t", f"{outside[-1]:.17g}", f"times from 0 to {float(end):.17g} s", advice)

@@ -227,8 +227,7 @@ class Manifest(Part):
             == (FUNCTION[1] in self.files)
             <= bool(self.enclosure),
         }
-        broken = [rule for rule, holds in rules.items() if not holds]
-        if broken:
+        if broken := [rule for rule, holds in rules.items() if not holds]:
             raise ValueError(broken[0])
         return self
 

@@ -36,9 +36,8 @@ def dataset_id(scene: Scene, base: Scene | None = None) -> str:
         base: the scene before its changes; by default the one of that id that comes with the project.
     """
     name = scene.id if scene.inputs == "decimal" else f"{scene.id}.{scene.inputs}"
-    changed = ",".join(
-        change for change in changes(scene, base or shipped_scene(scene)) if not change.startswith("run.")
-    )
+    every = changes(scene, base or shipped_scene(scene))
+    changed = ",".join(change for change in every if not change.startswith("run."))
     if not changed:
         return name
     if len(name) + len(changed) >= MAX_ID:
@@ -55,10 +54,8 @@ def changes_in(name: str) -> list[str]:
 def is_of_shipped_scene(scene: Scene, name: str) -> bool:
     """Return whether a dataset is that of a scene that comes with the project, unchanged but for its reading."""
     shipped = shipped_scene(scene)
-    same = shipped is not scene and scene == shipped.model_copy(
-        update={"inputs": scene.inputs, "uncertain": scene.uncertain}
-    )
-    return same and name == dataset_id(scene)
+    alike = shipped.model_copy(update={"inputs": scene.inputs, "uncertain": scene.uncertain})
+    return shipped is not scene and scene == alike and name == dataset_id(scene)
 
 
 def default_folder(scene: Scene, name: str) -> Path:

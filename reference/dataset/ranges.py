@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace as with_fields
 from fractions import Fraction
 from pathlib import Path
@@ -134,9 +134,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
     return ranges, texts
 
 
-def _zeros(
-    rows: Sequence[Sequence[str]], columns: tuple[str, ...], possible: Sequence[Mapping[str, str]]
-) -> Passages[Intervals]:
+def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]) -> Passages[Intervals]:
     return Passages(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
@@ -182,24 +180,23 @@ def places_of(low: Fraction, high: Fraction) -> int:
     return max(0, DIGITS - 1 - magnitude(high - low)) if high > low else 0
 
 
-def _cells(table: Intervals) -> list[list[str]]:
+def _cells(rows: Sequence[Sequence[Any]]) -> list[list[str]]:
     """Return the ends of all intervals as text, row by row."""
-    columns = [[ends(*interval) for interval in table.exact(name)] for name in table.columns]
-    return [[text for pair in row for text in pair] for row in zip(*columns, strict=True)]
+    return [[text for x in row for text in ends(x.low, x.high)] for row in rows]
 
 
 def _grid_rows(ranges: Ranges) -> list[list[str]]:
     decimals = exact_decimals(ranges.times)
-    first, later = Intervals(GRID, ranges.grid.rows[:1]), Intervals(GRID, ranges.grid.rows[1:])
+    first, *later = ranges.grid.rows
     # the release may be known exactly, up to the rounding of the proof: it has the digits of the next row
-    places = [places_of(*later.exact(name)[0]) for name in GRID]
-    release = [text for name, count in zip(GRID, places, strict=True) for text in ends(*first.exact(name)[0], count)]
+    pairs = zip(first, later[0], strict=True)
+    release = [text for x, after in pairs for text in ends(x.low, x.high, places_of(after.low, after.high))]
     rows = zip(ranges.times, [release, *_cells(later)], strict=True)
     return [[fixed_decimal(t, decimals), *row] for t, row in rows]
 
 
 def _zero_rows(table: Intervals, directions: Sequence[int]) -> list[list[str]]:
-    rows = zip(directions, _cells(table), strict=True)
+    rows = zip(directions, _cells(table.rows), strict=True)
     return [[str(k), str(direction), *row] for k, (direction, row) in enumerate(rows, 1)]
 
 

@@ -197,8 +197,7 @@ def command(scene: Scene, name: str, options: str) -> str:
     """
     run = scene.run
     parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
-    parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
-    parts += [options]
+    parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level, options]
     parts += [] if run.transits else ["--no-transits"]
     parts += [word for section in run.sections or () for word in ("--section", f"'{section}'")]
     own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "run.sections=")

@@ -75,9 +75,8 @@ def write(solution: Solution, folder: str | Path, name: str | None = None, *, ta
     if not tables and solution.function is None:
         raise InputError("tables", "none", "a golden function, or tables", "Solve it with function=True.")
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
-        raise InputError(
-            "audit", "no audit", "an audited proof", "What ships in data/golden is proved by FLINT alone, too."
-        )
+        advice = "What ships in data/golden is proved by FLINT alone, too."
+        raise InputError("audit", "no audit", "an audited proof", advice)
     write_texts(render(solution, name, tables=tables), folder, solution)
     return folder
 
@@ -106,8 +105,7 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
     check_target(folder)
     with writable_place(folder) as (work, target):
         new = filled(work, texts)
-        problems = problems_of(new)
-        if problems:
+        if problems := problems_of(new):
             raise DatasetError(str(folder), problems)
         if solution is not None:
             contents = {path.name: path.read_bytes() for path in new.iterdir()}
@@ -124,11 +122,8 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     proof_s = sum((solution.proof.enclosure.cpu_s if solution.proof else {}).values())
     checks_s = sum(check.cpu_s for check in solution.checks) + proof_s
-    guard = None
-    if solution.guard is not None:  # its distances are fractions
-        guard = {
-            name: float(value) if isinstance(value, Fraction) else value for name, value in vars(solution.guard).items()
-        }
+    measured = vars(solution.guard).items() if solution.guard else ()
+    guard = {name: float(value) if isinstance(value, Fraction) else value for name, value in measured}
     return {
         "scene": solution.scene.id,
         "out": str(folder),
@@ -145,5 +140,5 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "compile_s": solution.run.compile_s,
         "number": solution.run.number,
         "steps": solution.run.steps,
-        "guard": guard,
+        "guard": guard or None,
     }

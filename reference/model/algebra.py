@@ -6,7 +6,9 @@ terms that the scene has.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
+from functools import reduce
 from typing import Any, Protocol
 
 from .constants import Vector, is_zero
@@ -29,21 +31,13 @@ class Functions(Protocol):
 
 def product(*factors: Any) -> Any:
     """Return the product, or the int 0 if any factor is exactly zero."""
-    result, started = 0, False
-    for factor in factors:
-        if is_zero(factor):
-            return 0
-        result, started = (result * factor if started else factor), True
-    return result
+    return 0 if any(map(is_zero, factors)) else reduce(operator.mul, factors)
 
 
 def plus(*terms: Any) -> Any:
     """Return the sum of the terms that are not exactly zero."""
-    total: Any = 0
-    for term in terms:
-        if not is_zero(term):
-            total = term if is_zero(total) else total + term
-    return total
+    left = [term for term in terms if not is_zero(term)]
+    return reduce(operator.add, left) if left else 0
 
 
 def minus(a: Any, b: Any) -> Any:

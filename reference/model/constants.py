@@ -106,11 +106,8 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
 
     sin = number(ctx.sinpi(to_mpf(inputs.latitude / 180, ctx)))
     cos = number(ctx.cospi(to_mpf(inputs.latitude / 180, ctx)))
-    length, gravity = to_mpf(inputs.length, ctx), to_mpf(inputs.gravity, ctx)
-    rate = to_mpf(inputs.rotation_rate, ctx)
-    radius, flattening, altitude = (
-        to_mpf(v, ctx) for v in (inputs.equatorial_radius, inputs.flattening, inputs.altitude)
-    )
+    names = ("length", "gravity", "rotation_rate", "equatorial_radius", "flattening", "altitude")
+    length, gravity, rate, radius, flattening, altitude = (to_mpf(getattr(inputs, name), ctx) for name in names)
     # effective gravity contains the centrifugal force at the pivot: what is left is that of a pivot on the axis
     carried = inputs.gravity_is == "ellipsoid"
     try:

@@ -28,6 +28,17 @@ KINDS = {name: kind for kind in UNITS for name in kind}  # the columns of a colu
 HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}  # the same errors are assumed of both
 
 
+def place_of(name: str, columns: tuple[str, ...]) -> int:
+    """Return the place of a column.
+
+    Raises:
+        KeyError: there is none of that name; it says which there are.
+    """
+    if name not in columns:
+        raise KeyError(f"{name!r} is no column; there are {', '.join(columns)}")
+    return columns.index(name)
+
+
 def data_frame(columns: Mapping[str, Any]) -> Any:
     """Return columns as a pandas.DataFrame.
 

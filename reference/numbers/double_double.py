@@ -14,7 +14,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from .precision import Array, context
+from .precision import Array, context, to_fraction
 
 _SPLIT = 134217729.0  # 2**27 + 1: cuts a double into two halves of 26 bits
 _STEP = 2.5  # degrees between the angles whose sine and cosine are known
@@ -99,7 +99,7 @@ def square_root(a: DoubleDouble) -> DoubleDouble:
 
 def sine_and_cosine(degrees: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
     """Return sine and cosine of angles of at most 2**40 degrees; exact zeros and ones at the quarters of a turn."""
-    table, radian = _known_angles()
+    sines, cosines, radian = _known_angles()
     near = np.rint(degrees.high / _STEP)
     r = DoubleDouble(*_quick(degrees.high - near * _STEP, degrees.low)) * radian
     square = r * r
@@ -108,14 +108,14 @@ def sine_and_cosine(degrees: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
     even = s2 * (1 / 40320 + s2 * (-1 / 3628800 + s2 * (1 / 479001600 - s2 / 87178291200)))
     sine = r + r * (s * (s * (_exactly(1, 120) + odd) - _exactly(1, 6)))
     less = s * (s * (_exactly(1, 24) + s * (even - _exactly(1, 720))) - 0.5)  # cosine less 1
-    at = table[near.astype(np.int64) % _TURN]
-    sin, cos = DoubleDouble(at[..., 0], at[..., 1]), DoubleDouble(at[..., 2], at[..., 3])
+    at = near.astype(np.int64) % _TURN
+    sin, cos = (DoubleDouble(known.high[at], known.low[at]) for known in (sines, cosines))
     return sin + (sin * less + cos * sine), cos + (cos * less - sin * sine)
 
 
 def in_radians(degrees: DoubleDouble) -> DoubleDouble:
     """Return angles in radians."""
-    return degrees * _known_angles()[1]
+    return degrees * _known_angles()[2]
 
 
 @cache
@@ -124,19 +124,13 @@ def _exactly(numerator: int, denominator: int) -> DoubleDouble:
 
 
 @cache
-def _known_angles() -> tuple[Array, DoubleDouble]:
-    """Return sine and cosine of the multiples of _STEP, shape (_TURN, 4), and the radians of a degree."""
+def _known_angles() -> tuple[DoubleDouble, DoubleDouble, DoubleDouble]:
+    """Return sine and cosine of the multiples of _STEP in a turn, and the radians of a degree."""
     ctx = context(160)
     angles = [ctx.mpf(_STEP) * k / 180 for k in range(_TURN)]
-    parts = [(*_split(ctx.sinpi(a)), *_split(ctx.cospi(a))) for a in angles]
-    high, low = _split(ctx.pi / 180)
-    return np.array(parts), DoubleDouble(np.array([high]), np.array([low]))
-
-
-def _split(value: Any) -> tuple[float, float]:
-    """Return an mpf as a sum of two doubles."""
-    high = float(value)
-    return high, float(value - high)
+    exact = map(ctx.sinpi, angles), map(ctx.cospi, angles), [ctx.pi / 180]
+    sines, cosines, radian = (DoubleDouble.of(map(to_fraction, numbers)) for numbers in exact)
+    return sines, cosines, radian
 
 
 def _pair(value: Fraction) -> tuple[float, float]:

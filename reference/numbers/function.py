@@ -96,18 +96,18 @@ class GoldenFunction:
         return (*position, *velocity)
 
 
-def moments_of(times: npt.ArrayLike, end: float | Fraction) -> Array:
+def moments_of(times: npt.ArrayLike, end: float | Fraction, later: float = 0.0) -> Array:
     """Return times as doubles.
 
     Raises:
-        InputError: one is no number, not finite, or outside of 0 to `end` s.
+        InputError: one is no number, not finite, before 0, or more than `later` s after the scene's `end` in s.
     """
     expected = f"times from 0 to {float(end):.17g} s"
     try:
         t = np.asarray(times, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError("t", times, expected) from None
-    outside = t[~((t >= 0) & (t <= float(end)))]
+    outside = t[~((t >= 0) & (t <= float(end) + later))]
     if outside.size:
         raise InputError("t", f"{outside[0]:.17g}", expected, "The scene ends there: run.t_end.")
     return t

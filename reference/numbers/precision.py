@@ -127,16 +127,15 @@ def magnitude(value: Fraction) -> int:
     return guess
 
 
-def rounded_up(value: Fraction, significant: int = 2) -> str:
+def rounded_up(value: Fraction) -> str:
     """Return a bound as text with two significant digits, never below `value`, such as "1.3e-45"."""
     if value <= 0:
         return "0"
     power = magnitude(value)
-    digits = math.ceil(value / Fraction(10) ** (power - significant + 1))
-    if digits >= 10**significant:
-        digits, power = digits // 10, power + 1
-    text = str(digits)
-    return f"{text[0]}.{text[1:]}e{power:+03d}"
+    digits = math.ceil(value / Fraction(10) ** (power - 1))
+    if digits == 100:
+        digits, power = 10, power + 1
+    return f"{digits // 10}.{digits % 10}e{power:+03d}"
 
 
 def digits_that_hold(value: float, error: float) -> str:

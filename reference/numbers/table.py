@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .columns import KINDS, Framed, data_frame
+from .columns import KINDS, Framed, data_frame, place_of
 from .precision import Array, decimals_for, rounded, to_fraction, with_decimal_point
 
 Integers = Any  # an array of integers of any size: dtype object, shape (rows,)
@@ -50,14 +50,10 @@ class Table(Framed):
             errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
         return cls(columns, bits, values, errors)
 
-    def with_errors(self, errors: Mapping[str, Fraction] | Sequence[Mapping[str, Fraction]]) -> Table:
-        """Return the table with error bounds by column name, for all rows or one mapping a row, rounded up."""
-
-        def fixed(row: Mapping[str, Fraction]) -> tuple[int, ...]:
-            return tuple(math.ceil(row[name] * (1 << self.bits)) for name in self.columns)
-
-        rows = [fixed(errors)] * len(self) if isinstance(errors, Mapping) else [fixed(row) for row in errors]
-        return Table(self.columns, self.bits, self.values, rows)
+    def with_errors(self, errors: Mapping[str, Fraction]) -> Table:
+        """Return the table with error bounds for all rows, by column name, rounded up."""
+        bounds = tuple(math.ceil(errors[name] * (1 << self.bits)) for name in self.columns)
+        return Table(self.columns, self.bits, self.values, [bounds] * len(self))
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -65,12 +61,10 @@ class Table(Framed):
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
-        return self.array(name)
-
-    def array(self, name: str) -> Array:
-        """Return a column as the nearest doubles, shape (rows,)."""
-        i, unit = self._place(name), 1 << self.bits
+        i, unit = place_of(name, self.columns), 1 << self.bits
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
+
+    array = __getitem__
 
     def to_pandas(self) -> Any:
         """Return the columns as a pandas.DataFrame of the nearest doubles.
@@ -82,29 +76,24 @@ class Table(Framed):
 
     def exact(self, name: str) -> list[Fraction]:
         """Return the values of a column, exactly as computed."""
-        i = self._place(name)
+        i = place_of(name, self.columns)
         return [Fraction(row[i], 1 << self.bits) for row in self.values]
 
     def bound(self, name: str) -> list[Fraction]:
         """Return the bounds on the errors of a column's values."""
-        i = self._place(name)
+        i = place_of(name, self.columns)
         return [Fraction(row[i], 1 << self.bits) for row in self.errors]
 
     def whole(self, name: str, bits: int) -> list[int]:
         """Return the values of a column as integers over 2**bits; `bits` is at least the table's."""
-        i, up = self._place(name), bits - self.bits
+        i, up = place_of(name, self.columns), bits - self.bits
         return [row[i] << up for row in self.values]
-
-    def _place(self, name: str) -> int:
-        if name not in self.columns:
-            raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")
-        return self.columns.index(name)
 
     def only(self, columns: tuple[str, ...]) -> Table:
         """Return the table with just these columns."""
         if columns == self.columns:
             return self
-        places = [self._place(name) for name in columns]
+        places = [place_of(name, self.columns) for name in columns]
         values, errors = ([tuple(row[i] for i in places) for row in rows] for rows in (self.values, self.errors))
         return Table(columns, self.bits, values, errors)
 

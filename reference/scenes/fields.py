@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from .inputs import GravityIs, NotNegative, Number, NumberOrInf, Positive, Refused, within
+from .inputs import OR_INF, GravityIs, NotNegative, Number, Positive, Refused, checked, within
 
 MAX_DIGITS = 1000
 
@@ -36,9 +36,8 @@ def _section_words(value: Any) -> Any:
 def _checked_sections(words: tuple[str, ...]) -> tuple[str, ...]:
     for word in words:
         if not re.fullmatch(SECTION_WORD, word, re.ASCII) or abs(azimuth_of(word)) > 360:
-            raise Refused(
-                SECTION_WORDS, f"{word!r} is none; an azimuth is a decimal from -360 to 360 degrees, east to north."
-            )
+            advice = f"{word!r} is none; an azimuth is a decimal from -360 to 360 degrees, east to north."
+            raise Refused(SECTION_WORDS, advice)
     if len(set(words)) < len(words):
         raise Refused("each section once", "Leave out the second one.")
     return words
@@ -92,7 +91,7 @@ class Site(SceneTable):
     )
     rotation_rate: Number = field("7.292115e-5", "rad/s", "rate at which the Earth turns")
     equatorial_radius: NotNegative = field("6378137", "m", "radius of the ellipsoid at the equator")
-    inverse_flattening: Annotated[NumberOrInf, within("1", open_low=True)] = field(
+    inverse_flattening: Annotated[Number, within("1", open_low=True), OR_INF] = field(
         "298.257223564", "", 'inverse flattening of the ellipsoid; "inf" for a sphere'
     )
 
@@ -114,10 +113,7 @@ class Release(SceneTable):
     azimuth_rate: Number | None = field(None, "degrees/s", "rate of the azimuth")
 
 
-def _digits(value: int) -> int:
-    if not 1 <= value <= MAX_DIGITS:
-        raise Refused(f"a whole number from 1 to {MAX_DIGITS}")
-    return value
+Digits = Annotated[int, checked(lambda digits: 1 <= digits <= MAX_DIGITS, f"a whole number from 1 to {MAX_DIGITS}")]
 
 
 class RunTable(SceneTable):
@@ -125,7 +121,7 @@ class RunTable(SceneTable):
 
     t_end: Annotated[Number, within("0", "1e15", open_low=True)] = field("86400", "s", "end of the motion")
     grid_step: Positive = field("60", "s", "time between two rows of the grid")
-    digits: Annotated[int, AfterValidator(_digits)] = field(40, "", f"significant digits, at most {MAX_DIGITS}")
+    digits: Digits = field(40, "", f"significant digits, at most {MAX_DIGITS}")
     level: Level = field("confirmed", "", "what has to stand behind every digit; enclosed is a proof")
     transits: bool = field(True, "", "whether the times of the transits are sought")
     sections: Sections = field(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema, WrapValidator
 from pydantic_core import ErrorDetails
 
 from ..errors import InputError, did_you_mean, is_plain
@@ -113,16 +113,13 @@ def _as_text(value: object) -> object:
     return value
 
 
-_SIZES = f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size"
-
-
 def _decimal(text: str, info: ValidationInfo) -> str:
     match = _DECIMAL.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if match is None:
         raise Refused("a decimal number such as 67 or 7.292115e-5", _how_to_write(text))
     # zero as well: 0e999999999 is computed with a power of ten
     if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
-        raise Refused(_SIZES)
+        raise Refused(f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size")
     try:
         as_read(text, _reading(info))
     except OverflowError:
@@ -144,14 +141,15 @@ def _how_to_write(text: str) -> str:
 _DOUBLES = "The numbers are read as binary64 here."
 
 
-def _decimal_or_inf(text: str, info: ValidationInfo) -> str:
-    return text if text == "inf" else _decimal(text, info)
+def checked(holds: Callable[[Any], bool], expected: str) -> AfterValidator:
+    """Return the check that something holds of a value, of which is said what was expected."""
 
+    def check(value: Any) -> Any:
+        if not holds(value):
+            raise Refused(expected)
+        return value
 
-def _one_line(text: str) -> str:
-    if not is_plain(text):
-        raise Refused("one line of text without control characters")
-    return text
+    return AfterValidator(check)
 
 
 def within(low: str, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
@@ -160,8 +158,6 @@ def within(low: str, high: str | None = None, *, open_low: bool = False) -> Afte
     expected = f"a number {'above' if open_low else 'at least'} {low}" + (f" and at most {high}" if high else "")
 
     def check(text: str, info: ValidationInfo) -> str:
-        if text == "inf":
-            return text
         value = as_read(text, _reading(info))
         too_low = value <= least if open_low else value < least
         if too_low or (most is not None and value > most):
@@ -171,10 +167,10 @@ def within(low: str, high: str | None = None, *, open_low: bool = False) -> Afte
     return AfterValidator(check)
 
 
-Line = Annotated[str, AfterValidator(_one_line)]
+Line = Annotated[str, checked(is_plain, "one line of text without control characters")]
 _SCHEMA = {"type": ["string", "integer"], "pattern": f"^(inf|{_DECIMAL.pattern})$"}  # what an editor checks
 Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal), WithJsonSchema(_SCHEMA)]
-NumberOrInf = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal_or_inf), WithJsonSchema(_SCHEMA)]
+OR_INF = WrapValidator(lambda value, check: value if value == "inf" else check(value))
 Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
 
@@ -187,11 +183,10 @@ def _by_full_name(widths: object) -> object:
     """Return widths by names such as pendulum.length, which without quotes is a table in a table for TOML."""
     if not isinstance(widths, Mapping):
         return widths
-    nested = (
-        {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
-        for top, inner in widths.items()
-    )
-    return {name: width for table in nested for name, width in table.items()}
+    full: dict[str, object] = {}
+    for top, inner in widths.items():
+        full |= {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
+    return full
 
 
 Width = Annotated[
@@ -224,9 +219,8 @@ def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
         got = ", ".join(map(str, got)) if isinstance(got, tuple) else got
         return InputError(field, got, cause.expected, cause.advice)
     if kind == "extra_forbidden":
-        return InputError(
-            field, got, "a field that scenes have", did_you_mean(field, known, "`foucault show SCENE` lists them.")
-        )
+        advice = did_you_mean(field, known, "`foucault show SCENE` lists them.")
+        return InputError(field, got, "a field that scenes have", advice)
     if kind == "missing" and field == "release":
         return InputError(field, "nothing", "a table with x and y, or with angle and azimuth")
     if kind == "missing":

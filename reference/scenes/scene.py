@@ -14,12 +14,12 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
-from .inputs import RELEASES, SITE, Inputs, Line, Refused, Widths, as_read, explained
+from .inputs import RELEASES, SITE, Inputs, Line, Widths, as_read, checked, explained
 from .shipped import data_root, scene_ids
 
 MAX_ROWS = 2_000_000
@@ -27,18 +27,13 @@ LEAST_T_END = Fraction(1, 10**300)
 
 Reading = Literal["decimal", "binary64"]
 
-_ID = re.compile(r"[a-z][a-z0-9_]*")
-
 
 def is_scene_id(word: str) -> bool:
     """Return whether a word can be a scene's id, and so a folder and a command-line argument."""
-    return _ID.fullmatch(word) is not None and len(word) <= 64
+    return re.fullmatch("[a-z][a-z0-9_]{0,63}", word) is not None
 
 
-def _identifier(text: str) -> str:
-    if not is_scene_id(text):
-        raise Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
-    return text
+Id = Annotated[str, checked(is_scene_id, "a lower-case letter followed by letters, digits or _ (at most 64)")]
 
 
 class Scene(SceneTable):
@@ -47,7 +42,7 @@ class Scene(SceneTable):
     `exact` gives the numbers as fractions, in the reading that `inputs` names.
     """
 
-    id: Annotated[str, AfterValidator(_identifier)] = field(..., "", "name of the scene and of its folder")
+    id: Id = field(..., "", "name of the scene and of its folder")
     title: Line = field("", "", "what it is, in one line")
     source: Line = field("", "", "where its numbers come from")
     flags: tuple[Line, ...] = field((), "", "words for what is difficult in it")
@@ -66,8 +61,7 @@ class Scene(SceneTable):
             return as_read(text or "0", self.inputs)
 
         inverse, kind = self.site.inverse_flattening, "position" if self.release.angle is None else "angles"
-        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE}
-        numbers |= {"position": None, "angles": None}
+        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE} | dict.fromkeys(RELEASES)
         numbers[kind] = tuple(read(getattr(self.release, name)) for name in RELEASES[kind])
         return Inputs(
             length=read(self.pendulum.length),
@@ -81,9 +75,7 @@ class Scene(SceneTable):
 
     def with_values(self, values: Words) -> Scene:
         """Return the scene with fields replaced, by words `section.key=value` or `x0=value`, or a mapping of keys."""
-        document = self.model_dump(exclude_none=True)
-        _assign(document, values)
-        return parse_scene(document)
+        return _with_values(self.model_dump(exclude_none=True), values)
 
 
 Words = str | Iterable[str] | Mapping[str, Any]  # one word `key=value`, several, or a mapping from keys to values
@@ -102,8 +94,8 @@ def _word(value: Any) -> str:
     return str(value)
 
 
-def _assign(document: dict[str, Any], values: Words) -> None:
-    """Replace fields of a scene that is given as nested mappings."""
+def _with_values(document: dict[str, Any], values: Words) -> Scene:
+    """Return a scene that is given as nested mappings, with fields replaced."""
     for assignment in words_of(values):
         key, sign, value = assignment.partition("=")
         section, _, name = full_name(key).rpartition(".")
@@ -114,6 +106,7 @@ def _assign(document: dict[str, Any], values: Words) -> None:
             raise InputError("--set", assignment, f"a section, and {section} is a single field")
         flags = (section, name) == ("", "flags")
         table[name] = [flag for flag in value.split(",") if flag] if flags else value.strip()
+    return parse_scene(document)
 
 
 def field_names() -> list[str]:
@@ -122,8 +115,7 @@ def field_names() -> list[str]:
     for top, info in Scene.model_fields.items():
         if top == "uncertain":  # `--uncertain` says these
             continue
-        kind = info.annotation
-        inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, SceneTable) else ()
+        inside = getattr(info.annotation, "model_fields", ())
         names += [f"{top}.{key}" for key in inside] or [top]
     return names
 
@@ -197,26 +189,23 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
 def _wrong_in_release(scene: Scene) -> Iterator[InputError]:
     release = scene.release
     fields = set(release.model_dump(exclude_none=True))
-    cartesian, angular = fields & {"x", "y", "vx", "vy"}, fields & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
-    if cartesian and angular:
-        kinds = "either x, y (vx, vy) or angle, azimuth (and rates)"
-        yield InputError("release", ", ".join(sorted(fields)), kinds, "Keep one kind.")
-        return
-    if not fields:
+    kinds = [names for names in RELEASES.values() if fields & {*names}]
+    if not kinds:
         yield InputError("release", "nothing", "x and y, or angle and azimuth")
         return
-    needed = ("x", "y") if cartesian else ("angle", "azimuth")
+    if len(kinds) > 1:
+        expected = "either x, y (vx, vy) or angle, azimuth (and rates)"
+        yield InputError("release", ", ".join(sorted(fields)), expected, "Keep one kind.")
+        return
+    needed = kinds[0][:2]
     missing = [name for name in needed if name not in fields]
     for name in missing:
         yield InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
     position, length = scene.exact.position, scene.exact.length
     if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
-        yield InputError(
-            "release",
-            f"x = {release.x}, y = {release.y}",
-            f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²",
-            "For a release at or above the horizontal give angle and azimuth.",
-        )
+        got = f"x = {release.x}, y = {release.y}"
+        expected = f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²"
+        yield InputError("release", got, expected, "For a release at or above the horizontal give angle and azimuth.")
 
 
 def _wrong_in_run(scene: Scene) -> Iterator[InputError]:
@@ -252,8 +241,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document and is_scene_id(own_name):
         document["id"] = own_name
-    _assign(document, values)
-    return parse_scene(document)
+    return _with_values(document, values)
 
 
 AnyScene = Scene | str | Path | Mapping[str, Any]

@@ -90,11 +90,8 @@ def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
     A column that does not change, such as y on the equator or everything at rest, may be exact in both. In one that
     does change, a difference of exactly zero comes about by chance, once in 2**16 numbers; in all of them it does not.
     """
-    changing = [
-        name
-        for name, column in zip(states.columns, zip(*states.values, strict=True), strict=True)
-        if len(set(column)) > 1
-    ]
+    columns = zip(states.columns, zip(*states.values, strict=True), strict=True)
+    changing = [name for name, column in columns if len(set(column)) > 1]
     if changing and not any(gaps[name] for name in changing):
         raise IntegrationError("The two runs are the same run: they differ nowhere, so their agreement proves nothing.")
 
@@ -103,21 +100,16 @@ def _resolution(published: Run, witness: Run) -> dict[str, Fraction]:
     """Return the last bit of the witness in each column, for columns in which both runs happen to be equal."""
     start = Start.of(published.plan.inputs, DOUBLE_BITS + GUARD_BITS)
     length, largest = published.plan.inputs.length, published.grid.largest()
-    speed = max(largest[name] for name in VELOCITY) or length * to_fraction(
-        start.ctx.sqrt(start.ctx.norm(start.k.pull))
-    )
+    swing = to_fraction(start.ctx.sqrt(start.ctx.norm(start.k.pull)))
+    speed = max(largest[name] for name in VELOCITY) or length * swing
     sizes = dict.fromkeys(POSITION, length) | dict.fromkeys(VELOCITY, speed)
     return {name: size / 2**witness.plan.number.prec for name, size in sizes.items()}
 
 
 def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
     """Return the bits by which a gap exceeds one unit of its last digit, and a margin; 0 if all keep to `AGREEMENT`."""
-    lacking = 0
-    for name, gap in gaps.items():
-        ratio = gap * 10 ** decimals[name]
-        if ratio > AGREEMENT:
-            lacking = max(lacking, bits_in(ratio) + MARGIN_BITS)
-    return lacking
+    largest = max(gap * 10 ** decimals[name] for name, gap in gaps.items())
+    return bits_in(largest) + MARGIN_BITS if largest > AGREEMENT else 0
 
 
 def zeros_lacking(
@@ -153,13 +145,10 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
     f, after = plus(dot(a, v), dot(b, acc)), plus(dot(a, add(v, scale(step, acc))), dot(b, later))
     power, length = bits_in(max(errors.values())), float(start.k.length)
     parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    off: Any = sum(
-        parts[name] * abs(float(x))
-        for kind, part in ((POSITION, form.a), (VELOCITY, form.b))
-        for name, x in zip(kind, part, strict=True)
-    )
     lost = {name: _in_units([row[i] for row in table.errors], table.bits + power) for i, name in enumerate(SECTION)}
-    off = off + sum(lost[name] * abs(float(x)) for name, x in zip(VELOCITY, form.b, strict=True))
+    weights = {name: abs(float(x)) for name, x in zip(STATE, (*form.a, *form.b), strict=True)}
+    off: Any = sum(parts[name] * weight for name, weight in weights.items())
+    off = off + sum(lost[name] * weights[name] for name in VELOCITY)
     slope, bend = (np.abs(_floats(x)) * length for x in (f, (after - f) / step))
     with np.errstate(divide="ignore", invalid="ignore"):
         late = 2 * off / slope
@@ -194,17 +183,10 @@ def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table |
         errors: those of its columns on the grid.
         apart: differences of its transits from another run's: no error is less than twice that.
     """
-    assert run.transits is not None
-    power = bits_in(max(errors.values()))
-    parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    return _with_errors(run.transits.only(TRANSITS), _errors(run, parts, power), power, apart)
-
-
-def _errors(run: Run, errors: Mapping[str, float], power: int) -> dict[str, Array]:
-    """Return the errors of each transit in units of 2**power, from those of the grid in the same units."""
-    table, plan = run.transits, run.plan
+    table, power = run.transits, bits_in(max(errors.values()))
     assert table is not None
-    k = Start.of(plan.inputs, DOUBLE_BITS + GUARD_BITS).k.converted(float)
+    parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
+    k = Start.of(run.plan.inputs, DOUBLE_BITS + GUARD_BITS).k.converted(float)
     n, v = (_vector(table[name] / k.length for name in kind) for kind in (POSITION, VELOCITY))
     pulled, a = (_vector(np.broadcast_arrays(*of(n, v, k), n[0])[:3]) for of in (force, acceleration))
     square, loss, aside = k.rate**2, 2 * abs(k.rate) + k.drag, abs(n[0])
@@ -213,22 +195,23 @@ def _errors(run: Run, errors: Mapping[str, float], power: int) -> dict[str, Arra
     of_velocity = loss + aside * (2 * _norm(v) + loss)
 
     ax = abs(a[0]) * k.length
-    ax_error = of_x * errors["x"]
-    ax_error += of_position * sum(errors[name] for name in POSITION)
-    ax_error += of_velocity * sum(errors[name] for name in VELOCITY)
+    ax_error = of_x * parts["x"]
+    ax_error += of_position * sum(parts[name] for name in POSITION)
+    ax_error += of_velocity * sum(parts[name] for name in VELOCITY)
     jerk = (of_x * abs(v[0]) + of_position * _norm(v) + of_velocity * _norm(a)) * k.length
 
     # at the zero xdot's error e is at most (slope - jerk late) late: the smaller root, if there is one
     slope = ax - np.ldexp(ax_error, power)
-    room = slope**2 - 4 * jerk * np.ldexp(errors["vx"], power)
+    room = slope**2 - 4 * jerk * np.ldexp(parts["vx"], power)
     has_root = (slope > 0) & (room >= 0)
     late = np.zeros(len(table))
-    late[has_root] = 2 * errors["vx"] / (slope[has_root] + np.sqrt(room[has_root]))
-    late += np.ldexp(table["t"], -plan.number.prec - power)
-    columns = {"t": late, "x": errors["x"] + ax * np.ldexp(late, power) * late, "ax": ax_error + jerk * late}
+    late[has_root] = 2 * parts["vx"] / (slope[has_root] + np.sqrt(room[has_root]))
+    late += np.ldexp(table["t"], -run.plan.number.prec - power)
+    columns = {"t": late, "x": parts["x"] + ax * np.ldexp(late, power) * late, "ax": ax_error + jerk * late}
     for name, rate in (("y", v[1]), ("z", v[2]), ("vy", a[1])):
-        columns[name] = errors[name] + abs(rate) * k.length * late
-    return {name: np.where(has_root, column, np.inf) for name, column in columns.items()}
+        columns[name] = parts[name] + abs(rate) * k.length * late
+    columns = {name: np.where(has_root, column, np.inf) for name, column in columns.items()}
+    return _with_errors(table.only(TRANSITS), columns, power, apart)
 
 
 def _in_units(values: list[int], bits: int) -> Array:

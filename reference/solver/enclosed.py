@@ -112,9 +112,8 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     """Return heyoka's run over the drawn intervals, each from the middle of the proven one at its first row."""
     from ..engines.heyoka.run import run_between
 
-    return run_between(
-        replace(plan, transits=False, sections=()), solution.grid, drawn_intervals(solution.scene), report
-    )
+    states_alone = replace(plan, transits=False, sections=())
+    return run_between(states_alone, solution.grid, drawn_intervals(solution.scene), report)
 
 
 def confirmed(problem: ProofTask, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:

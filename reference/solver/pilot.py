@@ -16,10 +16,9 @@ from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest, run
 from ..errors import BeyondDoublesError, UnreachableError
-from ..model.constants import constants
 from ..model.start import Start
 from ..numbers.columns import GRID, HORIZONTAL, POSITION, VELOCITY
-from ..numbers.precision import DOUBLE, LONG_DOUBLE, context, decimals_for, real
+from ..numbers.precision import DOUBLE, LONG_DOUBLE, decimals_for, real
 from ..numbers.table import Table, bits_in, decimals_of, resolved
 from ..scenes.inputs import Inputs
 
@@ -71,10 +70,8 @@ class Pilot:
     @property
     def cautious(self) -> dict[str, Fraction]:
         """Errors to assume where no second run checks them: with a safety factor, a floor, and the same for x and y."""
-        floored = {
-            name: ESTIMATE_FACTOR * max(error, LEAST_ULPS * self.largest[name] / 2**self.prec)
-            for name, error in self.errors.items()
-        }
+        least = {name: LEAST_ULPS * size / 2**self.prec for name, size in self.largest.items()}
+        floored = {name: ESTIMATE_FACTOR * max(error, least[name]) for name, error in self.errors.items()}
         return {name: max(floored[column] for column in HORIZONTAL.get(name, (name,))) for name in floored}
 
     def estimates(self, prec: int) -> dict[str, Fraction]:
@@ -255,12 +252,11 @@ class Pace:
 def _reason(inputs: Inputs, needed: float, pace: float) -> str:
     """Return why a run takes too many steps: it is long, or strong drag makes it stiff (rates far apart in size)."""
     altogether = f"{needed:.1e} steps, and at most {MAX_STEPS:.1e} are taken."
-    ctx = context(LONG_DOUBLE.prec)
-    k = constants(inputs, ctx)
-    swing = float(ctx.norm(k.pull)) ** 0.5
-    if 2 * swing >= k.drag:
+    start = Start.of(inputs, LONG_DOUBLE.prec)
+    swing, drag = float(start.ctx.norm(start.k.pull)) ** 0.5, float(inputs.drag)
+    if 2 * swing >= drag:
         return f"The run takes {pace:.1e} steps per simulated second, altogether {altogether}"
-    fast = float(k.drag) * (1 + math.sqrt(1 - (2 * swing / float(k.drag)) ** 2)) / 2
+    fast = drag * (1 + math.sqrt(1 - (2 * swing / drag) ** 2)) / 2
     slow = swing**2 / fast
     then = "nothing moves any more"
     if slow:

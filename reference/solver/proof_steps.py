@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from itertools import chain, islice
 
-from ..engines import AUTO
 from ..engines.plan import Run
 from ..engines.registry import MANY_STEPS, WORTH_A_PROCESS, engines, fastest
 from ..errors import IntegrationError
@@ -33,9 +32,7 @@ class EngineChanged(Exception):
 class Feed:
     """The run whose Taylor steps the proof takes: called with a precision, it starts one and returns its steps."""
 
-    def __init__(
-        self, inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, steps: int = MANY_STEPS
-    ) -> None:
+    def __init__(self, inputs: Inputs, times: tuple[Fraction, ...], engine: str, steps: int = MANY_STEPS) -> None:
         """Declare the run.
 
         Args:

@@ -25,7 +25,7 @@ from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, Array, real, to_fraction
 from ..scenes.inputs import RELEASES, Inputs
 from ..scenes.scene import Scene
-from .pilot import MAX_PREC, Pilot, run_pilot
+from .pilot import MAX_PREC, run_pilot
 
 DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation
 # In which each input is nudged: most get smaller, as x, y and the angle must, to stay on the sphere; length and
@@ -34,9 +34,7 @@ _WAYS = {"y": Fraction(-1, 2), "azimuth": Fraction(-1, 2)}
 _WAYS |= dict.fromkeys(("vx", "angle_rate", "length", "rotation_rate", "altitude"), Fraction(1))
 
 
-def digits_lost(
-    inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None = None, *, constants: bool = True
-) -> float:
+def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool = True) -> float:
     """Return the decimal digits that the motion costs: n digits of every result need n + this many in the inputs.
 
     Three runs are compared: the scene's own, one with a perturbed release, and one with perturbed constants. At a
@@ -47,13 +45,12 @@ def digits_lost(
     Args:
         inputs: the exact inputs of a scene.
         times: increasing, from 0, in s.
-        pilot: the result of `run_pilot` for the same inputs and times, to save two runs.
         constants: whether errors of the constants count as well, or only those of the release.
 
     Raises:
         UnreachableError: as `run_pilot`, or the perturbed runs diverge at every precision.
     """
-    pilot = pilot or run_pilot(inputs, times)
+    pilot = run_pilot(inputs, times)
     number = DOUBLE if pilot.prec <= DOUBLE.prec else real(2 * LONG_DOUBLE.prec)
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))

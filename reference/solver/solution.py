@@ -192,9 +192,8 @@ def transit_decimals(solution: Solution) -> dict[str, int]:
     """Return those of the transits, empty without any table: as in the grid, and t and ax by their own size."""
     if solution.zeros is None:
         return {}
-    return {**decimals_of(solution.zeros.largest(), solution.scene.run.digits)} | {
-        name: places for name, places in grid_decimals(solution).items() if name in solution.zeros.columns
-    }
+    own = decimals_of(solution.zeros.largest(), solution.scene.run.digits)
+    return own | {name: places for name, places in grid_decimals(solution).items() if name in own}
 
 
 def section_decimals(solution: Solution) -> dict[str, int]:
@@ -235,8 +234,7 @@ def separated(
 
 def check_decided(solution: Solution) -> None:
     """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit."""
-    tables = tables_of(solution)
-    undecided = [number for table, decimals in tables if (number := table.undecided(decimals)) is not None]
+    undecided = [number for table, decimals in tables_of(solution) if (number := table.undecided(decimals))]
     if undecided:
         raise UndecidedRounding(*max(undecided))
 

@@ -159,12 +159,9 @@ def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = Non
         IntegrationError: a run stopped.
     """
     scene, every = scene.with_values(["run.level=confirmed"]), tuple(sorted({Fraction(0), *times}))
-    fine, coarse = (
-        Plan(scene.exact, formulation, number, every, scene.run.transits)
-        for formulation, number in (("momentum", LONG_DOUBLE), ("spin", DOUBLE))
-    )
-    pace = Pace(scene.exact, every[-1])
-    published, witness = run(fine, report, pace), run(coarse)
+    fine = Plan(scene.exact, "momentum", LONG_DOUBLE, every, scene.run.transits)
+    published = run(fine, report, Pace(scene.exact, every[-1]))
+    witness = run(replace(fine, formulation="spin", number=DOUBLE))
     gap = Agreement.between(published, witness, scene.run.digits)
     if published.directions != witness.directions:
         return None

@@ -47,18 +47,18 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
             raise InputError(field_name, text, "an input that this scene has", f"It has {', '.join(have)}.")
         if name in found:
             raise InputError(field_name, text, f"{name} once", "Give one width for each input.")
-        sign = next((sign for sign in SIGNS if width.startswith(sign)), None)
+        number = next((width.removeprefix(sign).strip() for sign in SIGNS if width.startswith(sign)), "")
         try:
-            found[name] = Fraction(checked_value("site.altitude", width.removeprefix(sign or "").strip(), "decimal"))
+            found[name] = Fraction(checked_value("site.altitude", number, "decimal"))
         except InputError:
-            sign = None
-        if sign is None:
-            raise InputError(field_name, text, EXAMPLE)
+            raise InputError(field_name, text, EXAMPLE) from None
         if found[name] <= 0:
             raise InputError(field_name, text, "a width above 0", "Leave out an input that is certain.")
     if not found:
         raise InputError("--uncertain", "nothing", "an input with its width, length=±0.001", _NAMES)
-    low, high = _ends(scene, found)
+    low, high = (
+        {name: value + side * found.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)
+    )
     for name, half in found.items():
         for end in (low[name], high[name]):
             try:
@@ -86,12 +86,6 @@ def decimal(value: Fraction) -> str:
 def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
     """Return widths as decimals, with all of their digits."""
     return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
-
-
-def _ends(scene: Scene, widths: Mapping[str, Fraction]) -> list[dict[str, Fraction]]:
-    """Return the lower and the upper ends of all inputs."""
-    have = scene.exact.by_name
-    return [{name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)]
 
 
 def solve_ranges(

@@ -69,31 +69,22 @@ def kept(*sources: Path, **options: Any) -> Callable[[Function], Function]:
         options: numba's.
     """
 
-    def declared(function: Function) -> Function:
-        from numba import njit
+    def declared(function: Any) -> Any:
+        from numba import config, njit
 
-        compiled: Function = _cached(function, sources, options) or njit(**options)(function)
-        return compiled
+        folder = folder_of(sources or [Path(function.__code__.co_filename)])
+        if folder is not None:
+            with _declaring, suppress(RuntimeError):  # numba finds no folder at all
+                before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
+                try:
+                    compiled = njit(cache=True, **options)(function)
+                finally:
+                    config.CACHE_DIR = before
+                if Path(compiled.stats.cache_path).is_relative_to(folder):  # else numba chose one for any age
+                    return compiled
+        return njit(**options)(function)
 
     return declared
-
-
-def _cached(function: Any, sources: Iterable[Path], options: dict[str, Any]) -> Any:
-    """Return a function as numba compiles and keeps it, or None if that cannot be done in the folder of its sources."""
-    from numba import config, njit
-
-    folder = folder_of(sources or [Path(function.__code__.co_filename)])
-    if folder is None:
-        return None
-    with _declaring, suppress(RuntimeError):  # numba finds no folder at all
-        before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
-        try:
-            compiled = njit(cache=True, **options)(function)
-        finally:
-            config.CACHE_DIR = before
-        if Path(compiled.stats.cache_path).is_relative_to(folder):  # else numba chose one for sources of any age
-            return compiled
-    return None
 
 
 def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:

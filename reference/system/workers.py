@@ -52,9 +52,10 @@ class Worker:
     Args:
         function: stands at the top level of a module; its first argument is a `Parent`.
         arguments: any objects that can be pickled.
+        env: variables of its environment besides this process's own, or instead of them.
     """
 
-    def __init__(self, function: Callable[..., None], *arguments: Any) -> None:
+    def __init__(self, function: Callable[..., None], *arguments: Any, env: dict[str, str] | None = None) -> None:
         self._connection, theirs = Pipe()
         line = theirs.fileno()
         with held(), theirs:
@@ -63,6 +64,7 @@ class Worker:
                 stdin=subprocess.DEVNULL,
                 stdout=STDERR,  # what a library prints there may not mix with the program's results
                 pass_fds=[line],
+                env={**os.environ, **(env or {})},
             )
         with contextlib.suppress(BrokenPipeError):  # a death is noticed when its results are read
             self.send((function, arguments))
@@ -127,7 +129,6 @@ class Pool:
     """
 
     def __init__(self, workers: int) -> None:
-        self.workers = workers
         self._processes, self._ended = dict[int, Worker](), threading.Event()  # by the thread that each works for
         self._threads = ThreadPoolExecutor(workers, thread_name_prefix="pool")
 

@@ -25,7 +25,6 @@ from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ..files import Files
 from ..manifest import MANIFEST, Kind, Manifest
-from ..sheets import Sheet
 from . import function
 from .scene_check import largest_jerk
 
@@ -123,11 +122,10 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     for kind, rough, table in kinds:
         columns = table.only({"grid": GRID, "transits": TRANSITS, "sections": SECTION}[kind])
         apart = columns.distance(rough).largest()
-        bounds = {name: files.manifest.bound(kind, name) for name in columns.columns}
-        if any(apart[name] > bound for name, bound in bounds.items()):
+        if any(apart[name] > files.manifest.bound(kind, name) for name in columns.columns):
             return None
         if f"{kind}.csv" in files.tables:
-            differing += _off(kind, files.tables[f"{kind}.csv"], columns, apart, bounds)
+            differing += _off(files, kind, columns, apart)
     times = function.moments(files)
     rough, table = (_at(map(Fraction, times), run) for run in (coarse, fine))
     return differing + function.contradicted(files, times, table, table.distance(rough).largest())
@@ -171,15 +169,14 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
     return sorted(outside), refuted
 
 
-def _off(
-    kind: Kind, sheet: Sheet, table: Table, apart: Mapping[str, Fraction], bounds: Mapping[str, Fraction]
-) -> list[str]:
+def _off(files: Files, kind: Kind, table: Table, apart: Mapping[str, Fraction]) -> list[str]:
     """Return a sentence for every printed number that is further from a run than its bound and the runs' distance."""
     off, word = [], {"grid": "t =", "transits": "transit", "sections": "passage of"}[kind]
+    sheet = files.tables[f"{kind}.csv"]
     printed, ten = sheet.integers(table.columns)
     unit = ten << table.bits
     for i, name in enumerate(table.columns):
-        of_rows = [bounds[name]] * len(sheet.rows)
+        of_rows = [files.manifest.bound(kind, name)] * len(sheet.rows)
         if name == "t":
             of_rows = [bound for (bound,) in sheet.numbers(("bound",))]
         limits = {bound: int((bound + apart[name]) * unit) for bound in set(of_rows)}

@@ -33,17 +33,14 @@ Quantity = Callable[[Vector, Vector, Constants], Any]  # of position and velocit
 
 def problems(files: Files) -> Iterator[str]:
     """Yield every row that breaks a law which holds at each moment."""
-    tables = [grid := _moments(files, "grid")]
-    if "sections.csv" in files.tables and files.tables["sections.csv"].rows:
-        tables.append(_moments(files, "sections"))
-    if files.manifest.counts.transits:
-        tables.append(_moments(files, "transits"))
+    kinds: tuple[Kind, ...] = ("grid", "sections", "transits")
+    tables = [_moments(files, kind) for kind in kinds if (sheet := files.tables.get(f"{kind}.csv")) and sheet.rows]
     for moments in tables:
         yield from moments.off_the_sphere()
         if moments.transits is None:
             yield from moments.not_along_the_sphere()
         if files.scene.exact.drag == 0:
-            yield from moments.with_another_invariant(grid.first())
+            yield from moments.with_another_invariant(tables[0].first())
         if moments.transits is not None:
             yield from moments.with_another_acceleration()
 

@@ -221,9 +221,8 @@ def _sections(files: Files) -> Iterator[str]:
     words = files.scene.run.sections or ()
     if not tuple(said.counts) == tuple(said.possible) == words:
         yield f"{MANIFEST}: sections are not those of the scene: {', '.join(words)}"
-    if sheet and [row[:2] for row in sheet.rows] != [
-        (w, str(k)) for w, n in said.counts.items() for k in range(1, n + 1)
-    ]:
+    numbered = [(word, str(k)) for word, count in said.counts.items() for k in range(1, count + 1)]
+    if sheet and [row[:2] for row in sheet.rows] != numbered:
         yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
     for name, bound in said.bounds.items():
         if Fraction(bound) * 10 ** said.decimals[name] < Fraction(1, 2):
@@ -242,28 +241,27 @@ def _bounds(manifest: Manifest) -> Iterator[str]:
 def _evidence(manifest: Manifest) -> Iterator[str]:
     """Check the level against what stands behind it: other runs, or a proof, as close as the bounds say."""
     checks, bounds, run, proof = manifest.cross_checks, manifest.bounds, manifest.run, manifest.enclosure
-    if manifest.level == "confirmed" and all(check.formulation == run.formulation for check in checks):
+    others = [check for check in checks if check.formulation != run.formulation]
+    if manifest.level == "confirmed" and not others:
         yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
     same_run = [(check.formulation, check.number) == (run.formulation, run.number) for check in checks]
     if manifest.level == "self_consistent" and all(same_run):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
-    others = [check for check in checks if check.formulation != run.formulation]
     if proof is not None:
         close = [check for check in others if not any(_too_far(check, manifest))]
         seen = manifest.transits != "complete" or any(check.transit_s for check in close)  # a sample sees no transits
         said = Making.of(manifest.command).confirm
         if not {"whole": close and seen, "sampled": any(not check.transit_s for check in close), "none": True}[said]:
             yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {said}"
+        radii = proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s
+        for name, radius in zip(_BOUNDED, radii, strict=True):
+            if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):
+                yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
     for check in checks:
         if check.formulation not in FORMULATIONS:
             yield f"{MANIFEST}: cross_checks: {check.formulation} is no formulation"
         if proof is None:  # a proof needs no close second run
             yield from _too_far(check, manifest)
-    if proof is not None:
-        radii = proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s
-        for name, radius in zip(_BOUNDED, radii, strict=True):
-            if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):
-                yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
 
 
 def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:

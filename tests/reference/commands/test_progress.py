@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from reference.commands.progress import in_words, notice, progress
@@ -18,12 +20,14 @@ class Clock:
 
 
 @pytest.fixture
-def clock() -> Clock:
-    return Clock()
+def clock(monkeypatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr("reference.commands.progress.time", SimpleNamespace(monotonic=clock))
+    return clock
 
 
 def test_long_work_gets_one_line_and_no_more(clock, capsys):
-    move = notice("creeping", 86400.0, clock=clock)
+    move = notice("creeping", 86400.0)
     for seconds in range(200):
         clock.now = 100.0 + seconds
         move(144.0 * seconds)
@@ -33,7 +37,7 @@ def test_long_work_gets_one_line_and_no_more(clock, capsys):
 
 
 def test_short_work_gets_none(clock, capsys):
-    move = notice("paris", 3600.0, clock=clock)
+    move = notice("paris", 3600.0)
     for seconds in range(21):
         clock.now = 100.0 + seconds
         move(180.0 * seconds)
@@ -42,7 +46,7 @@ def test_short_work_gets_none(clock, capsys):
 
 def test_work_that_begins_late_is_estimated_from_its_own_rate(clock, capsys):
     """Compilation took 40 s before the first step; then 10 s for a tenth of the way: 90 s remain, 140 s in all."""
-    move = notice("creeping", 100.0, clock=clock)
+    move = notice("creeping", 100.0)
     clock.now = 140.0
     move(0.0)
     clock.now = 144.0
@@ -54,7 +58,7 @@ def test_work_that_begins_late_is_estimated_from_its_own_rate(clock, capsys):
 
 
 def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
-    move = notice("hard", 100.0, clock=clock)
+    move = notice("hard", 100.0)
     move(0.0)
     clock.now = 119.0
     move(90.0)
@@ -66,7 +70,7 @@ def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
 
 
 def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(clock, capsys):
-    move = notice("creeping", 100.0, clock=clock)
+    move = notice("creeping", 100.0)
     for seconds in range(100):
         clock.now = 100.0 + seconds
         move(0.004 * seconds)
@@ -74,7 +78,7 @@ def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(c
 
 
 def test_runs_are_counted_and_those_that_were_stored_cost_nothing(clock, capsys):
-    move = notice("paris", unit="runs", clock=clock)
+    move = notice("paris", unit="runs")
     for done in range(30, 60):
         move(done, 130, "rk4")
         clock.now += 1.0
