@@ -37,12 +37,9 @@ def candidate_of(
         InputError: as in `Candidate.of`.
     """
     columns = {key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays}
-    low = {}
-    for key, near in columns.items():
-        if arrays[key].dtype.kind == "f" and arrays[key].dtype.itemsize > 8 and np.isfinite(near).all():
-            remainder = np.asarray(arrays[key] - near.astype(arrays[key].dtype), dtype=np.float64)
-            if remainder.any():
-                low[key] = remainder
+    with np.errstate(invalid="ignore"):  # of infinite numbers, which are refused
+        remainders = {key: np.asarray(arrays[key] - near, dtype=np.float64) for key, near in columns.items()}
+    low = {key: remainder for key, remainder in remainders.items() if remainder.any()}
     columns, low = made.converted(columns, low)
     return Candidate.of(name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions)
 
@@ -51,10 +48,10 @@ def candidate_from(columns: Any) -> Candidate:
     """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
 
     Raises:
-        InputError: it has no names, or as in `Candidate.of`.
+        InputError: it has no names, not all that are needed, or as in `Candidate.of`.
     """
     names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
-    if "t" not in names:
+    if not {"t", "x", "y"} <= {*names}:
         got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
         raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
     arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
@@ -71,7 +68,7 @@ def real_array(values: Any, name: str) -> Array:
         array = np.asarray(values)
     except ValueError:
         raise InputError(name, "rows of different lengths", "an array of real numbers") from None
-    if array.size and array.dtype.kind not in "fiu":
+    if array.dtype.kind not in "fiu":
         raise InputError(name, f"dtype {array.dtype}", "an array of real numbers")
     return array
 
@@ -112,7 +109,7 @@ def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidat
         return _candidate(name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits)
     table = real_array(arrays[TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
-    made = given(count, NEEDED, naming) if naming.columns and count else by_number(count, NEEDED, naming)
+    made = given(count, naming) if naming.columns and count else by_number(count, NEEDED, naming)
     if made is None:
         advice = "One row for each time; --columns names the columns."
         raise InputError(name, f"shape {table.shape}", "a table of 3, 4 or 7 columns, t, x, y first", advice)
