@@ -139,9 +139,8 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     """
     points = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a > 0 and b > 0]
     if len({u for u, _ in points}) < 2 or len(points) < LEAST_POINTS:
-        raise InputError(
-            "points", f"{len(points)} with x > 0 and y > 0", f"at least {LEAST_POINTS}, not all at the same x"
-        )
+        got = f"{len(points)} with x > 0 and y > 0"
+        raise InputError("points", got, f"at least {LEAST_POINTS}, not all at the same x")
     at, values = zip(*points, strict=True)
     exponent, constant = statistics.linear_regression(at, values)
     off = [v - constant - exponent * u for u, v in points]

@@ -153,6 +153,5 @@ def precession_period(scene: Scene, longest: float = 1e6) -> float:
         turned = np.abs(azimuths - azimuths[0])
         if turned[-1] >= np.pi:
             last = int(np.argmax(turned >= np.pi))
-            share = (np.pi - turned[last - 1]) / (turned[last] - turned[last - 1])
-            return float(2 * (times[last - 1] + share * (times[last] - times[last - 1]) - times[0]))
+            return float(2 * (np.interp(np.pi, turned[last - 1 : last + 1], times[last - 1 : last + 1]) - times[0]))
     raise UnreachableError(f"the swing plane does not turn by 180° within {longest:g} s.")
