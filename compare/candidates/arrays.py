@@ -79,7 +79,25 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     Raises:
         InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
     """
-    return _of_arrays(_arrays(stream, name), name, naming)
+    # arrays whose names mean something, or the only one if it has no name
+    try:
+        with zipfile.ZipFile(stream) as archive:
+            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
+        if any(word.startswith("xl/") for word in members):
+            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
+        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
+        chosen = chosen or [word for word in members if word == TABLE]
+        size = sum(members[word].file_size for word in chosen)
+        if size > MAX_UNPACKED:
+            raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
+        stream.seek(0)
+        with np.load(stream, allow_pickle=False) as arrays:
+            found = {word: arrays[word] for word in chosen}
+    except InputError:
+        raise
+    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
+        raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
+    return _of_arrays(found, name, naming)
 
 
 def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
@@ -120,24 +138,3 @@ def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Arra
     """Make a candidate of arrays of which each column is the one at its place."""
     columns = {column: real_array(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
     return candidate_of(name, columns, transits, made)
-
-
-def _arrays(data: IO[bytes], name: str) -> dict[str, object]:
-    """Return the arrays whose names mean something, or the only one if it has no name."""
-    try:
-        with zipfile.ZipFile(data) as archive:
-            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
-        if any(word.startswith("xl/") for word in members):
-            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
-        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
-        chosen = chosen or [word for word in members if word == TABLE]
-        size = sum(members[word].file_size for word in chosen)
-        if size > MAX_UNPACKED:
-            raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
-        data.seek(0)
-        with np.load(data, allow_pickle=False) as arrays:
-            return {word: arrays[word] for word in chosen}
-    except InputError:
-        raise
-    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
-        raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None

@@ -14,11 +14,11 @@ import secrets
 import shlex
 import signal
 import statistics
-import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from subprocess import DEVNULL, Popen
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from reference import InputError, Scene
@@ -75,10 +75,8 @@ class CrashedError(InputError):
 def placeholders(scene: Scene) -> dict[str, str]:
     """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
     start = Start.of(scene.exact, PLACEHOLDER_BITS)
-    words = {
-        name: repr(float(value))
-        for name, value in zip(("x0", "y0", "z0", "vx0", "vy0", "vz0"), (*start.position, *start.velocity), strict=True)
-    }
+    names = ("x0", "y0", "z0", "vx0", "vy0", "vz0")
+    words = {name: repr(float(value)) for name, value in zip(names, (*start.position, *start.velocity), strict=True)}
     fields = scene.release.model_dump(exclude_none=True)
     words |= {f"{name}0": text for name, text in fields.items() if f"{name}0" in words}
     words |= {name: fields.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")}
@@ -126,14 +124,8 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
         try:
-            process = subprocess.Popen(
-                words,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=errors,
-                env={**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()},
-                start_new_session=True,
-            )
+            env = {**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()}
+            process = Popen(words, stdin=DEVNULL, stdout=output, stderr=errors, env=env, start_new_session=True)
         except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
             why = error.strerror if isinstance(error, OSError) else error
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
@@ -152,9 +144,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     return output, usage.ru_utime + usage.ru_stime, wall
 
 
-def _end_of(
-    process: subprocess.Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float
-) -> Any:
+def _end_of(process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float) -> Any:
     """Wait for a process, and return its resources.
 
     It is looked at often enough to tell its wall-clock time to 2 %, or to 20 ms.

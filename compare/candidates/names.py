@@ -31,9 +31,8 @@ TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours
 LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
 BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
 AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
-TIMES, LENGTHS = (
-    {unit: Fraction(size) for unit, size in vocabulary[kind].items()} for kind in ("times", "lengths")
-)  # in s and m
+TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
+LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
