@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -18,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import Golden, Solution
+from reference.dataset.golden import Dense
 from reference.numbers.precision import Array
 
 from ..truth import by_function, roughly_solved, truth_at
@@ -184,18 +184,18 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
         transits = golden.manifest.transits
     else:
         asked = golden.scene.run.transits
-        transits = "complete" if golden.zeros is not None else "xdot is identically zero" if asked else "not asked for"
+        transits = "complete" if golden.zeros else "xdot is identically zero" if asked else "not asked for"
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
     return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
 
 
-def _xdot(golden: Golden | Solution, times: Array) -> Array:
+def _truth(golden: Golden | Solution, times: Array) -> Dense:
     if isinstance(golden, Solution):
         again = roughly_solved(golden.scene, times, False, None)
         assert again is not None  # as before, at other times
-        return again[1].states[:, 3]
-    return ((golden.function and by_function(golden, times)) or truth_at(golden, times)).states[:, 3]
+        return again[1]
+    return (golden.function and by_function(golden, times)) or truth_at(golden, times)
 
 
 def judged_transits(
@@ -206,6 +206,10 @@ def judged_transits(
     judged = times[times <= end]  # beyond its end the truth is not known
     for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
-    truth, away = golden.transits, partial(_xdot, golden)
-    omega, until = swing_rate(golden.scene, errors.speed_m_s), min(float(errors.t[-1]), end)
-    return transit_errors(judged, truth["t"], truth["ax"], omega, until, tolerance_m=tolerance_m, away=away)
+    truth, omega = golden.transits, swing_rate(golden.scene, errors.speed_m_s)
+
+    def xdot(at: Array) -> Array:
+        return _truth(golden, at).states[:, 3]
+
+    until = min(float(errors.t[-1]), end)
+    return transit_errors(judged, truth["t"], truth["ax"], omega, until, tolerance_m=tolerance_m, away=xdot)
