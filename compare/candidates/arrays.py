@@ -37,12 +37,9 @@ def candidate_of(
         InputError: as in `Candidate.of`.
     """
     columns = {key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays}
-    low = {}
-    for key, near in columns.items():
-        if arrays[key].dtype.kind == "f" and arrays[key].dtype.itemsize > 8 and np.isfinite(near).all():
-            remainder = np.asarray(arrays[key] - near.astype(arrays[key].dtype), dtype=np.float64)
-            if remainder.any():
-                low[key] = remainder
+    with np.errstate(invalid="ignore"):  # of infinite numbers, which are refused
+        remainders = {key: np.asarray(arrays[key] - near, dtype=np.float64) for key, near in columns.items()}
+    low = {key: remainder for key, remainder in remainders.items() if remainder.any()}
     columns, low = made.converted(columns, low)
     return Candidate.of(name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions)
 
@@ -51,10 +48,10 @@ def candidate_from(columns: Any) -> Candidate:
     """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
 
     Raises:
-        InputError: it has no names, or as in `Candidate.of`.
+        InputError: it has no names, not all that are needed, or as in `Candidate.of`.
     """
     names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
-    if "t" not in names:
+    if not {"t", "x", "y"} <= {*names}:
         got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
         raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
     arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
@@ -71,7 +68,7 @@ def real_array(values: Any, name: str) -> Array:
         array = np.asarray(values)
     except ValueError:
         raise InputError(name, "rows of different lengths", "an array of real numbers") from None
-    if array.size and array.dtype.kind not in "fiu":
+    if array.dtype.kind not in "fiu":
         raise InputError(name, f"dtype {array.dtype}", "an array of real numbers")
     return array
 
@@ -82,7 +79,25 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     Raises:
         InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
     """
-    return _of_arrays(_arrays(stream, name), name, naming)
+    # arrays whose names mean something, or the only one if it has no name
+    try:
+        with zipfile.ZipFile(stream) as archive:
+            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
+        if any(word.startswith("xl/") for word in members):
+            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
+        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
+        chosen = chosen or [word for word in members if word == TABLE]
+        size = sum(members[word].file_size for word in chosen)
+        if size > MAX_UNPACKED:
+            raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
+        stream.seek(0)
+        with np.load(stream, allow_pickle=False) as arrays:
+            found = {word: arrays[word] for word in chosen}
+    except InputError:
+        raise
+    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
+        raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
+    return _of_arrays(found, name, naming)
 
 
 def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
@@ -112,7 +127,7 @@ def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidat
         return _candidate(name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits)
     table = real_array(arrays[TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
-    made = given(count, NEEDED, naming) if naming.columns and count else by_number(count, NEEDED, naming)
+    made = given(count, naming) if naming.columns and count else by_number(count, NEEDED, naming)
     if made is None:
         advice = "One row for each time; --columns names the columns."
         raise InputError(name, f"shape {table.shape}", "a table of 3, 4 or 7 columns, t, x, y first", advice)
@@ -123,24 +138,3 @@ def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Arra
     """Make a candidate of arrays of which each column is the one at its place."""
     columns = {column: real_array(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
     return candidate_of(name, columns, transits, made)
-
-
-def _arrays(data: IO[bytes], name: str) -> dict[str, object]:
-    """Return the arrays whose names mean something, or the only one if it has no name."""
-    try:
-        with zipfile.ZipFile(data) as archive:
-            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
-        if any(word.startswith("xl/") for word in members):
-            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
-        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
-        chosen = chosen or [word for word in members if word == TABLE]
-        size = sum(members[word].file_size for word in chosen)
-        if size > MAX_UNPACKED:
-            raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
-        data.seek(0)
-        with np.load(data, allow_pickle=False) as arrays:
-            return {word: arrays[word] for word in chosen}
-    except InputError:
-        raise
-    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
-        raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None

@@ -14,11 +14,11 @@ import secrets
 import shlex
 import signal
 import statistics
-import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from subprocess import DEVNULL, Popen
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from reference import InputError, Scene
@@ -75,10 +75,8 @@ class CrashedError(InputError):
 def placeholders(scene: Scene) -> dict[str, str]:
     """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
     start = Start.of(scene.exact, PLACEHOLDER_BITS)
-    words = {
-        name: repr(float(value))
-        for name, value in zip(("x0", "y0", "z0", "vx0", "vy0", "vz0"), (*start.position, *start.velocity), strict=True)
-    }
+    names = ("x0", "y0", "z0", "vx0", "vy0", "vz0")
+    words = {name: repr(float(value)) for name, value in zip(names, (*start.position, *start.velocity), strict=True)}
     fields = scene.release.model_dump(exclude_none=True)
     words |= {f"{name}0": text for name, text in fields.items() if f"{name}0" in words}
     words |= {name: fields.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")}
@@ -126,57 +124,46 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
         try:
-            process = subprocess.Popen(
-                words,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=errors,
-                env={**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()},
-                start_new_session=True,
-            )
+            env = {**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()}
+            process = Popen(words, stdin=DEVNULL, stdout=output, stderr=errors, env=env, start_new_session=True)
         except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
             why = error.strerror if isinstance(error, OSError) else error
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         try:
             with terminable():
-                usage, exceeded = _end_of(process, (output, errors), timeout_s)
+                usage = _end_of(process, words, output, errors, timeout_s)
         finally:
             wall = time.monotonic() - start
             _end_all(process.pid, mark)  # what it left running in the background
             process.wait()
-        tail = _tail(errors)
-        if exceeded is not None:
-            kind, expected = exceeded
-            raise kind("--run", shlex.join(words), expected, tail)
         if process.returncode:
             got = f"exit status {process.returncode} of {shlex.join(words)}"
-            raise (CrashedError if process.returncode < 0 else InputError)("--run", got, "exit status 0", tail)
+            raise (CrashedError if process.returncode < 0 else InputError)("--run", got, "exit status 0", _tail(errors))
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
 
 
-def _end_of(
-    process: subprocess.Popen[bytes], streams: tuple[BinaryIO, ...], timeout_s: float
-) -> tuple[Any, tuple[type[InputError], str] | None]:
-    """Wait for a process, and kill it if it exceeds its time or its output; return its resources and what it exceeded.
+def _end_of(process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float) -> Any:
+    """Wait for a process, and return its resources.
 
     It is looked at often enough to tell its wall-clock time to 2 %, or to 20 ms.
+
+    Raises:
+        InputError: it exceeds its time or its output, and has to be killed.
     """
     start = time.monotonic()
-    exceeded: tuple[type[InputError], str] | None = None
     while True:
         ended, status, usage = os.wait4(process.pid, os.WNOHANG)
         if ended:
             process.returncode = os.waitstatus_to_exitcode(status)
-            return usage, exceeded
+            return usage
         waited = time.monotonic() - start
         if waited > timeout_s:
-            exceeded = OutOfTimeError, f"a program that ends within {timeout_s:g} s (--timeout)"
-        elif max(os.fstat(stream.fileno()).st_size for stream in streams) > MAX_BYTES:
-            exceeded = InputError, f"at most {MAX_BYTES} bytes of output"
-        if exceeded is not None:
-            os.kill(process.pid, signal.SIGKILL)  # Popen.kill would take the status that is waited for
+            expected = f"a program that ends within {timeout_s:g} s (--timeout)"
+            raise OutOfTimeError("--run", shlex.join(words), expected, _tail(errors))
+        if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
+            raise InputError("--run", shlex.join(words), f"at most {MAX_BYTES} bytes of output", _tail(errors))
         time.sleep(min(0.02, waited / 50))
 
 

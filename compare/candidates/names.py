@@ -31,9 +31,8 @@ TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours
 LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
 BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
 AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
-TIMES, LENGTHS = (
-    {unit: Fraction(size) for unit, size in vocabulary[kind].items()} for kind in ("times", "lengths")
-)  # in s and m
+TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
+LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
@@ -83,17 +82,15 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
             column, unit, rank = f"{column[:-1]}{turned}", "", 2
         if said.lower() in ("t", "time") and column != "t":
             unit = ""  # x(t)
-        size = size_of(unit, column) if unit else Fraction(1)
+        default = units.get(column, "")
+        size = size_of(unit or default, column) if unit or default else Fraction(1)
         if size is None:
             if BRACKETS.fullmatch(text):
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
-        if not unit and column in units:
-            unit = units[column]
-            size = size_of(unit, column) or Fraction(1)
-        elif unit and size != 1 and column in units and size_of(units[column], column) != size:
-            raise InputError("--units", units[column], f"no other unit of {column} than {unit}, as its header says")
-        return Meaning(column, size * sign, unit, rank)
+        if unit and default and size not in (1, size_of(default, column)):
+            raise InputError("--units", default, f"no other unit of {column} than {unit}, as its header says")
+        return Meaning(column, size * sign, unit or default, rank)
     return None
 
 
@@ -105,14 +102,12 @@ def unquoted(word: str) -> str:
 
 def _parts(text: str) -> list[tuple[str, str]]:
     """Return the ways to take a word apart into a name and a unit, the most likely first."""
-    brackets = BRACKETS.fullmatch(text)
-    if brackets:
+    if brackets := BRACKETS.fullmatch(text):
         return [(brackets[1], brackets[2])]
     ways = [(text, "")]
     if TIME_UNITS.fullmatch(text.lower()):
         ways.append(("t", text))
-    after = AFTER.fullmatch(text)
-    if after:
+    if after := AFTER.fullmatch(text):
         ways.append((after[1], after[2]))
     return ways
 
@@ -127,13 +122,11 @@ def _column(name: str) -> tuple[str, int, int] | None:
     if plain in TIME_WORDS:
         return "t", 1, 2
     for pattern, speed in ((POSITION, ""), (VELOCITY, "v")):
-        match = pattern.fullmatch(plain)
-        if match:
-            given = [group for group in match.groups() if group]
-            axis, sign = AXES[given[-1]]
-            if len(given) > 1 and given[-1] not in DIRECTIONS:
-                return None
-            return f"{speed}{axis}", sign, 2
+        if match := pattern.fullmatch(plain):
+            *before, word = filter(None, match.groups())
+            if not before or word in DIRECTIONS:
+                axis, sign = AXES[word]
+                return f"{speed}{axis}", sign, 2
     return None
 
 
@@ -218,7 +211,7 @@ class Layout:
         for name, factor in self.factors.items():
             if name in low:
                 columns[name], low[name] = multiplied(columns[name], low[name], factor)
-            elif name in columns:
+            else:
                 columns[name] = columns[name] * float(factor.numerator) / float(factor.denominator)
         return columns, low
 
@@ -268,7 +261,7 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
     return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(said))
 
 
-def given(count: int, needed: Sequence[str], naming: Naming) -> Layout:
+def given(count: int, naming: Naming) -> Layout:
     """Return the layout of a file whose columns the user names.
 
     Raises:
@@ -278,15 +271,11 @@ def given(count: int, needed: Sequence[str], naming: Naming) -> Layout:
     if len(names) != count:
         expected = f"a name for each of the {count} columns, - for one that is not read"
         raise InputError(option, ",".join(names), expected)
-    known = {name: meaning(name, {}) for name in names}
-    unknown = [name for name in names if name.strip() not in SKIPPED and known[name] is None]
+    unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
     if unknown:
         expected = f"names of {', '.join(['t', *COLUMNS])}"
         raise InputError(option, ", ".join(unknown), expected, "Write - for a column that is not read.")
-    missing = set(needed) - {column.column for column in known.values() if column}
-    if missing:
-        raise InputError(option, ",".join(names), f"a column {min(missing)} among them")
-    return layout(names, needed, naming, option)
+    return layout(names, NEEDED, naming, option)
 
 
 def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | None:

@@ -126,7 +126,7 @@ class Header:
         fields = spelled.fields(row)
         count = len(fields) - (len(fields) > 1 and not fields[-1].strip())
         if self.naming.columns:
-            return given(count, self.needed, self.naming)
+            return given(count, self.naming)
         for above, text, is_comment in reversed(self.lines):
             header = self._named(text, count, is_comment)
             if header is not None:

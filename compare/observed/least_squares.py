@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -138,18 +139,15 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     """
     points = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a > 0 and b > 0]
     if len({u for u, _ in points}) < 2 or len(points) < LEAST_POINTS:
-        raise InputError(
-            "points", f"{len(points)} with x > 0 and y > 0", f"at least {LEAST_POINTS}, not all at the same x"
-        )
-    mean_u, mean_v = (math.fsum(column) / len(points) for column in zip(*points, strict=True))
-    spread = math.fsum((u - mean_u) ** 2 for u, _ in points)
-    exponent = math.fsum((u - mean_u) * (v - mean_v) for u, v in points) / spread
-    off = [v - mean_v - exponent * (u - mean_u) for u, v in points]
-    error = math.sqrt(math.fsum(one**2 for one in off) / (len(points) - 2) / spread)
-    within = math.exp(max(map(abs, off)))
-    low, high = min(u for u, _ in points), max(u for u, _ in points)
-    factor = math.exp(mean_v - exponent * mean_u)
-    return PowerLaw(factor, exponent, error, within, len(points), math.exp(low), math.exp(high))
+        got = f"{len(points)} with x > 0 and y > 0"
+        raise InputError("points", got, f"at least {LEAST_POINTS}, not all at the same x")
+    at, values = zip(*points, strict=True)
+    exponent, constant = statistics.linear_regression(at, values)
+    off = [v - constant - exponent * u for u, v in points]
+    spread = len(points) * statistics.pvariance(at)
+    error, within = math.sqrt(sum(one**2 for one in off) / (len(points) - 2) / spread), max(map(abs, off))
+    low, high = min(at), max(at)
+    return PowerLaw(math.exp(constant), exponent, error, math.exp(within), len(points), math.exp(low), math.exp(high))
 
 
 def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:

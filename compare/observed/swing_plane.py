@@ -99,6 +99,8 @@ def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
         times: evenly spaced in s, about PER_SWING in a period.
         rows: states x, y, z, vx, vy, vz at the times.
     """
+    from numpy.polynomial.polynomial import polyder, polyval
+
     place, rate = gauge.displacement(rows)
     height = rows[:, :3] @ np.array(gauge.rest)  # along the plumb line
     radial = (place.conj() * rate).real if np.min(height) > 0 else -rows[:, 3:] @ np.array(gauge.rest)
@@ -109,14 +111,10 @@ def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
     inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))  # the nodes are small: condition 1e7
     at = before[:, None] + nodes
     distance = inverse @ radial[at].T
-    east, north = inverse @ place.real[at].T, inverse @ place.imag[at].T
     step = radial[before] / (radial[before] - radial[before + 1])
-    powers, slopes = np.arange(_NODES)[:, None], np.arange(1, _NODES)[:, None]
     for _ in range(4):  # Newton, from a secant: the function is nearly linear between two samples
-        value = np.sum(distance * step**powers, axis=0)
-        step = step - value / np.sum(slopes * distance[1:] * step ** (slopes - 1), axis=0)
-    z = np.sum(east * step**powers, axis=0) + 1j * np.sum(north * step**powers, axis=0)
-    azimuth = np.unwrap(2 * np.angle(z)) / 2
+        step = step - polyval(step, distance, tensor=False) / polyval(step, polyder(distance), tensor=False)
+    azimuth = np.unwrap(2 * np.angle(polyval(step, inverse @ place[at].T, tensor=False))) / 2
     return times[before] + step * (times[1] - times[0]), azimuth
 
 
@@ -155,6 +153,5 @@ def precession_period(scene: Scene, longest: float = 1e6) -> float:
         turned = np.abs(azimuths - azimuths[0])
         if turned[-1] >= np.pi:
             last = int(np.argmax(turned >= np.pi))
-            share = (np.pi - turned[last - 1]) / (turned[last] - turned[last - 1])
-            return float(2 * (times[last - 1] + share * (times[last] - times[last - 1]) - times[0]))
+            return float(2 * (np.interp(np.pi, turned[last - 1 : last + 1], times[last - 1 : last + 1]) - times[0]))
     raise UnreachableError(f"the swing plane does not turn by 180° within {longest:g} s.")

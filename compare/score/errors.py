@@ -183,12 +183,11 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
     t_low = candidate.low.get("t")
     # the truth is known at the double t; the candidate's row belongs to t + t_low
     k = constants_in_double(golden.scene.exact)
-    later = None if t_low is None else np.column_stack(rates([*truth.states.T], k)) * t_low[:, None]
+    later = np.zeros((1, 6)) if t_low is None else np.column_stack(rates([*truth.states.T], k)) * t_low[:, None]
     components = {}
     for i, name in enumerate(COLUMNS):
         if name in candidate.columns:
-            low = candidate.low.get(name, 0.0) - truth.low[:, i]
-            low = low if later is None else low - later[:, i]
+            low = candidate.low.get(name, 0.0) - truth.low[:, i] - later[:, i]
             # the difference of doubles that agree so far is exact
             components[name] = candidate.columns[name] - truth.states[:, i] + low
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]

@@ -86,9 +86,8 @@ def judge(
     if tolerance is not None and (isinstance(tolerance, str) or not 0 < tolerance < math.inf):
         raise InputError("tolerance", tolerance, "a positive number of metres")
     if isinstance(scene, Mapping) and "t" in scene:
-        raise InputError(
-            "scene", f"columns {', '.join(map(str, scene))}", "a scene", "The rows stand before the scene."
-        )
+        got = f"columns {', '.join(map(str, scene))}"
+        raise InputError("scene", got, "a scene", "The rows stand before the scene.")
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
     if not 0 <= covers <= 1:
         raise InputError("covers", f"{covers:g}", "a share of the scene's span, from 0 to 1")

@@ -22,6 +22,9 @@ TRANSIT = "transit"
 APART, INSIDE = "disagrees", "cannot be told apart"
 
 
+Intervals = list[tuple[tuple[Fraction, Fraction], bool]]  # the ends of each, and whether it holds just one zero
+
+
 class Outside(NamedTuple):
     """A number outside of what is proved: where, what it is, the interval, by how much it misses this; m, s."""
 
@@ -171,7 +174,7 @@ def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, toler
                 yield Outside(name, *map(float, (t, got, low, high, by)))
 
 
-def _intervals(ranges: Ranges, section: str | None) -> list[tuple[tuple[Fraction, Fraction], bool]]:
+def _intervals(ranges: Ranges, section: str | None) -> Intervals:
     """Return the intervals of transits, or of a section's passages, and whether each has just one."""
     found = ranges.sections.get(section) if section else None
     if section and not found:
@@ -181,15 +184,13 @@ def _intervals(ranges: Ranges, section: str | None) -> list[tuple[tuple[Fraction
     return [*ones, *(((low, high), False) for low, high, _ in possible)]
 
 
-def _undecided(t: Fraction, free: list[tuple[tuple[Fraction, Fraction], bool]]) -> bool:
+def _undecided(t: Fraction, free: Intervals) -> bool:
     """Return whether a time lies in an interval that may hold zeros, and in none that holds just one."""
     inside = [one for (low, high), one in free if low <= t <= high]
     return bool(inside) and not any(inside)
 
 
-def _zeros(
-    times: Sequence[Fraction], free: list[tuple[tuple[Fraction, Fraction], bool]], word: str
-) -> Iterator[Outside]:
+def _zeros(times: Sequence[Fraction], free: Intervals, word: str) -> Iterator[Outside]:
     """Yield transits or passages in no proven interval, or in one whose only one is another."""
     every = [*free]
 

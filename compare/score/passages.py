@@ -114,15 +114,11 @@ def score_passages(
     away = _distances(section, scene, swing_rate(scene, speed))
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
     allowed = TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
-    errors = transit_errors(
-        judged,
-        truth["t"],
-        slopes,
-        1.0,
-        float(judged[-1]),
-        tolerance_m=allowed,
-        away=lambda at: away(truth_at(golden, at).states)[0],
-    )
+
+    def distances(at: Array) -> Array:
+        return away(truth_at(golden, at).states)[0]
+
+    errors = transit_errors(judged, truth["t"], slopes, 1.0, float(judged[-1]), tolerance_m=allowed, away=distances)
     bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
     return PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
 

@@ -79,12 +79,11 @@ class TransitErrors:
         worst = f"largest error {self.max_error_s:.3g} s, {weighted}: {self.max_conditioned_m:.3g} m"
         counted = f"{self.matched} matched, {len(self.missed)} missed, {len(self.extra)} extra"
         yield entry(name, counted, worst)
-        for word, times in (("missed", self.missed), ("extra", self.extra)):
+        may = "a motion within the tolerance may or may not have them"
+        kinds = ("missed", self.missed, ""), ("extra", self.extra, ""), ("undecided", self.undecided, may)
+        for word, times, remark in kinds:
             if times:
-                yield entry(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s")
-        if self.undecided:
-            text = _listed(f"{t:.6f}" for t in self.undecided)
-            yield entry("  undecided at", f"{text} s", "a motion within the tolerance may or may not have them")
+                yield entry(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s", remark)
         if shifted := self.shifted(tolerance_m):
             text = _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted)
             yield entry("  shifted", text, f"{len(shifted)} in all")
@@ -144,14 +143,9 @@ def transit_errors(
         doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])  # no motion has a transit twice
         once, back = np.unique(times[extra], return_inverse=True)
         spurious = (np.abs(away(once)[back]) / omega <= tolerance_m) & ~doubled
-    return TransitErrors(
-        errors,
-        errors * weight[matched],
-        truth[missed[~excused]].tolist(),
-        times[extra[~spurious]].tolist(),
-        truth[matched],
-        sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()]),
-    )
+    lacking, too_many = truth[missed[~excused]].tolist(), times[extra[~spurious]].tolist()
+    undecided = sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()])
+    return TransitErrors(errors, errors * weight[matched], lacking, too_many, truth[matched], undecided)
 
 
 def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:
@@ -160,9 +154,8 @@ def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:
     if not len(truth) or not len(times):
         return owner
     window = 0.5 * float(np.median(np.diff(truth, prepend=0.0)))
-    first = min(len(times), len(truth))
-    if len(times) <= len(truth) and (np.abs(times - truth[:first]) <= window).all():
-        owner[:first] = np.arange(first)  # one to one, in order, however close a pair
+    if len(times) <= len(truth) and (np.abs(times - truth[: len(times)]) <= window).all():
+        owner[: len(times)] = np.arange(len(times))  # one to one, in order, however close a pair
         return owner
     cell = np.searchsorted((truth[1:] + truth[:-1]) / 2, times)
     distance = np.abs(times - truth[cell])
@@ -178,11 +171,10 @@ def _vanishing(
     """Mark the missed transits that an error within the tolerance takes away in a pair, or moves beyond the end."""
     excused = (until - truth[missed]) * weight[missed] <= tolerance_m
     pairs = np.flatnonzero(np.diff(missed) == 1)
-    for i in pairs:
-        k = missed[i]
-        depth = weight[k] * (truth[k + 1] - truth[k]) / 4  # of the parabola between the two zeros
-        if depth <= tolerance_m:
-            excused[i] = excused[i + 1] = True
+    first = missed[pairs]
+    depth = weight[first] * (truth[first + 1] - truth[first]) / 4  # of the parabola between the two zeros
+    shallow = pairs[depth <= tolerance_m]
+    excused[shallow] = excused[shallow + 1] = True
     return excused
 
 
@@ -214,13 +206,10 @@ def judged_transits(
     judged = times[times <= end]  # beyond its end the truth is not known
     for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
-    truth = golden.transits
-    return transit_errors(
-        judged,
-        truth["t"],
-        truth["ax"],
-        swing_rate(golden.scene, errors.speed_m_s),
-        min(float(errors.t[-1]), end),
-        tolerance_m=tolerance_m,
-        away=lambda at: _truth(golden, at).states[:, 3],
-    )
+    truth, omega = golden.transits, swing_rate(golden.scene, errors.speed_m_s)
+
+    def xdot(at: Array) -> Array:
+        return _truth(golden, at).states[:, 3]
+
+    until = min(float(errors.t[-1]), end)
+    return transit_errors(judged, truth["t"], truth["ax"], omega, until, tolerance_m=tolerance_m, away=xdot)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from decimal import ROUND_DOWN, Context
 from functools import cached_property
 from html import escape
 from typing import Any
@@ -220,11 +221,8 @@ def _verdict(score: Score) -> str:
 
 def percent(share: float) -> str:
     """Return a share to three digits, rounded down: 100 % is all of it."""
-    if not share > 0:
-        return "0 %"
     percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
-    unit = 10.0 ** (math.floor(math.log10(percents)) - 2)
-    return f"{math.floor(percents / unit) * unit:.6g} %"
+    return f"{float(Context(prec=3, rounding=ROUND_DOWN).create_decimal_from_float(percents)):.6g} %"
 
 
 def _one_decimal(digits: float | None) -> str:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from decimal import Decimal
+from operator import attrgetter
 from typing import Any
 
 from reference import FoucaultError, InputError, Scene
@@ -49,13 +50,8 @@ class Experiment:
 
 def _times(factor: str, *fields: str) -> Values:
     def values(scene: Scene) -> dict[str, str]:
-        document = scene.model_dump(exclude_none=True)
-        parts = [field.split(".") for field in fields]
-        return {
-            f"{table}.{name}": str(Decimal(document[table][name]) * Decimal(factor))
-            for table, name in parts
-            if name in document[table]
-        }
+        texts = {field: attrgetter(field)(scene) for field in fields}
+        return {field: str(Decimal(text) * Decimal(factor)) for field, text in texts.items() if text is not None}
 
     return values
 
@@ -72,10 +68,8 @@ def _pushed(scene: Scene) -> dict[str, str]:
         return {"release.azimuth_rate": str(turn)}
     x, y, _ = (float(value) for value in start.position)
     speed = Decimal(f"{rate * (math.hypot(x, y) or 0.05 * float(scene.exact.length)):.3g}")
-    return {
-        "release.vx": str(Decimal(release.vx or "0") + speed),
-        "release.vy": str(Decimal(release.vy or "0") - speed),
-    }
+    vx, vy = Decimal(release.vx or "0") + speed, Decimal(release.vy or "0") - speed
+    return {"release.vx": str(vx), "release.vy": str(vy)}
 
 
 EXPERIMENTS = (

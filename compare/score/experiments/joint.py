@@ -20,7 +20,7 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ..explanation.case import Case, Explanation, largest
-from ..explanation.causes import FITTED, Cause, causes_of
+from ..explanation.causes import Cause, causes_of, fitted_number
 from ..explanation.explain import KnownScene
 from ..explanation.families import Fit, fits_of
 from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
@@ -29,15 +29,10 @@ from ..explanation.programs import Program
 from ..explanation.readings import Reading
 from ..explanation.stepped import LONGEST, Steps, step_cause
 
-RULE, TYPED, FACTOR = (
-    "",
-    ", whatever it is given",
-    ", in proportion to what it is given",
-)  # how a cause follows the scene
+# how a cause follows the scene
+RULE, TYPED, FACTOR = "", ", whatever it is given", ", in proportion to what it is given"
 INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")  # numbers that a scene, or {setting}, tells
-CLOCK = Cause(
-    "clock", "clock", "moves on by {value} s while its clock counts one", lambda p: p, FITTED, "pace", "clock"
-)
+CLOCK = fitted_number("clock", "clock", "moves on by {value} s while its clock counts one", "pace", stage="clock")
 TRIED = 30  # readings of a family that are run
 EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
 
@@ -138,11 +133,9 @@ class JointCase(Case):
         """Return the case of some runs."""
         first, runs = runs[0].case, tuple(runs)
         joint = cls(**vars(first), runs=runs)
-        rows = replace(
-            first.rows,
-            times=np.concatenate([run.case.rows.times for run in runs]),
-            positions=joint.side_by_side([run.case.rows.positions for run in runs]),
-        )
+        times = np.concatenate([run.case.rows.times for run in runs])
+        positions = joint.side_by_side([run.case.rows.positions for run in runs])
+        rows = replace(first.rows, times=times, positions=positions)
         truth = joint.side_by_side([run.case.truth for run in runs])
         return replace(joint, rows=rows, truth=truth, right=Joint(**vars(first.right), runs=runs))
 
@@ -160,22 +153,14 @@ class JointCase(Case):
         made = zip(self.runs, program.programs(), strict=True)
         return self.side_by_side([run.case.positions(one) for run, one in made])
 
-    def fits(self) -> list[Fit]:
-        """Return the fits of the families that fit every run."""
-        kinds = [kind for kind in self.runs[0].fits if all(kind in run.fits for run in self.runs)]
-        return [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
-
     def _fit(self, kind: str, fits: Sequence[Fit]) -> Fit:
         weights = [self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times)) for run in self.runs]
         fits = [replace(one, rest=w * one.rest, slopes=w * one.slopes) for w, one in zip(weights, fits, strict=True)]
         blocks = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
-        return Fit(
-            kind,
-            np.concatenate([fit.theta for fit in fits]),
-            math.hypot(*(fit.rest for fit in fits)),
-            tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free),
-            np.block([[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks]),
-        )
+        slopes = np.block([[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks])
+        free = tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free)
+        rest = math.hypot(*(fit.rest for fit in fits))
+        return Fit(kind, np.concatenate([fit.theta for fit in fits]), rest, free, slopes)
 
     def causes(self, kind: str) -> list[Cause]:
         """Return the causes of a family in every way in which the runs may tell them apart."""
@@ -188,8 +173,10 @@ class JointCase(Case):
 
     def readings(self, most: float = 1.0) -> list[Reading]:
         """Return the readings of all runs that leave of each no more than may be left, `most` times; the best first."""
-        fits = [fit for fit in self.fits() if np.isfinite(fit.slopes).all()]
-        readers = [replace(reader, joint=True) for reader in readers_of(self, fits)]
+        kinds = [kind for kind in self.runs[0].fits if all(kind in run.fits for run in self.runs)]
+        fits = [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
+        finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
+        readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
         run = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
         return sorted((reading for reading in run if self.off(reading) <= most), key=lambda reading: reading.score)
 

@@ -68,9 +68,8 @@ class Laboratory:
         elif not told:
             text = f"No known mistake makes {files}: nothing is named."
         ids = tuple(tuple(cause.id for cause in one.causes) for one in told)
-        best = (
-            told[0] if len(told) == 1 else replace(self._told, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
-        )
+        unknown = replace(self._told, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
+        best = told[0] if len(told) == 1 else unknown
         same = {cause.id for cause in self._told.causes} == set().union(*ids)
         best = replace(best, conventions=self._told.conventions, model=self._told.model if same else None)
         return Experiments(tuple(self._findings), ids, text), self._told if len(self._runs) == 1 else best

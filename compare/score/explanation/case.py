@@ -117,18 +117,14 @@ class Explanation:
         """Yield what is known, line by line, for people."""
         for convention in self.conventions:
             yield f"Your file {convention.text}."
-        begin = f"{BEGIN} "
+        listed = self.model is not None or len(self.causes) > 1
         if self.model is not None:
-            begin = "- "
-            yield (
-                f"As that model it is exact to {self.model.exact_to_m:.2g} m; "
-                f"against the full Lagrangian it is {self.model.costs_m:.3g} m off:"
-            )
-        elif len(self.causes) > 1:
-            begin = "- "
+            exact = f"As that model it is exact to {self.model.exact_to_m:.2g} m"
+            yield f"{exact}; against the full Lagrangian it is {self.model.costs_m:.3g} m off:"
+        elif listed:
             yield f"{BEGIN} (largest effect first)"
         for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
-            yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
+            yield f"{'-' if listed else BEGIN} {cause.text}: {cause.size_m:.3g} m"
         if self.slip:
             yield self.slip
         mended = self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions)
@@ -232,11 +228,8 @@ class Case:
         plane = program.phasors().at(times)
         if program.kind == "angle":
             plane = plane * sinc(np.abs(plane) / program.length)
-        positions = np.column_stack([plane.real, plane.imag])
-        if columns == 3:
-            below = np.maximum(program.length**2 - np.abs(plane) ** 2, 0)
-            positions = np.column_stack([positions, -np.sqrt(below)])
-        return positions
+        below = np.maximum(program.length**2 - np.abs(plane) ** 2, 0)
+        return np.column_stack([plane.real, plane.imag, -np.sqrt(below)])[:, :columns]
 
     def left(self, program: Program) -> Array:
         """Return what a program leaves of the rows in m, shape (rows, 2 or 3)."""

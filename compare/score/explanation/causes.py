@@ -82,7 +82,7 @@ def causes_of(case: Case, kind: str) -> Iterator[Cause]:
         text = f"has a clock too {way} by one part in its {rows} rows (a linspace that counts its ends)"
         yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
     if not released:
-        yield _fitted("late", "clock", "writes its rows {value} late", "late", stage="clock")
+        yield fitted_number("late", "clock", "writes its rows {value} late", "late", stage="clock")
     for method in METHODS:
         if method.late and (kind == "sphere" or right.vx or right.vy):
             continue  # it is known from the first rows of a linear motion from rest
@@ -105,7 +105,7 @@ def _coriolis(**factors: float) -> Callable[[Program], Program]:
     return change
 
 
-def _fitted(word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input") -> Cause:
+def fitted_number(word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input") -> Cause:
     """Return the cause that a number of a program is another one."""
     return Cause(word, group, text, lambda program: program, cost, free, stage)
 
@@ -119,9 +119,8 @@ def _gravity(right: Program) -> Iterator[Cause]:
         if ellipsoid and right.radius:
             yield reading("none", "no_centrifugal", f"{EFFECTIVE}, and {NO_CHANGE}", 0.2)
             yield reading("effective", "effective_gravity", EFFECTIVE, 0.2)
-            yield reading(
-                "no_tilt", "no_tilt", "leaves out the horizontal centrifugal force but keeps the vertical one"
-            )
+            text = "leaves out the horizontal centrifugal force but keeps the vertical one"
+            yield reading("no_tilt", "no_tilt", text)
             text = "keeps the horizontal centrifugal force but leaves out the vertical one"
             yield reading("tilt", "no_lift", text)
             text = "takes the horizontal centrifugal force without the sine of the latitude"
@@ -131,12 +130,9 @@ def _gravity(right: Program) -> Iterator[Cause]:
             whole = right.gravity_reading != "effective"
             yield reading("none", "no_centrifugal", "leaves out the centrifugal force" if whole else NO_CHANGE, 0.2)
             if right.gravity_reading == "effective":
-                text = "adds the centrifugal force to a g that contains it already (--set site.gravity_is=ellipsoid)"
-                yield reading("ellipsoid", "ellipsoid_gravity", text)
-                text = (
-                    "adds the centrifugal force, on a sphere of 6371000 m, to a g that contains it already "
-                    "(--set site.gravity_is=ellipsoid)"
-                )
+                twice = "to a g that contains it already (--set site.gravity_is=ellipsoid)"
+                yield reading("ellipsoid", "ellipsoid_gravity", f"adds the centrifugal force {twice}")
+                text = f"adds the centrifugal force, on a sphere of 6371000 m, {twice}"
                 on_sphere = _set(gravity_reading="ellipsoid", flattening=0.0, radius=MEAN_RADIUS)
                 yield Cause("ellipsoid_gravity", "gravity", text, on_sphere, RARE, stage="gravity")
     if right.radius:
@@ -155,7 +151,7 @@ def _gravity(right: Program) -> Iterator[Cause]:
         yield Cause("mean_sphere", "earth", text, _set(flattening=0.0, radius=MEAN_RADIUS), stage="gravity")
     if right.radius and right.rate and ellipsoid:
         text = "takes site.altitude to be {value}"
-        yield _fitted("site.altitude", "earth", text, "altitude", RARE + FITTED, "gravity")
+        yield fitted_number("site.altitude", "earth", text, "altitude", RARE + FITTED, "gravity")
     for g in COMMON_GRAVITY:
         if abs(g - right.g) > 1e-9:
             yield Cause(f"gravity_{g:g}", "g", f"computes with g = {g:g} m/s²", _set(g=g))
@@ -194,7 +190,7 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
             yield rate("rate_factor", f"{text}, in a solar day", sign * factor * solar, 0.4)
     yield rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.45)
     text = "turns {value} times as fast as the scene's Earth"
-    yield _fitted("site.rotation_rate", "rate", text, "rate")
+    yield fitted_number("site.rotation_rate", "rate", text, "rate")
     factors = [
         ("coriolis_sign", "gives the Coriolis force the wrong sign: its plane turns the wrong way", -1.0),
         ("coriolis_half", "omits the factor 2 in the Coriolis force", 0.5),
@@ -233,10 +229,10 @@ def _latitude(right: Program) -> Iterator[Cause]:
         radians = math.degrees(latitude) % 360
         text = "takes the latitude in degrees as if it were in radians"
         yield Cause("radians", "latitude", text, _set(coriolis_latitude=radians))
-        yield Cause("radians", "latitude", text, lambda p: _everywhere(p, radians))
-    yield Cause(
-        "colatitude", "latitude", "uses the colatitude instead of the latitude", _set(latitude=90 - abs(latitude))
-    )
+        folded = math.degrees(math.asin(math.sin(math.radians(radians))))  # its cosine's sign stays in the turn
+        yield Cause("radians", "latitude", text, _set(latitude=folded, coriolis_latitude=radians))
+    text = "uses the colatitude instead of the latitude"
+    yield Cause("colatitude", "latitude", text, _set(latitude=90 - abs(latitude)))
     if abs(latitude) not in (0.0, 90.0):
         text = "takes the vertical part of Ω to be all of Ω, without the sine of the latitude"
         yield Cause("no_sine", "latitude", text, _set(coriolis_latitude=math.copysign(90.0, latitude)))
@@ -248,12 +244,7 @@ def _latitude(right: Program) -> Iterator[Cause]:
             yield Cause("geocentric", "latitude", text, _set(latitude=geocentric))
             text = "uses the geocentric latitude in the Coriolis force"
             yield Cause("geocentric", "latitude", text, _set(coriolis_latitude=geocentric), 0.4)
-        yield _fitted("site.latitude", "latitude", "takes site.latitude to be {value}", "latitude")
-
-
-def _everywhere(program: Program, degrees: float) -> Program:
-    """Use a latitude of any size for all: it is folded to the domain of a latitude, its cosine's sign in the turn."""
-    return program.changed(latitude=math.degrees(math.asin(math.sin(math.radians(degrees)))), coriolis_latitude=degrees)
+        yield fitted_number("site.latitude", "latitude", "takes site.latitude to be {value}", "latitude")
 
 
 def _release() -> Iterator[Cause]:
@@ -278,10 +269,10 @@ def _inputs(right: Program, released: bool) -> Iterator[Cause]:
         yield Cause("drag_half", "drag", "takes half the drag", _set(drag=right.drag / 2), 0.4)
         yield Cause("drag_double", "drag", "takes twice the drag", _set(drag=2 * right.drag), 0.4)
     for name, word in (("g", "site.gravity"), ("length", "pendulum.length"), ("drag", "pendulum.drag")):
-        yield _fitted(word, word, f"takes {word} to be {{value}}", name)
+        yield fitted_number(word, word, f"takes {word} to be {{value}}", name)
     for name in ("vx", "vy") if released else ("x", "y", "vx", "vy"):
         word = f"release.{name}"
         group = "start" if name in ("x", "y") else "release"
         # a push that the scene does not have is rarer than half a step of an integrator, which looks like one
         cost = FITTED if name in ("x", "y") or right.vx or right.vy else FITTED + PUSHED
-        yield _fitted(word, f"{group}.{name}", f"takes {word} to be {{value}}", name, cost, "release")
+        yield fitted_number(word, f"{group}.{name}", f"takes {word} to be {{value}}", name, cost, "release")

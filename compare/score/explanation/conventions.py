@@ -135,20 +135,17 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     released = any(is_release(one, release, rows.noise) for one in (row, last))
     if released or not rows.starts or np.hypot(*row[:2]) == 0:
         return rows
-    units = [
-        (1.0, ""),
-        *((1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()),
-        (1 / length, "is in cord lengths (x/l)"),
-    ]
+    others = [(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()]
+    units = [(1.0, ""), *others, (1 / length, "is in cord lengths (x/l)")]
     ways = [*AXES_SAID]
     for one, (scale, text), (order, signs) in itertools.product((row, last), units, ways if rename else ways[:1]):
         if is_release(one[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _renamed(_in_metres(rows, scale, text, length), order, signs)
     # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
-    others = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
+    near = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
     if np.abs(row[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
-        others += [(units[0], way) for way in ways[1:] if rename]
-    for (scale, text), (order, signs) in others:
+        near += [(units[0], way) for way in ways[1:] if rename]
+    for (scale, text), (order, signs) in near:
         if np.abs(row[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
             return _renamed(_in_metres(rows, scale, text, length), order, signs)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))

@@ -17,7 +17,7 @@ from reference.numbers.precision import Array
 
 from ...observed.least_squares import best_change
 from .case import Case, rms
-from .phasors import Phasors, as_angles, fit_phasors
+from .phasors import ComplexArray, Phasors, as_angles, fit_phasors
 from .programs import NAMES, Pendulum, Program, phasors_of, theta_of
 
 LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")  # numbers that two phasors tell
@@ -102,24 +102,23 @@ def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Progr
     omega = abs(phasors.square) ** 0.5
     size = max(abs(phasors.start), abs(phasors.speed) / omega if omega else 0.0) or 1.0
     sizes = {2: omega, 3: omega**2 * size / right.length, 4: omega**2 * size / right.length, 5: omega**2, 6: omega}
+
+    def plane_of(theta: Array) -> ComplexArray:
+        return phasors_of(theta, -theta[5], complex(theta[7], theta[8])).at(times)
+
     columns = []
     for i in free:
         nudge = 1e-6 * sizes.get(i, size * omega if i > 8 else size) / (1 + omega * times[-1] * (i in (2, 5, 6)))
-        moved = []
-        for side in (1, -1):
-            other = theta.copy()
-            other[i] += side * nudge
-            moved.append(phasors_of(other, -other[5], complex(other[7], other[8])).at(times))
-        slope = (moved[0] - moved[1]) / (2 * nudge)
-        columns.append(np.column_stack([slope.real, slope.imag]).ravel())
+        move = nudge * np.eye(len(NAMES))[i]
+        slope = (plane_of(theta + move) - plane_of(theta - move)) / (2 * nudge)
+        columns.append(slope.view(float))
     slopes = np.column_stack(columns) / math.sqrt(len(times))
     # the centrifugal force's change along the swing makes ω² differ from x to y, which no two phasors do
     xx, yy, *_ = right.gradient_square
     answer = float(np.linalg.norm(slopes[:, free.index(5)]))
-    slopes = np.column_stack([slopes, np.zeros(len(slopes))])
-    apart = np.zeros((1, slopes.shape[1]))
-    apart[0, -1] = answer * abs(xx - yy) / 2
-    return Fit(kind, theta, rest, (*free, 12), np.vstack([slopes, apart]))
+    slopes = np.pad(slopes, (0, 1))
+    slopes[-1, -1] = answer * abs(xx - yy) / 2
+    return Fit(kind, theta, rest, (*free, 12), slopes)
 
 
 def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:

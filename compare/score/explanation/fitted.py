@@ -8,16 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from reference.numbers.precision import Array
-
 from ...candidates.candidate import Deviation
-from ...observed.least_squares import by_differences, gauss_newton
 from .case import AS_IF, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
 from .gate import CLEAN, Evidence, loose, may_be_told, without_doubtful_steps
 from .programs import Program
-from .readings import Reader, Reading
+from .readings import Reader, Reading, adjusted
 
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
@@ -131,23 +128,14 @@ def polished(case: Case, reading: Reading) -> Reading:
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
     """
-    positions = case.rows.positions
     names = [cause.free for cause in reading.causes if cause.free]
     if not names:
         return reading
-
-    def rows_of(values: Array) -> Array:
-        program = reading.program.with_inputs(names, values)
-        return (case.positions(program) if program.sensible else np.full_like(positions, np.nan)).ravel()
-
-    start = np.array([float(getattr(reading.program, name)) for name in names])
-    nudges = np.array([reading.reader.nudge(reading.program, name) for name in names])
-    model = by_differences(rows_of, positions.ravel(), nudges)
-    values, size = gauss_newton(model, start, steps=POLISHED, gain=BETTER)
-    if (values == start).all():
+    goal = case.rows.positions
+    program, size = adjusted(reading.program, names, case.positions, goal, steps=POLISHED, gain=BETTER)
+    if program == reading.program:
         return reading
-    program = reading.program.with_inputs(names, values)
-    return reading.reader.scored(reading.causes, program, size / math.sqrt(len(positions)))
+    return reading.reader.scored(reading.causes, program, size / math.sqrt(len(goal)))
 
 
 def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) -> Explanation:

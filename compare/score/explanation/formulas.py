@@ -127,13 +127,23 @@ def of_formula(case: Case) -> Explanation | None:
 
 
 def fit_formula(rows: Rows, right: Program) -> Formula | None:
-    """Return the formula that leaves least, from the rates of the scene's own swing; None if the rows are too few."""
-    if len(rows.times) < LEAST or not right.g or not right.length:
-        return None
+    """Return the formula that leaves least, from the rates of the scene's own swing; None if the rows are too few.
+
+    The span grows, so that no turn of the phase is lost. A formula and its mirror image leave as much: one is fitted.
+    """
     beta = right.rate * math.sin(math.radians(right.latitude))
-    guesses = {(math.sqrt(right.g / right.length), sign * beta) for sign in (1, -1) if beta}
-    fits = [_refined(rows.times, rows.plane, guess) for guess in sorted(guesses)]
-    return min((fit for fit in fits if fit is not None), key=lambda fit: fit.rest, default=None)
+    if len(rows.times) < LEAST or not right.g or not beta:
+        return None
+    times, plane = rows.times, rows.plane
+    rates, left = np.array([math.sqrt(right.g / right.length), -abs(beta)]), math.inf
+    hold = HELD * float(np.abs(plane).max())
+    for count in windows(times, WINDOW, LEAST, LEAST):
+        model = partial(_left, times[:count], plane[:count], hold * math.sqrt(count))
+        rates, left = gauss_newton(model, rates, steps=STEPS, gain=GAIN)
+        if not math.isfinite(left):
+            return None
+    omega, beta = rates.tolist()
+    return Formula(omega, beta, solved(_basis(times, omega, beta), plane, FLAT), left / math.sqrt(len(times)))
 
 
 def _basis(times: Array, omega: float, beta: float) -> Array:
@@ -148,20 +158,6 @@ def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Ite
     none = np.zeros_like(one)
     for changed in ([-sc, -ss, cc, cs, none], [-cs, cc, -ss, sc, none]):
         yield times[:, None] * (np.column_stack(changed) @ coefficients)
-
-
-def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula | None:
-    """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
-    rates = np.array(guess)
-    hold = HELD * float(np.abs(plane).max())
-    left = math.inf
-    for count in windows(times, WINDOW, LEAST, LEAST):
-        model = partial(_left, times[:count], plane[:count], hold * math.sqrt(count))
-        rates, left = gauss_newton(model, rates, steps=STEPS, gain=GAIN)
-        if not math.isfinite(left):
-            return None
-    omega, beta = rates.tolist()
-    return Formula(omega, beta, solved(_basis(times, omega, beta), plane, FLAT), left / math.sqrt(len(times)))
 
 
 def _left(times: Array, plane: Array, hold: float, rates: Array) -> tuple[Array, Callable[[], Array]]:

@@ -133,11 +133,14 @@ def sinc(angle: Array) -> Array:
 def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[complex, complex]]:
     """Return first values of γ1, γ2: from linear prediction where rows are evenly spaced, and the scene's own."""
     guesses = [(complex(near), complex(-near))]
-    step = float(np.median(np.diff(times)))
-    even = np.abs(np.diff(times) - step) < 1e-6 * step
-    run = _longest(even)
-    if run[1] - run[0] >= 8:
-        part, step = rows[run[0] : run[1] + 1], float(np.median(np.diff(times[run[0] : run[1] + 1])))
+    steps = np.diff(times)
+    even = np.abs(steps - np.median(steps)) < 1e-6 * np.median(steps)
+    ends = np.flatnonzero(np.concatenate([[True], ~even, [True]]))
+    longest = int(np.argmax(np.diff(ends)))
+    evenly = slice(ends[longest], ends[longest + 1])
+    part = rows[evenly]
+    if len(part) > 8:
+        step = float(np.median(np.diff(times[evenly])))
         for skip in (1, max(1, int(0.7 / (near * step))) if near else 1):
             before, here, after = part[: -2 * skip], part[skip:-skip], part[2 * skip :]
             if len(before) < 6:
@@ -156,13 +159,6 @@ def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[comple
     return guesses
 
 
-def _longest(even: npt.NDArray[np.bool_]) -> tuple[int, int]:
-    """Return the first and last row of the longest evenly spaced part."""
-    ends = np.flatnonzero(np.concatenate([[True], ~even, [True]]))
-    i = int(np.argmax(np.diff(ends)))
-    return int(ends[i]), int(ends[i + 1] - 1)
-
-
 def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -> tuple[Phasors, float] | None:
     """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
     rates: ComplexArray = np.array(guess)
@@ -171,8 +167,6 @@ def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -
     windows = sorted({max(12, int(np.searchsorted(times, times[0] + span * 4.0**-k)) + 1) for k in range(6)})
     for count in windows:
         t, w = times[:count], rows[:count]
-        if len(t) < 8:
-            continue
         rates, size = gauss_newton(partial(_left, t, w), rates, steps=STEPS, gain=GAIN)
         if not math.isfinite(size):
             return result
@@ -204,15 +198,13 @@ class Method:
     Attributes:
         id: a short word.
         title: as a person calls it.
-        order: of its error.
-        coefficients: of the stability polynomial; empty for the semi-implicit ones.
+        coefficients: of the stability polynomial, one more than its order; empty for the semi-implicit ones.
         kick: of a semi-implicit one, whether the velocity goes first; None for leapfrog.
         late: whether its first two rows are equal, as those of a bob that is let go half a step after row 0.
     """
 
     id: str
     title: str
-    order: int
     coefficients: tuple[float, ...] = ()
     kick: bool | None = None
     late: bool = False
@@ -238,15 +230,9 @@ class Method:
             return 0.0
         omega = math.sqrt(square)
         excess, growth = square_shown / square - 1, (drag - drag_shown) / omega
-        if not self.coefficients:
-            return math.sqrt(max(12 * excess, 0.0)) / omega
-        if self.order == 1:
-            return max(growth, 0.0) / omega
-        if self.order == 2:
-            return math.sqrt(max(3 * excess, 0.0)) / omega
-        if self.order == 3:
-            return float(max(-12 * growth, 0.0) ** (1 / 3)) / omega
-        return float(max(-60 * excess, 0.0) ** 0.25) / omega
+        order, of_phase = (len(self.coefficients) - 1, 3) if self.coefficients else (2, 12)
+        leading = {1: growth, 2: of_phase * excess, 3: -12 * growth, 4: -60 * excess}[order]
+        return float(max(leading, 0.0) ** (1 / order)) / omega
 
     def _split(self, phasors: Phasors, step: float) -> Phasors:
         """Return the modes of one step of w'' = -d w' - q w about the centre, d and q complex."""
@@ -275,12 +261,12 @@ def _taylor(order: int) -> tuple[float, ...]:
 
 
 METHODS = (
-    Method("semi_implicit_euler", "semi-implicit (symplectic) Euler", 1, kick=True),
-    Method("semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", 1, kick=False),
-    Method("explicit_euler", "explicit Euler", 1, _taylor(1)),
-    Method("leapfrog", "leapfrog (Verlet)", 2),
-    Method("leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", 2, late=True),
-    Method("rk2", "a Runge-Kutta method of order 2 (midpoint, Heun)", 2, _taylor(2)),
-    Method("rk3", "a Runge-Kutta method of order 3", 3, _taylor(3)),
-    Method("rk4", "a Runge-Kutta method of order 4", 4, _taylor(4)),
+    Method("semi_implicit_euler", "semi-implicit (symplectic) Euler", kick=True),
+    Method("semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", kick=False),
+    Method("explicit_euler", "explicit Euler", _taylor(1)),
+    Method("leapfrog", "leapfrog (Verlet)"),
+    Method("leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", late=True),
+    Method("rk2", "a Runge-Kutta method of order 2 (midpoint, Heun)", _taylor(2)),
+    Method("rk3", "a Runge-Kutta method of order 3", _taylor(3)),
+    Method("rk4", "a Runge-Kutta method of order 4", _taylor(4)),
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from reference.model.constants import Constants
 from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
+from ...observed.least_squares import by_differences
 from .phasors import Method, Phasors
 
 NAMES = (
@@ -80,22 +81,12 @@ class Program:
     @classmethod
     def of(cls, inputs: Inputs, start: Array) -> Program:
         """Return the right program of a scene; `start` is x, y, z, vx, vy, vz at the release in m and m/s."""
-        return cls(
-            g=float(inputs.gravity),
-            length=float(inputs.length),
-            latitude=float(inputs.latitude),
-            rate=float(inputs.rotation_rate),
-            radius=float(inputs.equatorial_radius),
-            flattening=float(inputs.flattening),
-            altitude=float(inputs.altitude),
-            drag=float(inputs.drag),
-            x=float(start[0]),
-            y=float(start[1]),
-            vx=float(start[3]),
-            vy=float(start[4]),
-            gravity_reading=inputs.gravity_is,
-            nominal_rate=float(inputs.rotation_rate),
-        )
+        same = ("length", "latitude", "flattening", "altitude", "drag", "gravity", "rotation_rate", "equatorial_radius")
+        words = {"gravity": "g", "rotation_rate": "rate", "equatorial_radius": "radius"}
+        fields: dict[str, Any] = {words.get(name, name): float(getattr(inputs, name)) for name in same}
+        x, y, _, vx, vy, _ = start.tolist()
+        fields |= {"x": x, "y": y, "vx": vx, "vy": vy, "nominal_rate": fields["rate"]}
+        return cls(gravity_reading=inputs.gravity_is, **fields)
 
     @property
     def axis_distance(self) -> float:
@@ -238,26 +229,21 @@ class Pendulum:
         reached = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
         if not reached or not np.isfinite(theta).all() or rate > self.fastest:
             return np.full((len(times), columns), np.nan)
-        lead = times[0] != 0
         try:
-            span = np.concatenate([[0.0], times]) if lead else times
+            span = times if times[0] == 0 else np.concatenate([[0.0], times])
             states = self.model.run(self.start(theta).tolist(), span, self.constants(theta))
         except (FoucaultError, ValueError, ArithmeticError):
             return np.full((len(times), columns), np.nan)
-        return np.asarray(states[int(lead) :, :columns])
+        return np.asarray(states[-len(times) :, :columns])
 
     def constants(self, theta: Array) -> Constants:
         """Return the constants of the force."""
         length, gradient, point = theta[11:14]
         pointing = point * abs(theta[5]) * length / self.radius if self.radius else 0.0
         xx, yy, yz, zz = (gradient * part for part in self.square)
-        return Constants(
-            length=float(length),
-            turn=(float(theta[0]), float(theta[1]), float(theta[2])),
-            pull=(float(theta[3]), float(theta[4]), float(theta[5])),
-            centrifugal=(xx - pointing, yy - pointing, yz, zz + 2 * pointing),
-            drag=float(theta[6]),
-        )
+        turn, pull = (tuple(part.tolist()) for part in (theta[:3], theta[3:6]))
+        centrifugal = xx - pointing, yy - pointing, yz, zz + 2 * pointing
+        return Constants(length=float(length), turn=turn, pull=pull, centrifugal=centrifugal, drag=float(theta[6]))
 
     def start(self, theta: Array) -> Array:
         """Return position and velocity of the release over the length, below the suspension and along the sphere.
@@ -270,10 +256,9 @@ class Pendulum:
 
     def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
         """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""
-        base = self.rows(theta, times, columns)
-        slopes = []
-        for i in range(len(NAMES)):
-            ahead = theta.copy()
-            ahead[i] += nudges[i] * scales[i]
-            slopes.append(((self.rows(ahead, times, columns) - base) / nudges[i]).ravel())
-        return np.column_stack(slopes)
+
+        def rows_of(change: Array) -> Array:
+            return self.rows(theta + scales * change, times, columns).ravel()
+
+        _, slopes = by_differences(rows_of, np.zeros(1), nudges)(np.zeros(len(theta)))
+        return np.ascontiguousarray(slopes())

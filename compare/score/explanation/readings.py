@@ -9,9 +9,10 @@ one that contains the other loses.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -160,28 +161,16 @@ class Reader:
             guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
             tried = [self._judged(together, program.changed(step=step)) for step in guesses if step > 0]
             program = min(tried, key=lambda reading: reading.rest).program
-        return self._fitted(together, program, free)
+        goal = np.zeros(len(self._triangle))
+        fitted, _ = adjusted(program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint)
+        return self._judged(together, fitted)
 
     def _shown(self, program: Program) -> tuple[float, float]:
         """Return ω² and the drag that the rows ask of a program, its release free: other numbers may stand for them."""
         theta, free = program.theta(), list(self.fit.free)
         columns = [free.index(i) for i in (5, 6, 9, 10) if i in free]
-        slopes = self._triangle[:, columns]
-        change = best_change(slopes, self._off(program))
+        change = best_change(self._triangle[:, columns], self._off(program))
         return -float(theta[5] + change[0]), float(theta[6] + change[1])
-
-    def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading:
-        """Fit the free numbers by Gauss-Newton."""
-
-        def off_of(values: Array) -> Array:
-            moved = program.with_inputs(free, values)
-            return self._off(moved) if moved.sensible else np.full(len(self._triangle), np.nan)
-
-        start = np.array([float(getattr(program, name)) for name in free])
-        nudges = np.array([self.nudge(program, name) for name in free])
-        model = by_differences(off_of, np.zeros(len(self._triangle)), nudges)
-        values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN, strays=self.joint)
-        return self._judged(together, program.with_inputs(free, values))
 
     def drifts(self, case: Case, program: Program) -> bool:
         """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
@@ -198,15 +187,10 @@ class Reader:
     def uncertainty(self, reading: Reading, cause: Cause) -> float:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
         value = reading.value(cause)
-        nudge = self.nudge(reading.program, cause.free)
+        nudge = _nudge(reading.program, cause.free)
         moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, 1e-15) / answer if answer else math.inf
-
-    @staticmethod
-    def nudge(program: Program, name: str) -> float:
-        """Return a change of a number that is small for it."""
-        return 1e-6 * max(abs(float(getattr(program, name))), SMALLEST.get(name, 1e-3))
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
         off = float(np.linalg.norm(self._off(program)))
@@ -241,6 +225,29 @@ class Reader:
         """The slopes with as many rows as there are numbers: products with it are as long as with them."""
         slopes = self.fit.slopes
         return np.asarray(np.linalg.qr(slopes, mode="r")) if np.isfinite(slopes).all() else slopes
+
+
+def adjusted(
+    program: Program, names: Sequence[str], rows_of: Callable[[Program], Array], goal: Array, **options: Any
+) -> tuple[Program, float]:
+    """Return a program, some of its numbers moved to where the rows it makes come nearest to a goal, and the distance.
+
+    Further arguments are those of `gauss_newton`.
+    """
+
+    def rows_with(values: Array) -> Array:
+        moved = program.with_inputs(names, values)
+        return (rows_of(moved) if moved.sensible else np.full_like(goal, np.nan)).ravel()
+
+    start = np.array([float(getattr(program, name)) for name in names])
+    nudges = np.array([_nudge(program, name) for name in names])
+    values, left = gauss_newton(by_differences(rows_with, goal.ravel(), nudges), start, **options)
+    return program.with_inputs(names, values), left
+
+
+def _nudge(program: Program, name: str) -> float:
+    """Return a change of a number that is small for it."""
+    return 1e-6 * max(abs(float(getattr(program, name))), SMALLEST.get(name, 1e-3))
 
 
 def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:

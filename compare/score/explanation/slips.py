@@ -112,14 +112,11 @@ def _terms(state: Array, off: Array, k: Constants) -> Iterator[tuple[str, str, f
     else:
         return
     fitted = _left(basis, off, chosen)[1]
-    origin = np.zeros((4, 1))
+    nudges = NUDGE * np.eye(4)
+    slopes = (_model(nudges, k) - _model(-nudges, k)) / (2 * NUDGE)
+    model = np.hstack([_model(np.zeros((4, 1)), k), slopes])
     for i, j in chosen:
-        if j:
-            nudge = np.zeros((4, 1))
-            nudge[j - 1] = NUDGE
-            right = float((_model(origin + nudge, k) - _model(origin - nudge, k))[i, 0]) / (2 * NUDGE)
-        else:
-            right = float(_model(origin, k)[i, 0])
+        right = float(model[i, j])
         yield "xy"[i], list(TERMS)[j], right + fitted[i, j] / float(scale[j]), right
 
 

@@ -196,8 +196,8 @@ def likely_steps(case: Case, near: Program | None) -> list[Steps]:
         steps = Steps(**vars(pendulum), method=method, spacing=spacing)
         finest = int(spacing * frequency / FINEST[method])
         low, high = 1, min(finest, SEARCHED // count)
-        known = near is not None and near.step and near.method is not None and near.method.id == method
-        roughly = round(spacing / near.step) if near is not None and known else 0
+        known = near and near.step and near.method and near.method.id == method
+        roughly = round(spacing / near.step) if near and known else 0
         if 0 < roughly <= finest:
             likely.append((0.0, replace(steps, every=roughly, near=tuple(theta))))
             if roughly > high:

@@ -97,8 +97,8 @@ def test_columns_named_by_the_user(tmp_path):
     [
         (["t", "x"], "a name for each of the 3 columns"),
         (["t", "x", "wind"], "got 'wind', expected names of t, x, y, z"),
-        (["t", "x", "-"], "a column y among them"),
-        (["t", "x", "x"], "a column y among them"),
+        (["t", "x", "-"], "no y in t, x, -"),
+        (["t", "x", "x"], "one column x"),
     ],
 )
 def test_what_is_wrong_with_the_users_names_is_said(tmp_path, columns, message):
