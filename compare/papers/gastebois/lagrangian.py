@@ -49,14 +49,10 @@ def along(i: int) -> Callable[[Point], Vector]:
     return lambda p: derivative(lambda s: by_angles(p, *(angle_state(p)[0] + s * vector(1 - i, i))))
 
 
-def _by_theta(p: Point) -> Vector:
+def _tangents(p: Point) -> tuple[Vector, Vector]:
+    """Return ∂r/∂θ and ∂r/∂φ over L0 as printed."""
     sp, cp, sl, cl = p.angle_functions
-    return vector(cp * cl, cp * sl, sp)
-
-
-def _by_phi(p: Point) -> Vector:
-    sp, _, sl, cl = p.angle_functions
-    return vector(-sp * sl, sp * cl, 0)
+    return vector(cp * cl, cp * sl, sp), vector(-sp * sl, sp * cl, 0)
 
 
 def _velocity(p: Point) -> Vector:
@@ -75,10 +71,6 @@ def _hung(p: Point) -> Point:
 def _balance(p: Point, by: Any) -> Vector:
     """Return (m g_a + T + f_c) / `by` minus the acceleration."""
     return forces(_hung(p)) / by - acceleration_of(_hung(p))
-
-
-def _half(p: Point) -> Any:
-    return p.length**2 * p.cord_rate**2 + p.length**2 * sin(p.cord) ** 2 * p.azimuth_rate**2
 
 
 def left_side(p: Point, i: int) -> Any:
@@ -214,10 +206,11 @@ def checks() -> list[Check]:
         Identity("7_1_v", "7.1", "v_x = v_θ cosθ cosφ - v_φ sinφ, v_y = v_θ cosθ sinφ + v_φ cosφ, v_z = v_θ sinθ",
             _velocity, moving_velocity),
         Identity("7_1_theta", "7.1", "dr/dθ = L0 (cosθ cosφ, cosθ sinφ, sinθ)",
-            lambda p: p.length * _by_theta(p), along(0)),
+            lambda p: p.length * _tangents(p)[0], along(0)),
         Identity("7_1_phi", "7.1", "dr/dφ = L0 (-sinθ sinφ, sinθ cosφ, 0)",
-            lambda p: p.length * _by_phi(p), along(1)),
-        Identity("7_1_l2", "7.1", "L = m L0² θ'²/2 + m L0² sin²θ φ'²/2 + m g_a L0 cosθ", lambda p: kinetic(p, _half(p)),
+            lambda p: p.length * _tangents(p)[1], along(1)),
+        Identity("7_1_l2", "7.1", "L = m L0² θ'²/2 + m L0² sin²θ φ'²/2 + m g_a L0 cosθ",
+            lambda p: kinetic(p, p.length**2 * p.cord_rate**2 + p.length**2 * sin(p.cord) ** 2 * p.azimuth_rate**2),
             lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_2_general", "7.2", "d(dL/dq)/dt - dL/dq = …",
             lambda p: _without_prime(p, 0), lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,

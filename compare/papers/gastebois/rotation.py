@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from reference import load_scene
 from reference.model.constants import axis_distance
 
@@ -29,7 +31,7 @@ from ..digits import (
     vector,
 )
 from ..first_principles import AXIS, linearised, moving_velocity, rate_up, rotated, turning, turning_rates
-from ..points import Point, paris, points, rotation, solved
+from ..points import Point, paris, path_in, points, rotation, solved, swing_plane
 
 RATE = mpf("7.292115e-5")  # rad/s, WGS84
 SIDEREAL_DAY = 2 * pi / RATE / 3600  # h
@@ -133,7 +135,9 @@ def _slower_when_wide() -> Answer:
 
 
 def _turn(latitude: str) -> float:
-    return rotation(load_scene("paris", [f"site.latitude={latitude}"]), 7200.0)
+    """Return the rotation of the swing plane in degrees an hour, by its azimuths every 10 s for two hours."""
+    scene, times = load_scene("paris", [f"site.latitude={latitude}"]), np.arange(0.0, 7205.0, 10.0)
+    return rotation(times, swing_plane(scene, path_in(scene, times)))[0]
 
 
 def _pole() -> Answer:

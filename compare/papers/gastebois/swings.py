@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, component, over, section
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate, turned_in_plane
 from ..points import Point, points
@@ -82,16 +82,8 @@ def _ellipse(p: Point, t: Any) -> Vector:
     return turned_in_plane(motion_at_rest(p, t), rate_up(p) * t)
 
 
-def _one_swing(s: Any) -> tuple[Any, Any]:
-    p = pantheon(s)
-    t = 2 * pi / swing_rate(p)
-    turn = 2 * pi * rate_up(p) / swing_rate(p)
-    return p.x * (1 - turn**2 / 2), motion_at_rest(p, t)[0]
-
-
-def _aside(s: Any) -> tuple[Any, Any]:
-    p = pantheon(s)
-    return -2 * pi * p.x * rate_up(p) / swing_rate(p), motion_at_rest(p, 2 * pi / swing_rate(p))[1]
+def _after_a_swing(p: Point) -> Vector:
+    return motion_at_rest(p, 2 * pi / swing_rate(p))
 
 
 def checks() -> list[Check]:
@@ -133,8 +125,11 @@ def checks() -> list[Check]:
         PrintedNumber("6_3_350", "6.3, remark", "at 5° the precession takes about 350 times as long as the rotation",
             "350", lambda: precession_ratio(radians(5)), about=lambda: mpf(350),
             remark="by the elliptic integrals, at the pole; 8/(3θ²) = " + shown(8 / (3 * radians(5) ** 2), 8)),
-        Approximate("6_3_x", "6.3", "at t = T: x = r0 (1 - (2πΩ_z/ω)²/2)", _one_swing, 4, "Ω"),
-        Approximate("6_3_y", "6.3", "at t = T: y = -2π r0 Ω_z/ω", _aside, 2, "Ω"),
+        Approximate("6_3_x", "6.3", "at t = T: x = r0 (1 - (2πΩ_z/ω)²/2)",
+            over(pantheon, lambda p: p.x * (1 - (2 * pi * rate_up(p) / swing_rate(p)) ** 2 / 2),
+                component(_after_a_swing, 0)), 4, "Ω"),
+        Approximate("6_3_y", "6.3", "at t = T: y = -2π r0 Ω_z/ω",
+            over(pantheon, lambda p: -2 * pi * p.x * rate_up(p) / swing_rate(p), component(_after_a_swing, 1)), 2, "Ω"),
         Identity("6_3_rate", "6.3", "ω_f = φ/T = Ω_z with φ = -2πΩ_z/ω",
             rate_up, lambda p: -2 * pi * rate_up(p) / swing_rate(p) / (2 * pi / swing_rate(p)),
             "a sign is dropped within the line: φ/T = -Ω_z", lambda p: -rate_up(p),
