@@ -17,6 +17,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 
 from reference import Scene, UnreachableError, trajectory
 from reference.model.constants import Vector
@@ -106,17 +107,12 @@ def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
     half = _NODES // 2
     before = before[(before >= half - 1) & (before + half < len(times))]
     nodes = np.arange(1 - half, half + 1)
-    inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))  # the nodes are small: condition 1e7
-    at = before[:, None] + nodes
-    distance = inverse @ radial[at].T
-    east, north = inverse @ place.real[at].T, inverse @ place.imag[at].T
+    at, powers = before[:, None] + nodes, np.vander(nodes, increasing=True)  # the nodes are small: condition 1e7
+    rise, path = (np.linalg.solve(powers, values[at].T) for values in (radial, place))  # polynomials in samples
     step = radial[before] / (radial[before] - radial[before + 1])
-    powers, slopes = np.arange(_NODES)[:, None], np.arange(1, _NODES)[:, None]
     for _ in range(4):  # Newton, from a secant: the function is nearly linear between two samples
-        value = np.sum(distance * step**powers, axis=0)
-        step = step - value / np.sum(slopes * distance[1:] * step ** (slopes - 1), axis=0)
-    z = np.sum(east * step**powers, axis=0) + 1j * np.sum(north * step**powers, axis=0)
-    azimuth = np.unwrap(2 * np.angle(z)) / 2
+        step = step - polyval(step, rise, tensor=False) / polyval(step, polyder(rise), tensor=False)
+    azimuth = np.unwrap(2 * np.angle(polyval(step, path, tensor=False))) / 2
     return times[before] + step * (times[1] - times[0]), azimuth
 
 
