@@ -58,9 +58,8 @@ def swing_period(length: Any, r0: Any, gravity: Any, rate: Any) -> tuple[Any, An
     low, outer = half - spread, half + spread
     w = sqrt(gravity * (outer - low) / 2) / length
     span, m = high - low, (high - low) / (outer - low)
-    pieces = MP.ellippi(span / (length - low), m) / (length - low) + MP.ellippi(-span / (length + low), m) / (
-        length + low
-    )
+    above, below = length - low, length + low
+    pieces = MP.ellippi(span / above, m) / above + MP.ellippi(-span / below, m) / below
     return 4 * MP.ellipk(m) / w, 2 * (momentum / (length * w) * pieces - pi)
 
 
@@ -129,9 +128,8 @@ def _slower_when_wide() -> Answer:
     t, x, y = (mpf(run.transits.exact(name)[1]) for name in ("t", "x", "y"))
     ratio = -2 * pi * t / atan2(y, x) / (SIDEREAL_DAY * 3600)
     closed = wide_swing(MP.one)[1]
-    return Answer(
-        bool(ratio > 1 and abs(ratio - closed) < mpf("1e-20")), f"T_f/T_p = {shown(ratio)} at r0 = 6.5 m, pole"
-    )
+    holds = bool(ratio > 1 and abs(ratio - closed) < mpf("1e-20"))
+    return Answer(holds, f"T_f/T_p = {shown(ratio)} at r0 = 6.5 m, pole")
 
 
 def _turn(latitude: str) -> float:

@@ -167,10 +167,7 @@ def _plane_equation(i: int, power: int = 4) -> Callable[[Point], Any]:
 
 def _coefficient(i: int, power: int) -> Callable[[Point], Any]:
     """Return z⁴ times the terms of Euler-Lagrange without accelerations, at one power of Ω."""
-    still = vector(0, 0)
-    return lambda p: (
-        p.z**4 * in_rate(lambda rate: euler_lagrange(p.but(rate=rate), by_plane, *plane_state(p)[:2], still, i), power)
-    )
+    return lambda p: in_rate(lambda rate: _plane_equation(i)(p.but(rate=rate, ax=MP.zero, ay=MP.zero)), power)
 
 
 def _printed_32(p: Point) -> Any:

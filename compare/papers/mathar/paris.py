@@ -145,9 +145,8 @@ def _slowed(by: Any) -> Answer:
     """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
     hertz = anharmonic(paris().case) / by
     factor = by * slow_down(paris().case)
-    return Answer(
-        abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
-    )
+    holds = abs(hertz - mpf("0.060843634")) < mpf("5e-10")
+    return Answer(holds, f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz")
 
 
 def checks() -> list[Check]:
