@@ -78,13 +78,13 @@ def left_side(p: Point, i: int) -> Any:
     return p.mass * euler_lagrange(p.but(rate=MP.zero), by_angles, *angle_state(p), i)
 
 
-def _without_prime(p: Point, i: int) -> Any:
-    """Return d(dL/dq)/dt - dL/dq, as the general line is printed."""
+def _without_prime(p: Point) -> Any:
+    """Return d(dL/dq)/dt - dL/dq, as the general line is printed, for q = θ."""
     q, v, a = angle_state(p)
 
     def slope(s: Any) -> Any:
         place, rates = q + s * v + s * s / 2 * a, v + s * a
-        return derivative(lambda u: _lagrangian(p, tuple(x + (u if k == i else 0) for k, x in enumerate(place)), rates))
+        return derivative(lambda u: _lagrangian(p, place + vector(u, 0), rates))
 
     return derivative(slope) - slope(MP.zero)
 
@@ -213,7 +213,7 @@ def checks() -> list[Check]:
             lambda p: kinetic(p, p.length**2 * p.cord_rate**2 + p.length**2 * sin(p.cord) ** 2 * p.azimuth_rate**2),
             lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_2_general", "7.2", "d(dL/dq)/dt - dL/dq = …",
-            lambda p: _without_prime(p, 0), lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,
+            _without_prime, lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,
             remark="for q = θ; the next two lines are printed with q'"),
         Identity("7_2_theta", "7.2", "m L0² θ'' - m L0² sinθ cosθ φ'² + m g_a L0 sinθ = …",
             _theta_side, lambda p: left_side(p, 0)),

@@ -24,9 +24,9 @@ from .small import fitted_constants
 APPARENT_LATITUDE = mpf("48.97")  # λ_a, as he rounds it
 
 
-def simple(p: Point, t: Any) -> Vector:
-    """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
-    return p.x * vector(*gastebois.in_turning_axes(0, swing_rate(p), rate_up(p), t, MP))
+def simple(p: Point, t: Any, minor: Any = 0) -> Vector:
+    """Return x, y, v_x, v_y by 6.2, or by 6.3 with `minor` = Ω_z/ω; r0 is the point's x."""
+    return p.x * vector(*gastebois.in_turning_axes(minor, swing_rate(p), rate_up(p), t, MP))
 
 
 def _start_simple(p: Point) -> Vector:
@@ -58,12 +58,6 @@ def _axes_turn(p: Point) -> Any:
 
 def _half_square(p: Point) -> Any:
     return rate_up(p) ** 2 / (2 * p.gravity / p.length)
-
-
-def at_rest(p: Point, t: Any) -> Vector:
-    """Return x, y of a release at rest by 6.3."""
-    w, up = swing_rate(p), rate_up(p)
-    return p.x * vector(*gastebois.in_turning_axes(up / w, w, up, t, MP)[:2])
 
 
 def _sense(p: Point) -> Any:
@@ -112,7 +106,7 @@ def checks() -> list[Check]:
             lambda p: tuple((swing_rate(p) + sign * rate_up(p)) * p.x / (2 * swing_rate(p)) for sign in (-1, 1)),
             lambda p: fitted_constants(p.but(y=MP.zero, vx=MP.zero, vy=MP.zero))[::2]),
         Identity("6_3_xy", "6.3", "x = r0 cosΩ_z t cosωt + r0 Ω_z/ω sinΩ_z t sinωt, y = …",
-            lambda p: at_rest(p, p.t), lambda p: motion_at_rest(p, p.t)),
+            lambda p: simple(p, p.t, rate_up(p) / swing_rate(p))[:2], lambda p: motion_at_rest(p, p.t)),
         Identity("6_3_axes", "6.3", "X = r0 cosωt, Y = r0 Ω_z/ω sinωt",
             lambda p: (p.x * cos(swing_rate(p) * p.t), p.x * rate_up(p) / swing_rate(p) * sin(swing_rate(p) * p.t)),
             lambda p: _ellipse(p, p.t)),
