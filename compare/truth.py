@@ -25,9 +25,8 @@ from reference.scenes.shipped import WITHOUT_FUNCTION, data_root
 from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-DENSE_FORMAT = (
-    b"dense 6"  # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
-)
+# changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
+DENSE_FORMAT = b"dense 6"
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
 _here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep

@@ -178,7 +178,7 @@ def underneath(scene: Scene, law: str = "The formula") -> str | None:
 
 def at_rest(scene: Scene) -> str | None:
     """Return a reason to refuse a release with a velocity, or None."""
-    return None if scene.exact.at_rest else "It is for a release at rest: leave out vx and vy"
+    return None if scene.exact.at_rest else "It is for a release at rest: leave out the velocity"
 
 
 def under_gravity(scene: Scene) -> str | None:

@@ -148,11 +148,6 @@ def line_of_46(case: Case, angle: Any, sign: int = -1) -> Any:
     return far - sign * square * ctx.cos(tilted) * ctx.sin(tilted) + case.k.gravity * ctx.sin(angle)
 
 
-def _equation(case: Case) -> Any:
-    """Solve (46) for its angle south of the vertical."""
-    return case.ctx.findroot(partial(line_of_46, case), case.tilt)
-
-
 def series(case: Case) -> Vector:
     """Return the coefficients of Ω², Ω⁴ and Ω⁶ in (47), for the lower sign: positive to the south."""
     ctx, cord, g, latitude = case.ctx, case.length, case.gravity, case.latitude
@@ -198,7 +193,7 @@ _REST = (
         title="rest position by the equation of forces",
         where="Mathar (46); (45) is the same in y",
         drops="nothing",
-        formula=_equation,
+        formula=lambda case: case.ctx.findroot(partial(line_of_46, case), case.tilt),  # south of the vertical
     ),
     *(
         _rest_angle(

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError
-from reference.model.algebra import product
 from reference.model.force import tension
 from reference.numbers.precision import Array
 
@@ -33,9 +32,7 @@ def stiffness(case: Case) -> tuple[Any, Any, Any]:
     plumb = plumb_line(case)
     xx, yy, yz, zz = case.k.centrifugal
     pull = tension(case.rest, (0, 0, 0), case.k)
-    across = (
-        product(yy, plumb.cos, plumb.cos) + product(2, yz, plumb.cos, plumb.sin) + product(zz, plumb.sin, plumb.sin)
-    )
+    across = yy * plumb.cos**2 + 2 * yz * plumb.cos * plumb.sin + zz * plumb.sin**2
     turn = plumb.cos * case.ctx.mpf(case.k.turn[2]) - plumb.sin * case.ctx.mpf(case.k.turn[1])
     return pull - xx, pull - across, turn
 
@@ -50,11 +47,8 @@ def _path(case: Case, times: Array) -> Array:
     x, y, _ = plumb.inward(case.position)
     vx, vy, _ = plumb.inward(case.velocity)
     weights = modes.H * ctx.matrix([east * x, north * y, vx, vy])
-    states = np.zeros((4, len(times)), dtype=complex)
-    for j in range(4):
-        phase = np.exp(-1j * float(frequencies[j]) * times)
-        states += np.outer([complex(modes[i, j] * weights[j]) for i in range(4)], phase)
-    p = states.real
+    shares = np.array([[complex(modes[i, j] * weights[j]) for j in range(4)] for i in range(4)])
+    p = (shares @ np.exp(-1j * np.outer([float(w) for w in frequencies], times))).real
     return plumb.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))
 
 

@@ -10,7 +10,7 @@ from reference import Scene
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, lowest_point, under_gravity, without_drag
+from .case import Case, at_rest, lowest_point, under_gravity, without_drag
 
 _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
 
@@ -50,12 +50,9 @@ def _path(case: Case, times: Array) -> Array:
     return np.column_stack((place.real, place.imag, -length * cosine, speed.real, speed.imag, length * sine * rate))
 
 
-def _released(scene: Scene) -> str | None:
-    if not scene.exact.at_rest:
-        return "The formula is for a release at rest: leave out the velocity"
-    if scene.exact.angles is not None and scene.exact.angles[0] == 180:
-        return "The bob stands upright: give release.angle below 180"
-    return None
+def _not_upright(scene: Scene) -> str | None:
+    upright = scene.exact.angles is not None and scene.exact.angles[0] == 180
+    return "The bob stands upright: give release.angle below 180" if upright else None
 
 
 APPROXIMATIONS = (
@@ -64,7 +61,7 @@ APPROXIMATIONS = (
         title="plane pendulum without the Foucault effect",
         where="Mathar section VII and figure 7 (Ω = 0): period 4 sqrt(l/g) K(sin(φ0/2))",
         drops="Ω",
-        needs=(_released, without_drag, under_gravity),
+        needs=(at_rest, _not_upright, without_drag, under_gravity),
         path=_path,
         rest=lowest_point,
     ),

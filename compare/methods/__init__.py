@@ -55,8 +55,7 @@ def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[s
     if names and len(names) != len(commands):
         raise InputError("--name", ", ".join(names), f"one name for each --run, so {len(commands)}", "Or give none.")
     programs: dict[str, str] = {}
-    for i, command in enumerate(commands):
-        name = names[i] if names else file_name(command)
+    for command, name in zip(commands, names or map(file_name, commands), strict=True):
         if not name.strip() or not name.isprintable() or len(name) > LONGEST_NAME:
             raise InputError("--name", name, f"1 to {LONGEST_NAME} printable characters")
         if name in programs or name in METHODS:

@@ -84,19 +84,15 @@ def source(problem: Problem, parts: Sequence[str]) -> str:
     """Return the text of the program."""
     folder = Path(__file__).parent / "native"
     system = problem.system
-    counts = len(system.variables), len(system.parameters)
-    functions = [
-        _function("rates", system.program, *counts, "    calls++;\n"),
-        _function("slopes", system.jacobian, *counts),
-    ]
+    functions = [_function("rates", system.program, "    calls++;\n"), _function("slopes", system.jacobian)]
     sizes = f"#define VARIABLES {len(system.variables)}\n#define PARAMETERS {len(problem.parameters)}\n"
     texts = [(folder / name).read_text(encoding="utf-8") for name in parts]
     return "\n".join([sizes + (folder / "host.hpp").read_text(encoding="utf-8"), *functions, *texts])
 
 
-def _function(name: str, program: StraightLine, variables: int, parameters: int, before: str = "") -> str:
-    """Return straight-line code as a function of a state that fills an array."""
-    lines = [f"x{i} = x[{i}]" for i in range(variables)] + [f"k{i} = k[{i}]" for i in range(parameters)]
+def _function(name: str, program: StraightLine, before: str = "") -> str:
+    """Return straight-line code of x0, x1, … and k0, k1, … as a function of a state that fills an array."""
+    lines = [f"{symbol} = {symbol[0]}[{symbol[1:]}]" for symbol in program.inputs]
     lines += [f"{line.name} = {line.expression}" for line in program.lines]
     body = before + "".join(f"    const double {line};\n" for line in lines)
     body += "".join(f"    to[{i}] = {word};\n" for i, word in enumerate(program.outputs))

@@ -16,15 +16,12 @@ import shutil
 import sys
 import sysconfig
 import tempfile
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 SYSTEM = ("/usr/local/include", "/usr/include", "/opt/homebrew/include")
-_turn = threading.RLock()  # descriptors are the process's: of two threads the last to leave would restore the other's
-
 
 own_process = False  # set in a process that was started to run methods
 
@@ -111,14 +108,14 @@ SUNDIALS = Library(
 )
 
 
-def quoted(output: bytes | bytearray, longest: int = 300) -> str:
-    """Return what a library printed on one line, cut to `longest` characters, to be quoted in a message."""
-    return " ".join(output.decode(errors="replace").split())[:longest]
+def quoted(output: bytes | bytearray) -> str:
+    """Return what a library printed on one line, cut to 300 characters, to be quoted in a message."""
+    return " ".join(output.decode(errors="replace").split())[:300]
 
 
 @contextmanager
-def captured(*descriptors: int) -> Iterator[bytearray]:
-    """Redirect file descriptors (1 for stdout, 2 for stderr) to a file while a library runs, in one thread at a time.
+def captured() -> Iterator[bytearray]:
+    """Redirect the file descriptors of stdout and stderr to a file while a library runs; one at a time.
 
     What other threads print meanwhile is captured too. In a user's process nothing is. All of it is in what is yielded
     when the context has ended.
@@ -127,17 +124,17 @@ def captured(*descriptors: int) -> Iterator[bytearray]:
     if not own_process:
         yield output
         return
-    with _turn, tempfile.TemporaryFile() as handle:
+    with tempfile.TemporaryFile() as handle:
         sys.stdout.flush()
         sys.stderr.flush()
-        originals = [os.dup(descriptor) for descriptor in descriptors]
+        originals = [(descriptor, os.dup(descriptor)) for descriptor in (1, 2)]
         try:
-            for descriptor in descriptors:
+            for descriptor, _ in originals:
                 os.dup2(handle.fileno(), descriptor)
             yield output
         finally:
             ctypes.CDLL(None).fflush(None)  # empties the buffers of C's own streams
-            for descriptor, original in zip(descriptors, originals, strict=True):
+            for descriptor, original in originals:
                 os.dup2(original, descriptor)
                 os.close(original)
             handle.seek(0)

@@ -228,7 +228,9 @@ def external(command: str, *, name: str = "external") -> Method:
 
 
 def _prepare(problem: Problem, value: float, command: str) -> Work:
-    words = arguments(command.replace(SETTING, repr(value)), _scene(problem))
+    times = problem.times.tolist()
+    scene = problem.scene.with_values([f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"])
+    words = arguments(command.replace(SETTING, repr(value)), scene)
 
     def work() -> Outcome:
         try:
@@ -240,22 +242,12 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
             return failed(problem, str(error))
         if not len(states):
             return failed(problem, "the output does not begin at t = 0")
-        whole = len(states) == len(problem.times)
-        return Outcome(
-            Status.OK if whole else Status.GAVE_UP,
-            float(problem.times[len(states) - 1]),
-            lambda: states,
-            reason="" if whole else "the output lacks a grid time",
-            cpu_s=cpu_s,
-        )
+        status, reason = Status.OK, ""
+        if len(states) < len(problem.times):
+            status, reason = Status.GAVE_UP, "the output lacks a grid time"
+        return Outcome(status, float(problem.times[len(states) - 1]), lambda: states, reason, cpu_s=cpu_s)
 
     return work
-
-
-def _scene(problem: Problem) -> Scene:
-    """Return the scene with the end and the grid step of the problem's times."""
-    times = problem.times.tolist()
-    return problem.scene.with_values([f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"])
 
 
 def _at(problem: Problem, t: Array, columns: dict[str, Array]) -> Array:

@@ -29,9 +29,8 @@ def rates(t, y, dy, k):
 
 def prepare(problem: Problem, setting: float, code: str) -> Work:
     """Compile the right-hand side; the returned function runs the library's integration."""
-    os.environ.setdefault(
-        "GFORTRAN_UNBUFFERED_PRECONNECTED", "y"
-    )  # otherwise its messages appear when the process ends
+    # otherwise its messages appear when the process ends
+    os.environ.setdefault("GFORTRAN_UNBUFFERED_PRECONNECTED", "y")
     from numbalsoda import driver, driver_dop853
 
     variables = len(problem.start)
@@ -45,17 +44,16 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         states[0], start = problem.start, problem.start.copy()
         data = np.append(problem.parameters, 0.0)
         pointers: list[Any] = [array.ctypes.data for array in (start, data, problem.times, states, success)]
-        with captured(1, 2) as output:
+        with captured() as output:
             integrate(
                 address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
                 setting, absolute, MOST_STEPS, pointers[4],
             )  # fmt: skip
-        calls = int(data[-1])
-        if success == 1:
-            return outcome(problem, states, rhs_evaluations=calls, reason=quoted(output))
-        reached = leading(np.isfinite(states).all(axis=1))
-        reason = quoted(output) or f"numbalsoda's {code} stopped without a message"
-        return outcome(problem, states[:reached], rhs_evaluations=calls, reason=reason)
+        reason = quoted(output)
+        if success != 1:
+            states = states[: leading(np.isfinite(states).all(axis=1))]  # what it did not reach is NaN
+            reason = reason or f"numbalsoda's {code} stopped without a message"
+        return outcome(problem, states, rhs_evaluations=int(data[-1]), reason=reason)
 
     return work
 

@@ -43,9 +43,6 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     if code in IMPLICIT:
         keywords["jac"] = returning(problem.slopes, k, (size, size))
     rhs = returning(problem.rates, k, (size,))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        solve_ivp(rhs, (0.0, end * 1e-12), problem.start, **keywords)  # triggers the method's late imports
 
     def work() -> Outcome:
         with warnings.catch_warnings(record=True) as caught:

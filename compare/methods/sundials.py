@@ -39,7 +39,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     def work() -> Outcome:
         times = problem.times
         output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
-        with captured(1, 2):  # it prints its message as well
+        with captured():  # it prints its message as well
             solution = solver.solve(output_times, problem.start)
         states = np.array(solution.y)[np.isin(solution.t, times)]
         reason = "" if solution.success else str(solution.message)

@@ -42,7 +42,7 @@ def declared() -> list[Check]:
     return [check for name in SECTIONS for check in import_module(f".{name}", __name__).checks()]
 
 
-def rows(report: Report | None = None) -> list[JudgedRow]:
+def rows(report: Report = lambda *_: None) -> list[JudgedRow]:
     """Judge every declared row.
 
     Args:
@@ -55,12 +55,11 @@ def rows(report: Report | None = None) -> list[JudgedRow]:
     judged = []
     for count, line in enumerate(lines, 1):
         judged.append(line.row())
-        if report is not None:
-            report(count, len(lines), judged[-1].place)
+        report(count, len(lines), line.place)
     return judged
 
 
-def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
+def build(out: Path, report: Report = lambda *_: None) -> list[JudgedRow]:
     """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder.
 
     Raises:
@@ -78,7 +77,6 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     figures = {}
     for count, number in enumerate(FIGURES, 1):
         figures[number] = svg(number)
-        if report is not None:
-            report(count, len(FIGURES), f"figure {number}")
+        report(count, len(FIGURES), f"figure {number}")
     write_files(out, files_of(judged, figures))
     return judged

@@ -15,6 +15,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from typing import Any, Literal
 
 from reference.numbers.precision import fixed_decimal, to_fraction
@@ -151,14 +152,10 @@ class Approximate(Check):
         formula, truth = self.pair(MP.mpf(s))
         return distance(formula, truth) / (1 if self.unit else size(truth))
 
-    def measured_order(self) -> Any:
-        """Return the slope of log error against log s, at s so small that one power dominates."""
-        coarse, fine = MP.mpf(2) ** -10, MP.mpf(2) ** -11
-        return MP.log(self.error(coarse) / self.error(fine)) / MP.log(2)
-
     def row(self) -> JudgedRow:
         """Judge the approximation: its error must have the declared order."""
-        slope = self.measured_order()
+        coarse, fine = (self.error(MP.mpf(2) ** -halvings) for halvings in (10, 11))  # where one power dominates
+        slope = MP.log(coarse / fine) / MP.log(2)
         if abs(slope - self.order) >= ORDER_SLACK:
             raise UnexplainedError(f"{self.id}: the error shrinks with order {shown(slope, 4)}, not {self.order}")
         error = f"{shown(self.error(1), 3)}{' ' + self.unit if self.unit else ' (relative)'}"
@@ -187,17 +184,15 @@ class PrintedNumber(Check):
         return mpf(self.numeral)
 
     @property
-    def unit(self) -> Any:
-        """One unit of the last printed digit."""
-        mantissa, _, exponent = self.numeral.lower().partition("e")
-        places = len(mantissa.partition(".")[2])
-        return MP.mpf(10) ** (int(exponent or 0) - places)
+    def last_place(self) -> int:
+        """The power of ten of the last printed digit."""
+        return int(Decimal(self.numeral).as_tuple().exponent)
 
     def fits(self, value: Any) -> str:
         """Return how the numeral follows from a value: "equal", "rounded", "cut off", or "" if it does not."""
         if value == self.number:
             return "equal"
-        left = (value - self.number) / self.unit
+        left = (value - self.number) / MP.mpf(10) ** self.last_place
         if abs(left) <= 0.5:
             return "rounded"
         return "cut off" if 0 < left * MP.sign(value) < 1 else ""
@@ -206,28 +201,24 @@ class PrintedNumber(Check):
         """Judge the number: equal, reproduced, near enough for an "about", or a misprint."""
         value = self.value()
         how, recomputed = self.fits(value), shown(value)
-        if how == "equal":
-            return self.judged(recomputed, "exact")
-        if how == "rounded":
-            return self.judged(recomputed, "reproduced")
-        if how == "cut off":
-            return self._noted(recomputed, "cut off, not rounded")
-        if self.from_inputs is not None and self.fits(self.from_inputs()):
-            return self._noted(recomputed, f"from {self.inputs}: {shown(self.from_inputs(), 8)}")
+        if how in ("equal", "rounded"):
+            return self.judged(recomputed, "exact" if how == "equal" else "reproduced")
+        note = how and "cut off, not rounded"
+        if not how and self.from_inputs is not None and self.fits(self.from_inputs()):
+            note = f"from {self.inputs}: {shown(self.from_inputs(), 8)}"
+        if note:
+            return self.judged(recomputed, "reproduced", remark="; ".join(filter(None, (note, self.remark))))
         off = abs(self.number - value)
         if self.about is not None and off <= mpf(LOOSE) * abs(self.about()):
             error = f"{shown(off, 3)}, {shown(off / abs(value), 2)} (relative)"
             return self.judged(recomputed, "approximation", error=error)
         return self.judged(recomputed, "misprint", correction=self.rounded(value))
 
-    def _noted(self, recomputed: str, note: str) -> JudgedRow:
-        return self.judged(recomputed, "reproduced", remark="; ".join(filter(None, (note, self.remark))))
-
     def rounded(self, value: Any) -> str:
         """Return the value with as many digits as are printed."""
-        if self.decimals is None and "e" in self.numeral.lower():
-            return shown(value, len(self.numeral.lower().partition("e")[0].replace(".", "").lstrip("-0")))
-        decimals = self.decimals if self.decimals is not None else -int(MP.nint(MP.log10(self.unit)))
+        if self.decimals is None and "e" in self.numeral:
+            return shown(value, len(Decimal(self.numeral).as_tuple().digits))
+        decimals = -self.last_place if self.decimals is None else self.decimals
         return fixed_decimal(to_fraction(value), max(0, decimals))
 
 

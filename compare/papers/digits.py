@@ -49,12 +49,9 @@ def vanishes(value: Value) -> bool:
 
 def shown(value: Value, digits: int = SHOWN_DIGITS) -> str:
     """Return a value as text: a number, or components in brackets; "0" if it is zero to all digits compared."""
-    texts = [_shown(MP.mpmathify(part), digits) for part in parts(value)]
+    numbers = map(MP.mpmathify, parts(value))
+    texts = ["0" if abs(x) < ZERO_BELOW else MP.nstr(x, digits).removesuffix(".0") for x in numbers]
     return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"
-
-
-def _shown(part: Any, digits: int) -> str:
-    return "0" if abs(part) < ZERO_BELOW else str(MP.nstr(part, digits)).removesuffix(".0")
 
 
 def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -114,17 +114,12 @@ def _azimuths() -> list[Panel]:
 
 
 def _simplified() -> list[Panel]:
-    times, full = window(12000, 20)
-    output_times = np.concatenate(([0.0], times))
-
-    def item(name: str) -> Array:
-        return motions()[name].trajectory(load_scene("paris"), output_times)[1:]
-
+    (times, full), paris_scene = window(12000, 20), load_scene("paris")
     curves = (
         ("full", full, PINK, "-", 2.2),
         ("Ω = 0", window(12000, 20, load_scene("paris", ["site.rotation_rate=0"]))[1], GREEN, DASHES[3]),
-        ("item 2", item("mathar_item_2"), BLUE, DASHES[1]),
-        ("item 1", item("mathar_item_1"), RED, DASHES[2]),
+        ("item 2", motions()["mathar_item_2"].trajectory(paris_scene, times), BLUE, DASHES[1]),
+        ("item 1", motions()["mathar_item_1"].trajectory(paris_scene, times), RED, DASHES[2]),
     )
     panels = []
     for i, names in enumerate(({"ylabel": "x in m"}, {"ylabel": "y in m", "xlabel": "t in s"})):
@@ -165,12 +160,7 @@ def estimate_at(latitude: float) -> float:
 
 
 def orders_at(begin: float, span: float, step: float) -> dict[str, Array]:
-    """Return the states of the three fixed-step methods of the paper's program at every step of an interval.
-
-    Raises:
-        InputError: one of them is not installed.
-    """
-    check_methods()
+    """Return the states of the three fixed-step methods of the paper's program at every step of an interval."""
     times = np.arange(round((begin + span) / step) + 1) * step
     problem = Problem.of(load_scene("paris", ["inputs=binary64"]), "plane", times)
     first = round(begin / step)
@@ -215,15 +205,15 @@ class Panel:
 
 def line(name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float = 1.3) -> Line:
     """Return a line without markers."""
-    return Line(name, list(map(float, x)), list(map(float, y)), _style(colour, dashes, width))
+    style = {"color": colour, "linestyle": dashes, "linewidth": width}
+    return Line(name, list(map(float, x)), list(map(float, y)), style)
 
 
 def dots(name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none") -> Line:
     """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
-    style = _style(colour, dashes, 0.7) | {"marker": mark, "markersize": size}
-    if mark == ".":
-        return Line(name, list(map(float, x)), list(map(float, y)), style, FAINT_DOTS)
-    return Line(name, list(map(float, x)), list(map(float, y)), style | {"markerfacecolor": "none"}, 1.0)
+    joined, faint = line(name, x, y, colour, dashes, 0.7), mark == "."
+    style = {"marker": mark, "markersize": size} | ({} if faint else {"markerfacecolor": "none"})
+    return replace(joined, style={**joined.style, **style}, markers=FAINT_DOTS if faint else 1.0)
 
 
 def svg(number: int) -> str:
@@ -238,10 +228,6 @@ def svg(number: int) -> str:
         for axes, panel in zip(rows, panels, strict=True):
             _draw(axes, panel)
         return picture(figure).decode()
-
-
-def _style(colour: str, dashes: Any, width: float) -> dict[str, Any]:
-    return {"color": colour, "linestyle": dashes, "linewidth": width}
 
 
 def _draw(axes: Any, panel: Panel) -> None:

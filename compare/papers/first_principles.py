@@ -129,14 +129,9 @@ def rest(p: Point) -> Vector:
     return p.length * vector(*p.case.rest)
 
 
-def moving(p: Point, s: Any) -> Vector:
-    """Return the bob in local axes, its angles changing at their rates."""
-    return by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s)
-
-
 def moving_velocity(p: Point) -> Vector:
-    """Return the velocity of the same in local axes."""
-    return derivative(lambda s: moving(p, s))
+    """Return the velocity of the bob in local axes, its angles changing at their rates."""
+    return derivative(lambda s: by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s))
 
 
 def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
@@ -179,6 +174,11 @@ def coupled(p: Point, place: Vector, speed: Vector) -> Vector:
 def coupled_at(p: Point) -> Vector:
     """Return the same at the point's own place and speed."""
     return coupled(p, (p.x, p.y), (p.vx, p.vy))
+
+
+def coupled_complex(p: Point) -> Any:
+    """Return Z'' of the same for Z = x + jy, as the second and the third paper print it: -g/l Z - 2jΩ_z Z'."""
+    return -p.gravity / p.length * MP.mpc(p.x, p.y) - 2 * j * rate_up(p) * MP.mpc(p.vx, p.vy)
 
 
 def swing_rate(p: Point) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -50,6 +51,7 @@ class Options:
         order: value of -R, which says the integrator.
         bits: value of -a; the lowest two bits tell which terms are left out, others mean nothing.
         exact: take the lines from the reference instead.
+        printed: the switches that set the problem and the output, as they may be typed again.
     """
 
     scene: Scene
@@ -59,14 +61,7 @@ class Options:
     order: str
     bits: int
     exact: bool
-
-    @property
-    def printed(self) -> str:
-        """The switches that set the problem and the output, as they may be typed again."""
-        scene = self.scene.model_dump()
-        fields = {letter: field.split(".") for field, letter in _LETTERS.items()}
-        values = {letter: scene[section][key] for letter, (section, key) in fields.items()} | {"s": self.skip}
-        return " ".join(f"-{letter} {values[letter]}" for letter in SWITCHES if letter in values)
+    printed: str
 
     @classmethod
     def parse(cls, given: Mapping[str, str], exact: bool = False) -> Options:
@@ -82,13 +77,11 @@ class Options:
         unknown = [switch for switch in given if switch not in DEFAULTS]
         if unknown:
             raise InputError(f"-{unknown[0]}", given[unknown[0]], "one of -" + " -".join(DEFAULTS))
-        if exact:
-            for switch, why in (("R", "uses no Runge-Kutta scheme"), ("a", "knows the full theory only")):
-                if given.get(switch, DEFAULTS[switch]) != DEFAULTS[switch]:
-                    raise InputError(
-                        f"-{switch}", given[switch], "no such switch together with --exact", f"The reference {why}."
-                    )
         values = DEFAULTS | dict(given)
+        for switch, why in (("R", "uses no Runge-Kutta scheme"), ("a", "knows the full theory only")):
+            if exact and values[switch] != DEFAULTS[switch]:
+                expected = "no such switch together with --exact"
+                raise InputError(f"-{switch}", values[switch], expected, f"The reference {why}.")
         skip, bits = _whole("s", values["s"], 1), _whole("a", values["a"], 0)
         if values["R"] not in METHOD_OF:
             raise InputError("-R", values["R"], "4, 5 or 6", "4: Runge-Kutta; 5: RKN-G 5(6); 6: RKN-G 6(7).")
@@ -98,17 +91,15 @@ class Options:
         steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))
         if not 1 <= steps <= MAX_STEPS:
             raise InputError("-t", values["t"], f"1 to {MAX_STEPS} steps up to T = {values['T']} s", "Change -t or -T.")
-        return cls(scene, inputs.grid_step, steps, skip, values["R"], bits, exact)
+        printed = " ".join(f"-{letter} {value}" for letter, value in values.items() if letter not in ("R", "a"))
+        return cls(scene, inputs.grid_step, steps, skip, values["R"], bits, exact, printed)
 
 
 def _whole(switch: str, text: str, low: int) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = low - 1
-    if value < low:
-        raise InputError(f"-{switch}", text, f"a whole number from {low}")
-    return value
+    with suppress(ValueError):
+        if (value := int(text)) >= low:
+            return value
+    raise InputError(f"-{switch}", text, f"a whole number from {low}")
 
 
 def _scene(values: Mapping[str, str]) -> Scene:

@@ -13,10 +13,9 @@ from typing import Annotated, Any, get_type_hints
 
 import numpy as np
 
-from reference import Golden, Scene, Solution, load, load_scene, solve, trajectory
+from reference import Scene, Solution, load, load_scene, solve, trajectory
 from reference.model.constants import Constants, constants
 from reference.numbers.precision import LONG_DOUBLE, Array, to_fraction
-from reference.scenes.inputs import Inputs
 
 from ..approximations.case import Case
 from ..observed.swing_plane import Gauge
@@ -104,8 +103,11 @@ class Point:
 
     @cached_property
     def k(self) -> Constants:
-        """The model's constants at this point, for the functions of `reference.model`."""
-        return constants(_inputs(self), MP)
+        """The model's constants at this point, for `reference.model`; they take nothing else of Paris."""
+        names = ("length", "latitude", "altitude", "gravity", "flattening")
+        numbers: dict[str, Any] = {name: to_fraction(getattr(self, name)) for name in names}
+        numbers |= {"rotation_rate": to_fraction(self.rate), "equatorial_radius": to_fraction(self.radius)}
+        return constants(replace(load_scene("paris").exact, **numbers), MP)
 
     @cached_property
     def uniform(self) -> Constants:
@@ -135,14 +137,6 @@ class Point:
         return replace(self, **changes)
 
 
-def _inputs(p: Point) -> Inputs:
-    """Return the point's numbers, beside the rest of Paris, of which the constants take nothing."""
-    names = ("length", "latitude", "altitude", "gravity", "flattening")
-    numbers: dict[str, Any] = {name: to_fraction(getattr(p, name)) for name in names}
-    numbers |= {"rotation_rate": to_fraction(p.rate), "equatorial_radius": to_fraction(p.radius)}
-    return replace(load_scene("paris").exact, **numbers)
-
-
 @cache
 def points() -> tuple[Point, ...]:
     """Return random points, the same in every run."""
@@ -159,15 +153,9 @@ def paris() -> Point:
 
 
 @cache
-def paris_day() -> Golden:
-    """Return the golden dataset of the Paris pendulum: 24 h, 40 digits, every transit."""
-    return load("paris")
-
-
-@cache
 def transits(column: str) -> list[Any]:
-    """Return a column of its transits."""
-    return [mpf(text) for text in paris_day().transits.decimals(column)]
+    """Return a column of the transits of the Paris pendulum, by its golden dataset: 24 h, 40 digits, every one."""
+    return [mpf(text) for text in load("paris").transits.decimals(column)]
 
 
 @cache
@@ -184,16 +172,15 @@ def path_in(scene: Scene, times: Array) -> Array:
 
 def window(begin: float, span: float, scene: Scene | None = None, step: float = 0.05) -> tuple[Array, Array]:
     """Return the times of an interval and the states of a scene there, shape (times, 6); the default is Paris."""
-    times = np.asarray(begin + np.arange(round(span / step) + 1) * step, dtype=np.float64)
-    output_times: Array = times if begin == 0 else np.concatenate(([0.0], times))
-    states = path_in(scene or load_scene("paris"), output_times)
-    return times, states[len(output_times) - len(times) :]
+    times: Array = begin + np.arange(round(span / step) + 1) * np.float64(step)
+    return times, path_in(scene or load_scene("paris"), np.union1d(0.0, times))[-len(times) :]
 
 
-def rotation(scene: Scene, t_end: float) -> float:
-    """Return the rotation of the swing plane in degrees an hour, by a line fitted to its azimuths every 10 s."""
-    times = np.arange(0.0, t_end + 5.0, 10.0)
-    return float(np.polyfit(times / 3600, np.degrees(swing_plane(scene, path_in(scene, times))), 1)[0])
+def rotation(times: Array, swing_plane: Array) -> tuple[float, float]:
+    """Return a swing plane's degrees an hour, by a line fitted to its azimuths, and the largest distance from it."""
+    hours, turned = times / 3600, np.degrees(swing_plane)
+    slope, start = np.polyfit(hours, turned, 1)
+    return float(slope), float(np.abs(turned - slope * hours - start).max())
 
 
 @cache
@@ -241,9 +228,3 @@ def paris_passage() -> tuple[Array, Array]:
     states = window(passage - 600, 1200, step=0.25)[1]
     near = states[np.hypot(states[:, 0], states[:, 1]) < 0.06]
     return near, np.abs(near[:, 0] * near[:, 4] - near[:, 1] * near[:, 3]) / np.hypot(near[:, 3], near[:, 4])
-
-
-def lead(ahead: Array, behind: Array) -> float:
-    """Return the time in s by which a state x, y, z, vx, vy, vz is ahead of another, along the other's velocity."""
-    gap, speed = ahead[:2] - behind[:2], behind[3:5]
-    return float(gap @ speed / (speed @ speed))

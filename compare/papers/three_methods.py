@@ -27,6 +27,7 @@ from .first_principles import (
     acceleration_of,
     coupled,
     coupled_at,
+    coupled_complex,
     forces,
     linearised,
     motion,
@@ -132,11 +133,6 @@ def _printed_unprimed(p: Point, rate: Any) -> Vector:
     return vector(-k * p.x + 2 * (up + rate) * p.vy, -k * p.y - 2 * (up + rate) * p.vx)
 
 
-def _substituted_pair(p: Point) -> Vector:
-    """Return the two lines before the pair, with all terms on one side."""
-    return _turned(p, vector(p.ax, p.ay) - _printed_unprimed(p, _any_rate(p)))
-
-
 def _two_ways(p: Point) -> Vector:
     pull, rate = p.gravity / p.length, axes_rate(p)
     first = sqrt(pull - 2 * p.rate * rate * sin(p.phi) - rate**2)
@@ -175,11 +171,6 @@ def _simple_in_frame() -> Answer:
 
     gap = max(map(excess, points()))
     return Answer(vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
-
-
-def _equation(p: Point) -> Any:
-    z, v = MP.mpc(p.x, p.y), MP.mpc(p.vx, p.vy)
-    return -2 * j * rate_up(p) * v - p.gravity / p.length * z
 
 
 def _spun(p: Point) -> tuple[Any, Any, Any]:
@@ -230,7 +221,8 @@ def checks() -> list[Check]:
             _second, _derived(2)),
         Identity("1_substituted", ", method 1",
             "(xddot + (…) x - 2(…) ydot) cosω_p t = (yddot + (…) y + 2(…) xdot) sinω_p t, …",
-            _substituted_pair, lambda p: _excess(p, _any_rate(p)),
+            lambda p: _turned(p, vector(p.ax, p.ay) - _printed_unprimed(p, _any_rate(p))),
+            lambda p: _excess(p, _any_rate(p)),
             remark="the scan is garbled here; the brackets are those of the pair that follows"),
         Identity("1_pair", ", method 1", "xddot + (g/L - 2ω sinα ω_p - ω_p²) x - 2(ω sinα + ω_p) ydot = 0, yddot + …",
             lambda p: _printed_unprimed(p, _any_rate(p)), lambda p: unprimed_equation(p, _any_rate(p))),
@@ -268,7 +260,7 @@ def checks() -> list[Check]:
             lambda p: -swing_rate(p) ** 2 * p.position[:2], _moved_acceleration),
         Identity("2_omega", ", method 2", "ω = sqrt(g/L + ω_p²)", swing_rate, measured_rate),
         Identity("3_z", ", method 3", "zddot + 2iω_P zdot + (g/L) z = 0, ω_P = ω sinα",
-            _equation, lambda p: MP.mpc(*linearised(p)),
+            coupled_complex, lambda p: MP.mpc(*linearised(p)),
             remark="ω_P with the other sign than in method 1 and in the conclusion, where it is the axes' -ω sinα"),
         Identity("3_w", ", method 3", "(wddot - 2iω_p wdot - ω_P² w) + 2iω_P (wdot - iω_P w) + (g/L) w = 0",
             _substituted, lambda p: 0),

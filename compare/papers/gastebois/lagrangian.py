@@ -49,14 +49,10 @@ def along(i: int) -> Callable[[Point], Vector]:
     return lambda p: derivative(lambda s: by_angles(p, *(angle_state(p)[0] + s * vector(1 - i, i))))
 
 
-def _by_theta(p: Point) -> Vector:
+def _tangents(p: Point) -> tuple[Vector, Vector]:
+    """Return ∂r/∂θ and ∂r/∂φ over L0 as printed."""
     sp, cp, sl, cl = p.angle_functions
-    return vector(cp * cl, cp * sl, sp)
-
-
-def _by_phi(p: Point) -> Vector:
-    sp, _, sl, cl = p.angle_functions
-    return vector(-sp * sl, sp * cl, 0)
+    return vector(cp * cl, cp * sl, sp), vector(-sp * sl, sp * cl, 0)
 
 
 def _velocity(p: Point) -> Vector:
@@ -77,22 +73,18 @@ def _balance(p: Point, by: Any) -> Vector:
     return forces(_hung(p)) / by - acceleration_of(_hung(p))
 
 
-def _half(p: Point) -> Any:
-    return p.length**2 * p.cord_rate**2 + p.length**2 * sin(p.cord) ** 2 * p.azimuth_rate**2
-
-
 def left_side(p: Point, i: int) -> Any:
     """Return d(∂L/∂q')/dt - ∂L/∂q of the Lagrangian, along a path with the point's accelerations."""
     return p.mass * euler_lagrange(p.but(rate=MP.zero), by_angles, *angle_state(p), i)
 
 
-def _without_prime(p: Point, i: int) -> Any:
-    """Return d(dL/dq)/dt - dL/dq, as the general line is printed."""
+def _without_prime(p: Point) -> Any:
+    """Return d(dL/dq)/dt - dL/dq, as the general line is printed, for q = θ."""
     q, v, a = angle_state(p)
 
     def slope(s: Any) -> Any:
         place, rates = q + s * v + s * s / 2 * a, v + s * a
-        return derivative(lambda u: _lagrangian(p, tuple(x + (u if k == i else 0) for k, x in enumerate(place)), rates))
+        return derivative(lambda u: _lagrangian(p, place + vector(u, 0), rates))
 
     return derivative(slope) - slope(MP.zero)
 
@@ -214,13 +206,14 @@ def checks() -> list[Check]:
         Identity("7_1_v", "7.1", "v_x = v_θ cosθ cosφ - v_φ sinφ, v_y = v_θ cosθ sinφ + v_φ cosφ, v_z = v_θ sinθ",
             _velocity, moving_velocity),
         Identity("7_1_theta", "7.1", "dr/dθ = L0 (cosθ cosφ, cosθ sinφ, sinθ)",
-            lambda p: p.length * _by_theta(p), along(0)),
+            lambda p: p.length * _tangents(p)[0], along(0)),
         Identity("7_1_phi", "7.1", "dr/dφ = L0 (-sinθ sinφ, sinθ cosφ, 0)",
-            lambda p: p.length * _by_phi(p), along(1)),
-        Identity("7_1_l2", "7.1", "L = m L0² θ'²/2 + m L0² sin²θ φ'²/2 + m g_a L0 cosθ", lambda p: kinetic(p, _half(p)),
+            lambda p: p.length * _tangents(p)[1], along(1)),
+        Identity("7_1_l2", "7.1", "L = m L0² θ'²/2 + m L0² sin²θ φ'²/2 + m g_a L0 cosθ",
+            lambda p: kinetic(p, p.length**2 * p.cord_rate**2 + p.length**2 * sin(p.cord) ** 2 * p.azimuth_rate**2),
             lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_2_general", "7.2", "d(dL/dq)/dt - dL/dq = …",
-            lambda p: _without_prime(p, 0), lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,
+            _without_prime, lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,
             remark="for q = θ; the next two lines are printed with q'"),
         Identity("7_2_theta", "7.2", "m L0² θ'' - m L0² sinθ cosθ φ'² + m g_a L0 sinθ = …",
             _theta_side, lambda p: left_side(p, 0)),

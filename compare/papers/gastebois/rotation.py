@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from reference import load_scene
 from reference.model.constants import axis_distance
 
@@ -29,7 +31,7 @@ from ..digits import (
     vector,
 )
 from ..first_principles import AXIS, linearised, moving_velocity, rate_up, rotated, turning, turning_rates
-from ..points import Point, paris, points, rotation, solved
+from ..points import Point, paris, path_in, points, rotation, solved, swing_plane
 
 RATE = mpf("7.292115e-5")  # rad/s, WGS84
 SIDEREAL_DAY = 2 * pi / RATE / 3600  # h
@@ -56,9 +58,8 @@ def swing_period(length: Any, r0: Any, gravity: Any, rate: Any) -> tuple[Any, An
     low, outer = half - spread, half + spread
     w = sqrt(gravity * (outer - low) / 2) / length
     span, m = high - low, (high - low) / (outer - low)
-    pieces = MP.ellippi(span / (length - low), m) / (length - low) + MP.ellippi(-span / (length + low), m) / (
-        length + low
-    )
+    above, below = length - low, length + low
+    pieces = MP.ellippi(span / above, m) / above + MP.ellippi(-span / below, m) / below
     return 4 * MP.ellipk(m) / w, 2 * (momentum / (length * w) * pieces - pi)
 
 
@@ -127,13 +128,14 @@ def _slower_when_wide() -> Answer:
     t, x, y = (mpf(run.transits.exact(name)[1]) for name in ("t", "x", "y"))
     ratio = -2 * pi * t / atan2(y, x) / (SIDEREAL_DAY * 3600)
     closed = wide_swing(MP.one)[1]
-    return Answer(
-        bool(ratio > 1 and abs(ratio - closed) < mpf("1e-20")), f"T_f/T_p = {shown(ratio)} at r0 = 6.5 m, pole"
-    )
+    holds = bool(ratio > 1 and abs(ratio - closed) < mpf("1e-20"))
+    return Answer(holds, f"T_f/T_p = {shown(ratio)} at r0 = 6.5 m, pole")
 
 
 def _turn(latitude: str) -> float:
-    return rotation(load_scene("paris", [f"site.latitude={latitude}"]), 7200.0)
+    """Return the rotation of the swing plane in degrees an hour, by its azimuths every 10 s for two hours."""
+    scene, times = load_scene("paris", [f"site.latitude={latitude}"]), np.arange(0.0, 7205.0, 10.0)
+    return rotation(times, swing_plane(scene, path_in(scene, times)))[0]
 
 
 def _pole() -> Answer:

@@ -6,10 +6,11 @@ from typing import Any
 
 from ...approximations.gastebois import constants_of
 from ..checks import Answer, Approximate, Check, Identity, Statement, component, over, section
-from ..digits import MP, Vector, cos, dot, j, mpf, shown, sin, vector
+from ..digits import MP, Vector, cos, dot, j, shown, sin, vanishes, vector
 from ..first_principles import (
     acceleration_of,
     coupled_at,
+    coupled_complex,
     forces,
     linearised,
     motion,
@@ -91,11 +92,7 @@ def _moved(p: Point) -> Vector:
 def _whole_part() -> Answer:
     p = points()[0]
     x, whole = _moved(p)[0], MP.floor(_complex(p).real)
-    return Answer(abs(whole - x) < mpf("1e-40"), f"x = {shown(x)}, whole part of Z {shown(whole)}")
-
-
-def _real_part() -> bool:
-    return all(abs(_complex(p).real - _moved(p)[0]) < mpf("1e-40") for p in points())
+    return Answer(vanishes(whole - x), f"x = {shown(x)}, whole part of Z {shown(whole)}")
 
 
 def fitted_constants(p: Point) -> Vector:
@@ -132,10 +129,10 @@ def checks() -> list[Check]:
         Identity("5_small", "5", "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",
             coupled_at, linearised, remark="truth: reference.model.force with gravity alone, linear"),
         Statement("6_1_part", "6.1", "x is the 'partie entière' (whole part) of Z",
-            _whole_part, "partie réelle: x is the real part", _real_part),
+            _whole_part, "partie réelle: x is the real part",
+            lambda: all(vanishes(_complex(p).real - _moved(p)[0]) for p in points())),
         Identity("6_1_z", "6.1", "Z'' = -ω0² Z - 2 j Z' Ω sinλ_a",
-            lambda p: -p.gravity / p.length * MP.mpc(p.x, p.y) - 2 * j * MP.mpc(p.vx, p.vy) * rate_up(p),
-            lambda p: MP.mpc(*linearised(p))),
+            coupled_complex, lambda p: MP.mpc(*linearised(p))),
         Identity("6_1_alpha", "6.1", "-α² = -ω0² + 2αΩ sinλ_a for Z = c exp(jαt)",
             lambda p: tuple(-(a**2) for a in _roots(p)),
             lambda p: tuple(-p.gravity / p.length + 2 * a * rate_up(p) for a in _roots(p)),

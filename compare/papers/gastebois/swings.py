@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
+from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, component, over, section
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate, turned_in_plane
 from ..points import Point, points
@@ -24,9 +24,9 @@ from .small import fitted_constants
 APPARENT_LATITUDE = mpf("48.97")  # λ_a, as he rounds it
 
 
-def simple(p: Point, t: Any) -> Vector:
-    """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
-    return p.x * vector(*gastebois.in_turning_axes(0, swing_rate(p), rate_up(p), t, MP))
+def simple(p: Point, t: Any, minor: Any = 0) -> Vector:
+    """Return x, y, v_x, v_y by 6.2, or by 6.3 with `minor` = Ω_z/ω; r0 is the point's x."""
+    return p.x * vector(*gastebois.in_turning_axes(minor, swing_rate(p), rate_up(p), t, MP))
 
 
 def _start_simple(p: Point) -> Vector:
@@ -60,12 +60,6 @@ def _half_square(p: Point) -> Any:
     return rate_up(p) ** 2 / (2 * p.gravity / p.length)
 
 
-def at_rest(p: Point, t: Any) -> Vector:
-    """Return x, y of a release at rest by 6.3."""
-    w, up = swing_rate(p), rate_up(p)
-    return p.x * vector(*gastebois.in_turning_axes(up / w, w, up, t, MP)[:2])
-
-
 def _sense(p: Point) -> Any:
     """Return twice the area that the ellipse sweeps per time: positive counter-clockwise from above."""
     (x, y), (vx, vy) = _ellipse(p, p.t), derivative(lambda t: _ellipse(p, t), p.t)
@@ -82,16 +76,8 @@ def _ellipse(p: Point, t: Any) -> Vector:
     return turned_in_plane(motion_at_rest(p, t), rate_up(p) * t)
 
 
-def _one_swing(s: Any) -> tuple[Any, Any]:
-    p = pantheon(s)
-    t = 2 * pi / swing_rate(p)
-    turn = 2 * pi * rate_up(p) / swing_rate(p)
-    return p.x * (1 - turn**2 / 2), motion_at_rest(p, t)[0]
-
-
-def _aside(s: Any) -> tuple[Any, Any]:
-    p = pantheon(s)
-    return -2 * pi * p.x * rate_up(p) / swing_rate(p), motion_at_rest(p, 2 * pi / swing_rate(p))[1]
+def _after_a_swing(p: Point) -> Vector:
+    return motion_at_rest(p, 2 * pi / swing_rate(p))
 
 
 def checks() -> list[Check]:
@@ -120,7 +106,7 @@ def checks() -> list[Check]:
             lambda p: tuple((swing_rate(p) + sign * rate_up(p)) * p.x / (2 * swing_rate(p)) for sign in (-1, 1)),
             lambda p: fitted_constants(p.but(y=MP.zero, vx=MP.zero, vy=MP.zero))[::2]),
         Identity("6_3_xy", "6.3", "x = r0 cosΩ_z t cosωt + r0 Ω_z/ω sinΩ_z t sinωt, y = …",
-            lambda p: at_rest(p, p.t), lambda p: motion_at_rest(p, p.t)),
+            lambda p: simple(p, p.t, rate_up(p) / swing_rate(p))[:2], lambda p: motion_at_rest(p, p.t)),
         Identity("6_3_axes", "6.3", "X = r0 cosωt, Y = r0 Ω_z/ω sinωt",
             lambda p: (p.x * cos(swing_rate(p) * p.t), p.x * rate_up(p) / swing_rate(p) * sin(swing_rate(p) * p.t)),
             lambda p: _ellipse(p, p.t)),
@@ -133,8 +119,11 @@ def checks() -> list[Check]:
         PrintedNumber("6_3_350", "6.3, remark", "at 5° the precession takes about 350 times as long as the rotation",
             "350", lambda: precession_ratio(radians(5)), about=lambda: mpf(350),
             remark="by the elliptic integrals, at the pole; 8/(3θ²) = " + shown(8 / (3 * radians(5) ** 2), 8)),
-        Approximate("6_3_x", "6.3", "at t = T: x = r0 (1 - (2πΩ_z/ω)²/2)", _one_swing, 4, "Ω"),
-        Approximate("6_3_y", "6.3", "at t = T: y = -2π r0 Ω_z/ω", _aside, 2, "Ω"),
+        Approximate("6_3_x", "6.3", "at t = T: x = r0 (1 - (2πΩ_z/ω)²/2)",
+            over(pantheon, lambda p: p.x * (1 - (2 * pi * rate_up(p) / swing_rate(p)) ** 2 / 2),
+                component(_after_a_swing, 0)), 4, "Ω"),
+        Approximate("6_3_y", "6.3", "at t = T: y = -2π r0 Ω_z/ω",
+            over(pantheon, lambda p: -2 * pi * p.x * rate_up(p) / swing_rate(p), component(_after_a_swing, 1)), 2, "Ω"),
         Identity("6_3_rate", "6.3", "ω_f = φ/T = Ω_z with φ = -2πΩ_z/ω",
             rate_up, lambda p: -2 * pi * rate_up(p) / swing_rate(p) / (2 * pi / swing_rate(p)),
             "a sign is dropped within the line: φ/T = -Ω_z", lambda p: -rate_up(p),

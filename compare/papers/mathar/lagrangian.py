@@ -101,15 +101,10 @@ def _no_time_in_the_lagrangian() -> Answer:
     return Answer(vanishes(early - late), f"L(t = 0) - L(t) = {shown(early - late)}")
 
 
-def _spherical(p: Point) -> Vector:
-    """Return the equations of the spherical pendulum, from the Lagrangian without rotation."""
-    q, v, a = angle_state(p)
-    first, second = (euler_lagrange(p.but(rate=MP.zero), by_angles, q, v, a, i) / p.length**2 for i in (0, 1))
+def _angle_equations(p: Point) -> Vector:
+    """Return what (24) and (26) say is zero, from the Lagrangian."""
+    first, second = (euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2 for i in (0, 1))
     return vector(first, second / sin(p.cord))
-
-
-def _angle_equation(i: int) -> Any:
-    return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2
 
 
 def _azimuth_is_fast() -> Answer:
@@ -172,10 +167,7 @@ def _plane_equation(i: int, power: int = 4) -> Callable[[Point], Any]:
 
 def _coefficient(i: int, power: int) -> Callable[[Point], Any]:
     """Return z⁴ times the terms of Euler-Lagrange without accelerations, at one power of Ω."""
-    still = vector(0, 0)
-    return lambda p: (
-        p.z**4 * in_rate(lambda rate: euler_lagrange(p.but(rate=rate), by_plane, *plane_state(p)[:2], still, i), power)
-    )
+    return lambda p: in_rate(lambda rate: _plane_equation(i)(p.but(rate=rate, ax=MP.zero, ay=MP.zero)), power)
 
 
 def _printed_32(p: Point) -> Any:
@@ -203,13 +195,14 @@ def checks() -> list[Check]:
         Identity("21", "(21)", "V = m g z = -m g l cosφ", lambda p: -p.mass * p.gravity * p.length * cos(p.cord),
             lambda p: p.mass * p.gravity * by_angles(p, p.cord, p.azimuth)[2]),
         Identity("21_text", ", after (21)", "Ω → 0: the two equations are those of the spherical pendulum",
-            lambda p: (cord_equation(p.but(rate=MP.zero)), azimuth_equation(p.but(rate=MP.zero))), _spherical),
+            lambda p: (cord_equation(p.but(rate=MP.zero)), azimuth_equation(p.but(rate=MP.zero))),
+            lambda p: _angle_equations(p.but(rate=MP.zero))),
         Identity("22", "(22)", "∂L/∂λ = (m/2) ([…] Ω + […] Ω²)", _slope_in_azimuth,
             lambda p: derivative(lambda s: lagrangian(p, by_angles, (p.cord, p.azimuth + s), angle_state(p)[1]))),
         Identity("24", "(23), (24)", "φ'' + R̂Ω² (sinϕ cosφ sinλ - cosϕ sinφ) + … + (g/l) sinφ = 0",
-            cord_equation, _angle_equation(0)),
+            cord_equation, component(_angle_equations, 0)),
         Identity("26", "(25), (26)", "sinφ λ'' + 2 cosφ φ' λ' + R̂Ω² sinϕ cosλ + … = 0",
-            azimuth_equation, lambda p: _angle_equation(1)(p) / sin(p.cord)),
+            azimuth_equation, component(_angle_equations, 1)),
         Identity("27", "(27)", "R̂ = (N+h) cosϕ / l",
             lambda p: (p.N + p.altitude) * cos(p.phi) / p.length, lambda p: p.k.axis_distance,
             remark="truth: reference.model.constants"),

@@ -12,16 +12,16 @@ from ...approximations import motions
 from ...approximations.frequency import anharmonic, harmonic, planar, turntable
 from ...approximations.mathar import slow_down
 from ..checks import Answer, Check, PrintedNumber, Statement, section
-from ..digits import MP, Vector, acos, asin, cos, degrees, dot, mpf, norm, pi, shown, sin, sqrt, vector
+from ..digits import MP, Vector, acos, asin, cos, degrees, dot, mpf, norm, pi, shown, sin, vector
 from ..first_principles import rest
 from ..points import (
     frequency,
-    lead,
     paris,
     paris_passage,
     paris_path,
     paris_swing_plane,
     path_in,
+    rotation,
     solved,
     transits,
     window,
@@ -86,45 +86,30 @@ def _clouds_move() -> Answer:
     return Answer(rising, change)
 
 
-def mean_rotation() -> tuple[float, float]:
-    """Return the swing plane's degrees an hour, by a line fitted to the day, and the largest distance from the line."""
-    hours, turned = paris_path()[0] / 3600, np.degrees(paris_swing_plane())
-    slope, start = np.polyfit(hours, turned, 1)
-    return float(slope), float(np.abs(turned - slope * hours - start).max())
-
-
 def _linear() -> Answer:
-    slope, off = mean_rotation()
+    slope, off = rotation(paris_path()[0], paris_swing_plane())
     return Answer(off < 0.01, f"{slope:.15f}° an hour, within {off:.2e}° of a straight line for 24 h")
 
 
 def _north_east_to_east() -> Answer:
     _, y, _ = rest(paris())
     start = degrees(MP.atan2(mpf("0.4") - y, mpf("0.3")))
-    slope, _ = mean_rotation()
+    slope, _ = rotation(paris_path()[0], paris_swing_plane())
     hours = -start / slope
     return Answer(bool(0 < start < 90 and slope < 0), f"from {shown(start)}° to 0° (east-west) in {shown(hours, 6)} h")
 
 
 def _coupling_is_ahead() -> Answer:
     scene, at = load_scene("paris"), np.array([0.0, 12000.0])
-    ahead = lead(motions()["mathar_item_2"].trajectory(scene, at)[-1], path_in(scene, at)[-1])
+    item_2, true = (motion(scene, at)[-1] for motion in (motions()["mathar_item_2"].trajectory, path_in))
+    gap, speed = (item_2 - true)[:2], true[3:5]
+    ahead = float(gap @ speed / (speed @ speed))  # along the way
     return Answer(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
-
-
-def planar_amplitude() -> Any:
-    """Return φ(0) of a swing of sqrt(0.3² + 0.4²) m, in rad."""
-    return asin(sqrt(mpf("0.3") ** 2 + mpf("0.4") ** 2) / paris().length)
 
 
 def planar_period() -> Any:
     """Return 4 sqrt(l/g) K(sin(φ0/2)) in s."""
     return 1 / planar(paris().case)
-
-
-def amplitude() -> Any:
-    """Return the angle between the release and the rest position, seen from the suspension, in rad."""
-    return acos(dot(paris().position, rest(paris())) / paris().length ** 2)
 
 
 def first_period_frequency() -> Any:
@@ -160,9 +145,8 @@ def _slowed(by: Any) -> Answer:
     """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
     hertz = anharmonic(paris().case) / by
     factor = by * slow_down(paris().case)
-    return Answer(
-        abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
-    )
+    holds = abs(hertz - mpf("0.060843634")) < mpf("5e-10")
+    return Answer(holds, f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz")
 
 
 def checks() -> list[Check]:
@@ -199,7 +183,8 @@ def checks() -> list[Check]:
         PrintedNumber("fig7_half", ", Fig. 7", "after 12 thousand seconds detuned by approximately half a cycle",
             "0.5", lambda: 12000 * (1 / planar_period() - day_frequency()), about=lambda: MP.one),
         PrintedNumber("vii_harmonic", ", item 1", "sqrt(g/l)/2π = 0.0608895 Hz", "0.0608895", lambda: harmonic(p.case)),
-        PrintedNumber("vii_phi0", ", item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
+        PrintedNumber("vii_phi0", ", item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276",
+            lambda: asin(norm(p.position[:2]) / p.length)),
         PrintedNumber("vii_period", ", item 2", "4 sqrt(l/g) K(sin(φ0/2)) ≈ 16.423225 s", "16.423225", planar_period),
         Statement("vii_formula", ", item 2", "period = 4 sqrt(l/g) K(sin(φ0/2))", _planar_run),
         PrintedNumber("vii_planar", ", item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()),
@@ -214,7 +199,8 @@ def checks() -> list[Check]:
         PrintedNumber("vii_rest_y", ", item 5", "equilibrium y = -0.115202 m",
             "-0.115202", lambda: rest(p)[1], remark="the rest position of (46) with the paper's own inputs"),
         PrintedNumber("vii_rest_z", ", item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]),
-        PrintedNumber("vii_amplitude", ", item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
+        PrintedNumber("vii_amplitude", ", item 5", "φ(0) = 0.008898355 rad", "0.008898355",
+            lambda: acos(dot(p.position, rest(p)) / p.length**2)),
         PrintedNumber("vii_estimate", ", item 5", "0.060843634 Hz", "0.060843634", lambda: anharmonic(p.case)),
         PrintedNumber("vii_frequency", ", item 6", "the actual Foucault pendulum: 0.060843633 Hz",
             "0.060843633", first_period_frequency,

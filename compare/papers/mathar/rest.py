@@ -64,20 +64,15 @@ def _restoring(p: Point, sign: int) -> Any:
     return -sign * horizontal_acceleration(local)[1] / (p.length * cos(p.cord))
 
 
-@cache
-def steepest() -> tuple[Any, Any]:
-    """Return latitude and angle, in degrees, where a bob of l = 1 m hangs furthest from straight down."""
+def _below_a_tenth() -> Answer:
+    """Find the latitude where a bob of l = 1 m hangs furthest from straight down."""
 
     def angle(latitude: Any) -> Any:
-        return paris().but(length=MP.one, latitude=latitude).case.rest_angle
+        return degrees(paris().but(length=MP.one, latitude=latitude).case.rest_angle)
 
-    best = MP.findroot(lambda latitude: derivative(angle, latitude), 45, tol=1e-40)
-    return best, degrees(angle(best))
-
-
-def _below_a_tenth() -> Answer:
-    latitude, angle = steepest()
-    return Answer(angle < MP.mpf("0.1"), f"largest {shown(angle)}° at latitude {shown(latitude, 8)}°")
+    steepest = MP.findroot(lambda latitude: derivative(angle, latitude), 45, tol=1e-40)
+    holds = angle(steepest) < MP.mpf("0.1")
+    return Answer(holds, f"largest {shown(angle(steepest))}° at latitude {shown(steepest, 8)}°")
 
 
 def _one_curve() -> Answer:
@@ -126,10 +121,6 @@ def _slower(s: Any) -> Point:
 def _two_terms(p: Point) -> Any:
     out, s, c, g = p.case.outward, sin(p.phi), cos(p.phi), p.gravity
     return s / g * out + c * s / g**2 * out**2
-
-
-def _one_term(p: Point) -> Any:
-    return sin(2 * p.phi) / p.gravity * (p.N + p.altitude) * p.rate**2 / 2
 
 
 def _vector_sum(p: Point) -> Vector:
@@ -181,7 +172,8 @@ def _section_v() -> list[Check]:
         Approximate("50_two", ", after (50)", "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
             over(_slower, _two_terms, lambda p: sin(triangle(p.case))), 3, "RΩ²", "rad"),
         Approximate("50_one", ", after (50)", "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
-            over(_slower, _one_term, lambda p: sin(triangle(p.case))), 2, "RΩ²", "rad"),
+            over(_slower, lambda p: sin(2 * p.phi) / p.gravity * (p.N + p.altitude) * p.rate**2 / 2,
+                lambda p: sin(triangle(p.case))), 2, "RΩ²", "rad"),
     )  # fmt: skip
 
 
@@ -204,20 +196,9 @@ def without(item: int) -> Callable[[Point], Vector]:
     return accelerations
 
 
-def _cosine(s: Any) -> tuple[Vector, Vector]:
-    """Return print and truth of the Coriolis part alone, which is linear in Ω."""
-    p = _swinging(s)
-
-    def linear(function: Callable[[Point], Vector], i: int) -> Any:
-        return in_rate(lambda rate: function(p.but(rate=rate))[i], 1)
-
-    printed, true = (tuple(linear(function, i) for i in (0, 1)) for function in (without(4), solved))
-    return printed, true
-
-
-def _pulled(p: Point) -> Vector:
-    """Return x'', y'' from which item 5 starts: the diagonal of (43), with g alone."""
-    return -p.gravity * abs(p.z) / p.length**2 * p.position[:2]
+def _coriolis(accelerations: Callable[[Point], Vector]) -> Callable[[Point], Vector]:
+    """Return the Coriolis part alone, which is linear in Ω."""
+    return lambda p: in_rate(lambda rate: accelerations(p.but(rate=rate)), 1)
 
 
 def _section_vi() -> list[Check]:
@@ -240,9 +221,11 @@ def _section_vi() -> list[Check]:
         Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
             over(_swinging, without(3), solved), 2, "amplitude", remark=place),
         Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
-            _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
+            over(_swinging, _coriolis(without(4)), _coriolis(solved)), 1, "amplitude",
+            remark=f"of the Coriolis acceleration; {place}"),
         Approximate("vi_5", "item 5", "z replaced by l",
-            over(_swinging, lambda p: -p.gravity / p.length * p.position[:2], _pulled), 2, "amplitude", remark=place),
+            over(_swinging, lambda p: -p.gravity / p.length * p.position[:2],  # from the diagonal of (43), with g alone
+                lambda p: -p.gravity * abs(p.z) / p.length**2 * p.position[:2]), 2, "amplitude", remark=place),
         Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
             lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
             lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
