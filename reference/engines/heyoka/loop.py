@@ -135,8 +135,8 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
             found.append(_solve(outcomes, row, release, k, state, wanted, tolerance))
         x, p, u, vx, vp, vu = outcomes.state.T
         sin, cos = axes.sin.high, axes.cos.high
-        state = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))  # in the Earth's axes
-        outcomes.state[:] = np.transpose(state) * rows.length[:, :1]
+        at_end = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))  # in the Earth's axes
+        outcomes.state[:] = np.transpose(at_end) * rows.length[:, :1]
     if not wanted.times:
         return outcomes
     return outcomes.with_transits([zeros.times for zeros in found], [zeros.directions for zeros in found])
