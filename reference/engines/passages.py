@@ -26,7 +26,7 @@ from ..numbers.columns import SECTION
 from ..numbers.precision import GUARD_BITS, Array, to_fraction
 from ..numbers.table import Table
 from ..numbers.taylor_step import LOCAL, TaylorStep
-from .plan import Plan, Report
+from .plan import Plan
 
 BATCH = 64  # steps that are looked at together
 SPARE_BITS = 64  # of forms, places and states beyond the run's own
@@ -115,11 +115,10 @@ class Places:
             form, low, high, before, after = pieces.pop()
             changes = np.count_nonzero(np.diff(signs_of(form, before, after)))
             bends = np.sign(np.trunc(np.diff(form, 2) / 4))
-            if changes <= 1:
-                yield from [(low, high, before)] * changes
-            elif len(bends) and abs(bends.sum()) == len(bends) and (before != after or before != bends[0]):
+            convex = len(bends) and abs(bends.sum()) == len(bends)
+            if changes <= 1 or (convex and (before != after or before != bends[0])):
                 yield from [(low, high, before)] * (before != after)
-            elif len(bends) and abs(bends.sum()) == len(bends):
+            elif convex:
                 if flat := self._dip(low, high, before):
                     yield from ((low, flat, before), (flat, high, -before))
             else:
@@ -193,9 +192,7 @@ def _shifted(value: int, bits: int) -> int:
     return value << bits if bits >= 0 else value >> -bits
 
 
-def passages(
-    plan: Plan, steps: Iterator[TaylorStep], report: Report | None = None
-) -> dict[str, tuple[Table, list[int]]]:
+def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, tuple[Table, list[int]]]:
     """Return `columns.SECTION` at each passage of a plan's sections, and its direction, from the plan's Taylor steps.
 
     Errors of the tables are those of velocities alone, by the end of a step's polynomial, as its last terms tell.
@@ -219,8 +216,6 @@ def passages(
         series = (np.array(rows, object) / (1 << step.bits)).astype(float)
         for search in searches:
             search.take(batch, rows, series)
-        if report is not None:
-            report(float(batch[-1].centre))
     bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)
     tables = {}
     for search in searches:

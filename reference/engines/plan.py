@@ -1,6 +1,6 @@
 """An integrator: its input, `Plan`, its output, `Run`, tables of states and transits, and its interface, `Engine`.
 
-Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`.
+Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py` has what that does.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import ClassVar
+from importlib import import_module
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -115,7 +116,11 @@ class Engine(OptionalEngine, ABC):
         """
         return replace(self.plan(published.inputs, prec, published.times, published.transits), other_steps=True)
 
-    @abstractmethod
+    @property
+    def _code(self) -> Any:
+        """The module `run` of its folder, which imports what it requires."""
+        return import_module(f".{self.name}.run", __package__)
+
     def run(self, plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
         """Integrate a plan.
 
@@ -128,6 +133,8 @@ class Engine(OptionalEngine, ABC):
             InputError: more bits than the engine has.
             IntegrationError: the integrator stopped, or its transits are in doubt. No numbers then.
         """
+        done: Run = self._code.run(plan, report, pace)
+        return done
 
     def taylor_steps(
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
@@ -147,9 +154,10 @@ class Engine(OptionalEngine, ABC):
         plan = replace(plan, number=real(plan.number.prec)) if plan.number.hardware else plan
         return self.expanded(plan, coefficient_bits)
 
-    @abstractmethod
     def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
         """Yield the Taylor steps of a planned run in the same way; transits are not looked for."""
+        steps: Generator[TaylorStep, None, Run] = self._code.taylor_steps(plan, coefficient_bits)
+        return steps
 
     @abstractmethod
     def expected_s(self, steps: int, prec: int) -> float:

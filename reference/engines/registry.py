@@ -59,11 +59,7 @@ def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS) -> Engine:
     "auto", it is the one with the least expected cost among the installed engines that can.
     """
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
-
-    def cost(engine: Engine) -> tuple[bool, float]:
-        return engine.name != name and name != AUTO, engine.start_s + engine.expected_s(steps, prec)
-
-    return min(serving, key=cost)
+    return min(serving, key=lambda one: (name not in (one.name, AUTO), one.start_s + one.expected_s(steps, prec)))
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:

@@ -24,9 +24,7 @@ TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of th
 RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
 FINER = 16  # parts of the time between two samples, where a form may dip to zero there
 QUIET = 1e-4  # of a swing's period after the release: there heyoka may report the zero at the release
-MOST_LATE = (
-    1e-3  # of a radian of the swing: as a zero of the height's rate was found; more, and its series tells little
-)
+MOST_LATE = 1e-3  # of a radian of the swing, as a zero of the height's rate was found: else its series tells little
 
 
 @dataclass(frozen=True)

@@ -257,8 +257,17 @@ def _text(value: Any) -> str:
 
 def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a CSV file: of each its name, which may be a value, and the values below it."""
-    names, *lines = _lines(option, path)
-    return [(full_name(name), tuple(line[i].strip() for line in lines)) for i, name in enumerate(names)]
+    with _readable(option, path), regular(path, option, MOST_BYTES, "a CSV file") as stream:
+        text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
+        lines = list(islice(filter(None, csv.reader(text)), MOST_VALUES + 2))
+    if not 0 < len(lines) <= MOST_VALUES + 1:
+        raise InputError(option, str(path), f"a CSV file of 1 to {MOST_VALUES:,} rows")
+    names, *below = lines
+    for number, line in enumerate(lines, 1):
+        if len(line) != len(names):
+            expected = f"{len(names)} values as in the first"
+            raise InputError(option, f"{path}, row {number}", expected, f"It has {len(line)}.")
+    return [(full_name(name), tuple(line[i].strip() for line in below)) for i, name in enumerate(names)]
 
 
 def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
@@ -274,20 +283,6 @@ def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
     if len(columns) > 1:
         raise InputError("--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(dict(columns))}.")
     return (columns[0][0], *columns[0][1])
-
-
-def _lines(option: str, path: Path) -> list[list[str]]:
-    """Return the lines of a CSV file, all of one length."""
-    with _readable(option, path), regular(path, option, MOST_BYTES, "a CSV file") as stream:
-        text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
-        lines = list(islice(filter(None, csv.reader(text)), MOST_VALUES + 2))
-    if not 0 < len(lines) <= MOST_VALUES + 1:
-        raise InputError(option, str(path), f"a CSV file of 1 to {MOST_VALUES:,} rows")
-    for number, line in enumerate(lines, 1):
-        if len(line) != len(lines[0]):
-            expected = f"{len(lines[0])} values as in the first"
-            raise InputError(option, f"{path}, row {number}", expected, f"It has {len(line)}.")
-    return lines
 
 
 @contextmanager

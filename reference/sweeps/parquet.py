@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -38,11 +39,8 @@ class Column:
 
     def empty(self, count: int) -> Any:
         """Return the column of some rows with nothing known: NaN, 0, or None."""
-        if self.kind == WORDS:
-            return np.full(count, None, dtype=object)
-        if self.kind == "float64":
-            return np.full(count, np.nan)
-        return np.zeros(count, self.kind)
+        nothing = {WORDS: (None, object), "float64": (np.nan, float)}.get(self.kind, (0, self.kind))
+        return np.full(count, *nothing)
 
 
 STATE_COLUMNS = tuple([f"{name}_m" for name in POSITION] + [f"{name}_m_s" for name in VELOCITY])
@@ -103,27 +101,16 @@ TRANSIT_COLUMNS = (
 )
 
 
-def pyarrow_version() -> str:
-    """Return the version of pyarrow, which decides the bytes of a file."""
-    import pyarrow as pa
-
-    return str(pa.__version__)
-
-
 def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> bytes:
     """Return columns as a Parquet file, sealed as `part`: zstd, numbers with their bytes split, words by dictionary."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    fields, arrays = [], []
+    fields = []
     for column in columns:
         kind = pa.dictionary(pa.int32(), pa.string()) if column.kind == WORDS else getattr(pa, column.kind)()
         fields.append(pa.field(column.name, kind, metadata={"meaning": column.meaning}))
-        if column.kind == WORDS:
-            arrays.append(pa.array(values[column.name], pa.string()).dictionary_encode().cast(kind))
-        else:
-            arrays.append(pa.array(values[column.name], kind))
-    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={_PART: part}))
+    table = pa.table(values, schema=pa.schema(fields, metadata={_PART: part}))
     words = [field.name for field in fields if pa.types.is_dictionary(field.type)]
     split = [field.name for field in fields if field.type == pa.float64()]
     stream = io.BytesIO()
@@ -180,10 +167,9 @@ def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, A
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    read = partial(pq.read_table, columns=names, page_checksum_verification=True)
     try:
-        table = pa.concat_tables(
-            [pq.read_table(path, columns=names, page_checksum_verification=True) for path in paths]
-        )
+        table = pa.concat_tables(map(read, paths))
     except pa.ArrowException as error:
         raise OSError(0, str(error).splitlines()[0]) from None
     columns = {}

@@ -45,6 +45,7 @@ from .row_constants import ANGLES, POSITION
 SCHEMA = 2
 PART_S = 10.0  # CPU seconds of a part, by the cost model
 LEAST_PART, MOST_PART = 8, 65_536  # rows
+SETTINGS = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")  # as they are
 ALL = "all"
 PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
 ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
@@ -130,9 +131,7 @@ class Request:
             InputError: the combination of its values is wrong.
         """
         texts = self.table.texts(row)
-        end = texts.get("run.t_end")
-        more = [f"run.grid_step={end}"] if end else []
-        return self.scene.with_values([*(f"{key}={text}" for key, text in texts.items()), *more])
+        return self.scene.with_values(texts | {"run.grid_step": texts.get("run.t_end", self.scene.run.t_end)})
 
     def document(self) -> dict[str, Any]:
         """Return the request as JSON, all that decides the digits."""
@@ -142,14 +141,7 @@ class Request:
             "over": self.table.typed,
             "values": self.table.stored,
             "rows": self.table.count,
-            "rows_per_part": self.rows_per_part,
-            "want": list(self.want),
-            "level": self.level,
-            "digits": self.digits,
-            "tolerance": self.tolerance,
-            "engine": self.engine,
-            "identity": self.identity,
-            "audit": self.audit,
+            **{name: getattr(self, name) for name in SETTINGS},
         }
 
     @classmethod
@@ -157,8 +149,7 @@ class Request:
         """Return the request that `document` wrote."""
         scene = parse_scene(document["scene"])
         table = Table.of(document["over"], document["values"], scene.inputs)
-        names = ("level", "digits", "tolerance", "engine", "identity", "rows_per_part", "audit")
-        return cls(scene, table, tuple(document["want"]), **{name: document[name] for name in names})
+        return cls(scene, table, **{name: document[name] for name in SETTINGS})
 
     @cached_property
     def text(self) -> str:
@@ -233,14 +224,11 @@ def _check_release(scene: Scene, keys: Iterable[str]) -> None:
 
 
 def _wanted(words: Sequence[str]) -> tuple[str, ...]:
-    chosen: set[str] = set()
+    known = (*WANTS, TIMES, ALL)
     for word in words:
-        if word not in (*WANTS, TIMES, ALL):
-            raise unknown(
-                "--want", word, "a quantity of a sweep", (*WANTS, TIMES, ALL), f"There are {', '.join(WANTS)}."
-            )
-        chosen |= set(WANTS) if word == ALL else {word}
-    return tuple(word for word in (*WANTS, TIMES) if word in chosen)
+        if word not in known:
+            raise unknown("--want", word, "a quantity of a sweep", known, f"There are {', '.join(WANTS)}.")
+    return tuple(word for word in (*WANTS, TIMES) if word in words or (ALL in words and word in WANTS))
 
 
 def _row_s(engine: Batch, scene: Scene) -> float:
@@ -278,11 +266,8 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
     engines = batches()
     if name == AUTO:
         can = [engine for engine in engines.values() if engine.installed and (engine.drag or not scene.exact.drag)]
-
-        def expected_s(engine: Batch) -> float:
-            return engine.load_s + engine.compiling_s(bool(scene.run.sections)) + count * _row_s(engine, scene)
-
-        return min(can, key=expected_s)
+        sections = bool(scene.run.sections)
+        return min(can, key=lambda one: one.load_s + one.compiling_s(sections) + count * _row_s(one, scene))
     if name not in engines:
         raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
     engines[name].check_installed()

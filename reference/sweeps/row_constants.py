@@ -53,9 +53,7 @@ def engine_rows(scene: Scene, table: Table, numbers: Any, section: str = "") -> 
     """
     numbers = np.asarray(numbers, np.int64)
     words = table.words(numbers)
-    if not words:
-        return _of_kind(scene, table, numbers, section)
-    kinds = list(zip(*words.values(), strict=True))
+    kinds = list(zip(*words.values(), strict=True)) or [()] * len(numbers)
     order, blocks = [], []
     for kind in sorted(set(kinds)):
         places = np.flatnonzero([other == kind for other in kinds])
@@ -68,19 +66,13 @@ def engine_rows(scene: Scene, table: Table, numbers: Any, section: str = "") -> 
 def _of_kind(scene: Scene, table: Table, numbers: Any, section: str) -> Rows:
     """Return rows whose words are those of the scene."""
     columns = columns_of(scene.exact)
-    for key, values in table.numbers(numbers, scene.inputs).items():
-        if key == "site.inverse_flattening":
-            columns["flattening"] = _inverse(values)
-        else:
-            columns[key.rpartition(".")[2]] = values
     with np.errstate(all="ignore"):
+        for key, values in table.numbers(numbers, scene.inputs).items():
+            if key == "site.inverse_flattening":
+                columns["flattening"] = _ZERO.where(np.isinf(values.high), (_ZERO + 1) / values)
+            else:
+                columns[key.rpartition(".")[2]] = values
         return row_constants(columns, scene.site.gravity_is, len(numbers), section)
-
-
-def _inverse(numbers: DoubleDouble) -> DoubleDouble:
-    """Return 1/numbers, of infinity zero."""
-    with np.errstate(invalid="ignore"):
-        return _ZERO.where(np.isinf(numbers.high), (_ZERO + 1) / numbers)
 
 
 def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: str = "") -> Rows:
@@ -122,10 +114,10 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
         n=_stacked(n, count),
         V=_stacked(add(v, cross(k.turn, n)), count),
         form=_stacked(form, count),
-        zeros_at_release=_spread(multiplicity, count),
-        leaves=_spread(leaves, count),
-        rising=_spread(np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64), count),
-        still=_spread(still & (section == ""), count),
+        zeros_at_release=np.full(count, multiplicity),
+        leaves=np.full(count, leaves),
+        rising=np.full(count, np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64)),
+        still=np.full(count, still & (section == "")),
     )
 
 
@@ -199,7 +191,3 @@ def _balanced(n: Vector, k: Constants) -> Any:
 def _stacked(parts: Sequence[DoubleDouble], count: int) -> Array:
     """Return numbers as an array of shape (count, parts, 2)."""
     return np.stack([np.broadcast_to(part.pairs, (count, 2)) for part in parts], axis=1)
-
-
-def _spread(values: Any, count: int) -> Any:
-    return np.ascontiguousarray(np.broadcast_to(values, (count,)))

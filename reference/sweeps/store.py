@@ -11,6 +11,7 @@ import json
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from ..errors import InputError, plain_json
 from ..system.documents import json_document, regular
 from ..system.imports import needed
 from ..system.workspace import clear, replace_file
-from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, parquet, pyarrow_version
+from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, parquet
 from .part import Part
 from .request import Request
 
@@ -34,7 +35,7 @@ class Store:
     Attributes:
         folder: where it is.
         request: the sweep.
-        pyarrow: the version that it was begun with.
+        pyarrow: the version that it was begun with, which decides the bytes of a file.
     """
 
     folder: Path
@@ -56,7 +57,7 @@ class Store:
             needed(*PARQUET)
             if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
                 raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
-            store = cls(folder, request, pyarrow_version())
+            store = cls(folder, request, version("pyarrow"))
         for kind in store._kinds:
             (folder / kind).mkdir(parents=True, exist_ok=True)
             clear(folder / kind)  # a part that is there is not written again, which would clear it
@@ -100,7 +101,7 @@ class Store:
             raise InputError("--out", str(self.folder), expected, "Take another folder.")
         versions = {
             request.identity: self.request.identity,
-            f"pyarrow {pyarrow_version()}": f"pyarrow {self.pyarrow}",
+            f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}",
         }
         for got, expected in versions.items():
             if got != expected:
@@ -137,14 +138,9 @@ class Store:
         Raises:
             OSError: it cannot be written.
         """
-        if solved.transits:
-            self._write(part, TRANSITS, solved.transits)
-        self._write(part, ROWS, solved.columns)
-
-    def _write(self, part: int, kind: str, values: dict[str, Any]) -> None:
-        columns = self.request.columns if kind == ROWS else TRANSIT_COLUMNS
-        data = parquet(columns, values, self._named(part, kind))
-        replace_file(self.path(part, kind), lambda stream: stream.write(data))
+        tables = {ROWS: (self.request.columns, solved.columns), TRANSITS: (TRANSIT_COLUMNS, solved.transits)}
+        for kind in self._kinds:
+            _write(self.path(part, kind), parquet(*tables[kind], self._named(part, kind)))
 
     def read(
         self, names: list[str] | None = None, kind: str = ROWS, parts: Iterable[int] | None = None
@@ -169,5 +165,8 @@ def _foreign(path: Path) -> bool:
 
 def write_json(path: Path, document: dict[str, Any]) -> None:
     """Write a document of a sweep, whole or not at all."""
-    data = (plain_json(document) + "\n").encode()
+    _write(path, (plain_json(document) + "\n").encode())
+
+
+def _write(path: Path, data: bytes) -> None:
     replace_file(path, lambda stream: stream.write(data))

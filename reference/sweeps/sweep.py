@@ -196,9 +196,8 @@ def sweep(
     options = {"want": wanted, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
     given = {"run.t_end": t_end, "run.sections": sections}
     scene = as_scene(scene).with_values({key: value for key, value in given.items() if value is not None})
-    return run(
-        asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options), folder, workers, cluster, report
-    )
+    asked = asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options)
+    return run(asked, folder, workers, cluster, report)
 
 
 def asked_for(

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
 from fractions import Fraction
 
 from ...numbers.precision import LONG_DOUBLE_BITS, cheapest_type
-from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
-from ..plan import Engine, Pace, Plan, Report, Run
+from ..plan import Engine, Plan
 
 STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits
 HARDWARE_STEP_S = 4e-5  # in double and long double
@@ -28,18 +26,6 @@ class Heyoka(Engine):
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
         """Return the run of `momentum` in the cheapest type with `prec` bits."""
         return Plan(inputs, self.formulation, cheapest_type(prec), times, transits, self.name)
-
-    def run(self, plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
-        """Integrate a plan; see `Engine.run`."""
-        from .run import run
-
-        return run(plan, report, pace)
-
-    def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
-        """Yield the Taylor steps of a run, n east, north, up; return the run."""
-        from .run import taylor_steps
-
-        return taylor_steps(plan, coefficient_bits)
 
     def expected_s(self, steps: int, prec: int) -> float:
         """Return the expected CPU seconds of `steps` steps at `prec` bits."""

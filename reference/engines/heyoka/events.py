@@ -80,16 +80,13 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
         weight = stepper.numbers.power_of_two(-halvings)
         if head > 2 * sum((b * weight ** (j + 1) for j, b in enumerate(tail)), start=0 * head):
             return step / Fraction(2) ** halvings
-    raise IntegrationError(
-        "xdot does not leave zero at t = 0 in the working precision.",
-        AT_REST,
-    )
+    raise IntegrationError("xdot does not leave zero at t = 0 in the working precision.", AT_REST)
 
 
 def march(
     stepper: Stepper,
     times: Sequence[Any],
-    quiet: Fraction | None = None,
+    multiplicity: int = 0,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Any, list[Zero]]:
     """Step to the last of `times`; return the states, shape (times, variables), and the zeros of xdot.
@@ -97,7 +94,7 @@ def march(
     Args:
         stepper: at t = 0, with events.
         times: increasing, from 0, numbers of the run's type.
-        quiet: length in s of a first step that holds no zero but the one at t = 0.
+        multiplicity: of the zero of xdot at t = 0: a first step is so short that it holds no other.
         report: called with the simulated time after each step.
 
     Raises:
@@ -106,14 +103,9 @@ def march(
     end = times[-1]
     states: list[Any] = [stepper.state]
     zeros: list[Zero] = []
-
-    def collect() -> None:
-        while len(states) < len(times) and times[len(states)] <= stepper.time:
-            states.append(stepper.sample(times[len(states)]))
-
-    if quiet is not None:
-        stepper.advance(min(stepper.numbers.of(quiet), end))
-        collect()
+    if multiplicity:
+        stepper.advance(min(stepper.numbers.of(quiet_start(stepper, multiplicity)), end))
+        stepper.sample(times, states)
     steps: list[_Step] = []  # the last one that was checked, and those after it
     retries, limit = 0, end - stepper.time
     while stepper.time < end:
@@ -123,7 +115,7 @@ def march(
         directions = [zero.direction for zero in found]
         steps.append(_Step(mark, *counts, stepper.time, *stepper.last_of_x(), directions))
         zeros += found
-        collect()
+        stepper.sample(times, states)
         if len(steps) > AT_ONCE or retries or stepper.time >= end:
             if (wrong := _first_contradiction(steps, stepper.numbers)) is not None:
                 i, contradiction = wrong

@@ -79,9 +79,8 @@ class Integrator:
         return RowZeros.of(self._events.get(kind, []))
 
     def at(self, times: Array) -> Any:
-        """Return the states at increasing times, shape (variables, times)."""
-        grid = times if times[0] == 0 else np.concatenate([[0.0], times])
-        return self._ta.propagate_grid(grid)[-1][len(grid) - len(times) :].T
+        """Return the states at increasing times from 0 on, shape (variables, times)."""
+        return self._ta.propagate_grid(times)[-1].T
 
 
 def _recorder(noted: list[float]) -> Callable[[Any, float, int], None]:
@@ -104,10 +103,8 @@ def _lent(*kind: Any) -> Iterator[Integrator]:
         integrator = free.pop()
     except IndexError:
         integrator = Integrator(*kind)
-    try:
-        yield integrator
-    finally:
-        free.append(integrator)
+    yield integrator
+    free.append(integrator)
 
 
 def _sought(wanted: Wanted) -> tuple[int, ...]:
@@ -136,7 +133,10 @@ def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
             state = [*n, *np.cross(n, V)]
             release = RowRelease.of(rows, axes, row, RowMotion.of(state, k), forms[row])
             found.append(_solve(outcomes, row, release, k, state, wanted, tolerance))
-        _turn_back(outcomes, rows, axes)
+        x, p, u, vx, vp, vu = outcomes.state.T
+        sin, cos = axes.sin.high, axes.cos.high
+        at_end = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))  # in the Earth's axes
+        outcomes.state[:] = np.transpose(at_end) * rows.length[:, :1]
     if not wanted.times:
         return outcomes
     return outcomes.with_transits([zeros.times for zeros in found], [zeros.directions for zeros in found])
@@ -181,11 +181,3 @@ def _seen(
         second.begin(k, state, form)
         motion = RowMotion.of(second.at(times), k)
     return Samples(samples, motion[at_samples]), motion[at_transits], motion[at_heights]
-
-
-def _turn_back(outcomes: Outcomes, rows: Rows, axes: PlumbAxes) -> None:
-    """Turn the states into the Earth's axes and SI units."""
-    x, p, u, vx, vp, vu = outcomes.state.T
-    sin, cos = axes.sin.high, axes.cos.high
-    state = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))
-    outcomes.state[:] = np.transpose(state) * rows.length[:, :1]

@@ -28,7 +28,8 @@ from .system import as_pairs, keep_on_disk, rates
 hy.install_custom_numpy_mem_handler()
 hy.set_logger_level_critical()  # its log is the process's stdout; what it would tell of lost roots is found otherwise
 
-_HARDWARE = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}  # type, and that of arrays
+# type, and that of arrays
+_HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
 
 
 def compiled(variables: Sequence[str], parameters: int, change: Callable[..., Sequence[Any]]) -> Any:
@@ -48,8 +49,6 @@ class Numbers:
 
     def __init__(self, number: NumberType) -> None:
         self.number = number
-        self.type: Any
-        self.dtype: Any
         self.type, self.dtype = _HARDWARE.get(number, (hy.real, hy.real))
         self.keywords: dict[str, Any] = {} if number.hardware else {"prec": number.prec}
 
@@ -101,12 +100,9 @@ class Numbers:
         outcome, _, _, steps, _, states = integrator.propagate_grid(grid, **options)
         if outcome == hy.taylor_outcome.err_nf_state or not np.isfinite(states.astype(float)).all():
             raise IntegrationError("the state became infinite or not a number.")
-        if outcome == hy.taylor_outcome.step_limit:
-            raise IntegrationError(
-                f"{steps} steps end at t = {float(integrator.time)} s, and no more are taken: {outcome}."
-            )
         if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
-            raise IntegrationError(f"heyoka stopped at t = {float(integrator.time)} s with outcome {outcome}.")
+            reached = f"{float(integrator.time)} s, after {steps} steps"
+            raise IntegrationError(f"heyoka stopped at t = {reached}, with outcome {outcome}.")
         return states, int(steps)
 
 
@@ -190,14 +186,11 @@ class RoundedModel:
         equations = rates(self.formulation, self.k)
         return Propagator(self.formulation.variables, equations, self.numbers.number, tolerance=tolerance)
 
-    def columns(self, states: Any) -> list[Any]:
-        """Return x, y, z in m and vx, vy, vz in m/s, each of shape (rows,), from states of shape (rows, variables)."""
-        n, v = self._cartesian(states)
-        return [np.broadcast_to(part * self.k.length, len(states)) for part in (*n, *v)]
-
     def doubles(self, states: Any) -> Array:
-        """Return the same as the nearest doubles, shape (rows, 6)."""
-        return np.array([column.astype(np.float64) for column in self.columns(states)]).T.copy()
+        """Return x, y, z in m and vx, vy, vz in m/s, nearest doubles, from states of shape (rows, variables)."""
+        n, v = self._cartesian(states)
+        columns = [np.broadcast_to(part * self.k.length, len(states)) for part in (*n, *v)]
+        return np.array([column.astype(np.float64) for column in columns]).T.copy()
 
     def table(self, states: Any, bits: int) -> Table:
         """Return `columns.RUN` over 2**bits, exactly as computed, from states of shape (rows, variables)."""

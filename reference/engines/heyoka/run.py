@@ -23,7 +23,7 @@ from ...numbers.precision import GUARD_BITS, to_mpf
 from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep
 from ..plan import MOST_TURN, Pace, Plan, Report, Run
-from .events import march, quiet_start
+from .events import march
 from .model import Numbers
 from .stepper import Stepper, Zero
 
@@ -37,7 +37,6 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
 
     Their rows are n east, north and up, which the formulation has to begin with.
     """
-    plan = replace(plan, transits=False)
     times, start = plan.times, Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, span=times[-1])
     grid = [stepper.numbers.of(t) for t in times]
@@ -50,8 +49,7 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         beyond = stepper.time > grid[-1]
         t, h, series = stepper.expand(limit, coefficient_bits)
         yield TaylorStep(t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series[:3]), LOCAL)
-        while len(states) < len(grid) and grid[len(states)] <= stepper.time:
-            states.append(stepper.sample(grid[len(states)]))
+        stepper.sample(grid, states)
         limit = stepper.numbers.of(min(_next_step(h, series, coefficient_bits), longest))
     return result(plan, stepper, np.array(states, dtype=stepper.numbers.dtype), None, started)
 
@@ -95,11 +93,9 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     stepper = Stepper(formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest)
     times = [stepper.numbers.of(t) for t in plan.times]
     zeros: list[Zero] = []
-    multiplicity = zero_at_release(start)
-    quiet = quiet_start(stepper, multiplicity) if watching and multiplicity else None
     started = time.process_time()
     if watching:
-        states, zeros = march(stepper, times, quiet, report)
+        states, zeros = march(stepper, times, zero_at_release(start), report)
     else:
         states = stepper.propagate(times, report, pace)
     return result(plan, stepper, states, zeros if watching else None, started)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import heyoka as hy
 import numpy as np
@@ -25,8 +24,7 @@ SHORT_RUN = 2000  # span times rate of a run beyond long double that is too shor
 TIME_BITS = 64  # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
 
 
-@dataclass(frozen=True)
-class Zero:
+class Zero(NamedTuple):
     """A zero of xdot found by heyoka: time, sign of the crossing, state; in numbers of the run's type."""
 
     t: Any
@@ -106,10 +104,11 @@ class Stepper:
             raise IntegrationError(f"the state is not finite at t = {float(self.time)} s.")
         self.steps += 1
 
-    def sample(self, t: Any) -> Any:
-        """Return the state at a time within the last step (a copy), by dense output."""
-        self._ta.update_d_output(t)
-        return self._ta.d_output.copy()
+    def sample(self, times: Sequence[Any], states: list[Any]) -> None:
+        """Append the states at those of the times that the last step has passed, by dense output; one a time."""
+        while len(states) < len(times) and times[len(states)] <= self.time:
+            self._ta.update_d_output(times[len(states)])
+            states.append(self._ta.d_output.copy())
 
     def mark(self) -> tuple[Any, Any]:
         """Return the time and state reached, for `back`."""
@@ -150,9 +149,7 @@ class Stepper:
 
     def _row_powers(self, h: Fraction, bits: int) -> Any:
         """Return h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
-        step, powers = self.numbers.of(h), [self.numbers.power_of_two(bits)]
-        for _ in range(self.order + 1):
-            powers.append(powers[-1] * step)
+        powers = np.cumprod([self.numbers.power_of_two(bits), *[self.numbers.of(h)] * (self.order + 1)])
         half = len(self._ta.state) // 2
         return np.array([powers[:-1]] * half + [powers[1:]] * half)
 

@@ -108,29 +108,21 @@ def lines_and_left_out(scene: Scene, formulation: str, number: str) -> tuple[lis
         formulation: that the run integrates.
         number: its number type, in words.
     """
-    inputs, system, left_out = scene.exact, FORMULATIONS[formulation], []
+    inputs, system, run = scene.exact, FORMULATIONS[formulation], scene.run
     start = Start.of(inputs, EQUATIONS_PREC)
-    if inputs.rotation_rate == 0:
-        left_out.append("Coriolis and centrifugal terms: rotation_rate is 0.")
-    elif abs(inputs.latitude) == 90:
-        left_out.append("the distance R from the axis and the terms with Omega_y: the latitude is a pole.")
-    elif inputs.latitude == 0:
-        left_out.append("the terms with Omega_z and c_y: the latitude is 0.")
-    if inputs.gravity_is == "effective":
-        left_out.append("the centrifugal force at the pivot: gravity is effective and contains it.")
-    if inputs.drag == 0:
-        left_out.append("drag: it is 0.")
-    left_out += [f"the rate of {name}: it is constant." for name in constant_variables(system, start.k)]
-    if inputs.gravity == 0:
-        left_out.append("gravity: it is 0.")
-    if not scene.run.transits:
-        left_out.append("event detection: transits are off.")
-    elif xdot_vanishes(start):
-        left_out.append("event detection: xdot is identically zero.")
-    if number == str(DOUBLE):
-        left_out.append(f"extended precision: double serves {scene.run.digits} digits.")
-    elif number == str(LONG_DOUBLE):
-        left_out.append(f"precision beyond long double: it serves {scene.run.digits} digits.")
-    if scene.run.level != "enclosed":
-        left_out.append("the enclosure: the level does not ask for it.")
-    return equations_text(system, start.k), left_out
+    turns, at_pole, effective = inputs.rotation_rate != 0, abs(inputs.latitude) == 90, inputs.gravity_is == "effective"
+    sentences = (
+        (not turns, "Coriolis and centrifugal terms: rotation_rate is 0."),
+        (turns and at_pole, "the distance R from the axis and the terms with Omega_y: the latitude is a pole."),
+        (turns and inputs.latitude == 0, "the terms with Omega_z and c_y: the latitude is 0."),
+        (effective, "the centrifugal force at the pivot: gravity is effective and contains it."),
+        (inputs.drag == 0, "drag: it is 0."),
+        *((True, f"the rate of {name}: it is constant.") for name in constant_variables(system, start.k)),
+        (inputs.gravity == 0, "gravity: it is 0."),
+        (not run.transits, "event detection: transits are off."),
+        (run.transits and xdot_vanishes(start), "event detection: xdot is identically zero."),
+        (number == str(DOUBLE), f"extended precision: double serves {run.digits} digits."),
+        (number == str(LONG_DOUBLE), f"precision beyond long double: it serves {run.digits} digits."),
+        (run.level != "enclosed", "the enclosure: the level does not ask for it."),
+    )
+    return equations_text(system, start.k), [sentence for left_out, sentence in sentences if left_out]

@@ -13,11 +13,8 @@ from .limb import (
     add_product,
     carry,
     carry_scalar,
-    clear,
     divide,
     double_of,
-    double_of_lane,
-    sign_of,
 )
 from .series import TENSION, VM, VX, LinearTerms, M, Series, X, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products
@@ -44,7 +41,7 @@ def divide_place(place: Array, whole: int, m: int, limb_count: int) -> None:
 def evaluate(to: Array, s: Series, place: Array, order: int, limb_count: int) -> None:
     """Write all lanes at a place 0 <= s <= 1 of the step, by Horner's rule with as many limbs as each order has."""
     work = s.total
-    clear(to, limb_count + 1)
+    to[:] = 0.0
     low = limb_count
     for k in range(order, -1, -1):
         lowest = max(min(low, s.first[k]) - 1, 0)
@@ -73,7 +70,7 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
     limb_count, total, rate, other = model.limb_count, s.total, s.partners, s.other
     for r in range(limb_count):
         store(other, LANES * r, partner(load(rows, LANES * r)))
-    clear(total, limb_count + 1)
+    total[:] = 0.0
     add_product(total, terms.turn, other, 0, limb_count)
     for r in range(limb_count + 1):
         store(rate, LANES * r, _turning(load(total, LANES * r)))
@@ -88,13 +85,11 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
         total[LANES * r + 6] = s.scalar[r] * GRAINS
     store(total, LANES * limb_count, spread(0.0))
     divide(total, 0, limb_count, m)
-    carry(total, 0, limb_count)
-    clear(other, limb_count + 1)
+    other[:] = 0.0
     for r in range(limb_count):
         other[LANES * r + 6] = total[LANES * r + 6] * GRAINS
         total[LANES * r + 6] = 0.0
     divide(other, 0, limb_count, m)
-    carry(other, 0, limb_count)
     for r in range(limb_count):
         v = positions(load(rows, LANES * r)) + load(total, LANES * r) + load(other, LANES * r)
         store(rate, LANES * r, v)
@@ -112,7 +107,7 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
     limb_count, total, rate, other = model.limb_count, s.total, s.partners, s.other
     for r in range(limb_count):
         store(other, LANES * r, partner(load(rate, LANES * r)))
-    clear(total, limb_count + 1)
+    total[:] = 0.0
     add_product(total, terms.turn, other, 0, limb_count)
     for r in range(limb_count + 1):
         s.scalar[r] += total[LANES * r]
@@ -124,7 +119,7 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
     if model.drag:
         for r in range(limb_count):
             store(other, LANES * r, to_speeds(load(rate, LANES * r)))
-        clear(total, limb_count + 1)
+        total[:] = 0.0
         add_product(total, terms.drag, other, 0, limb_count)
         for r in range(limb_count + 1):
             s.scalar[r] += total[LANES * r + 3]
@@ -132,8 +127,8 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
 
 
 @compiled
-def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int) -> None:
-    """Write xdot = Vx + ω m of a state or of all lanes at some place of the step to `scalar`, as carried limbs.
+def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int) -> float:
+    """Return xdot = Vx + ω m of a state or of all lanes at some place of the step, with the sign that its limbs have.
 
     `weight` is DOUBLED for the model's `turn` and 1 for a step's, which comes doubled; with this xdot is times h.
     """
@@ -145,40 +140,24 @@ def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int)
         for q in range(limb_count - p):
             s.scalar[p + q + 1] += factor * rows[LANES * q + M]
     carry_scalar(s.scalar, limb_count)
-
-
-@compiled
-def sign_of_xdot(now: Array, turn: Array, s: Series, limb_count: int) -> int:
-    """Return the sign of xdot for a state; `turn` as in the model's linear terms, not doubled."""
-    xdot_of(now, s, turn, DOUBLED, limb_count)
-    return sign_of(s.scalar, limb_count)
-
-
-@compiled
-def sign_at_start(s: Series, multiplicity: int, limb_count: int) -> int:
-    """Return the sign of xdot at a step's start, or just after it where it has a zero of this multiplicity there."""
-    block = (multiplicity + 1) * limb_count * LANES
-    for q in range(limb_count):
-        s.scalar[q] = s.c[block + LANES * q + X]
-    return sign_of(s.scalar, limb_count)
+    return double_of(s.scalar, limb_count)
 
 
 @compiled
 def xdot_at(place: Array, s: Series, terms: LinearTerms, rows: Array, model: Model) -> float:
-    """Return xdot times h at a place of the step, as a double with the sign of its limbs; write all lanes to `rows`."""
+    """Return xdot times h at a place of the step, with the sign that its limbs have; write all lanes to `rows`."""
     evaluate(rows, s, place, model.order, model.limb_count)
-    xdot_of(rows, s, terms.turn, 1.0, model.limb_count)
-    return double_of(s.scalar, model.limb_count)
+    return xdot_of(rows, s, terms.turn, 1.0, model.limb_count)
 
 
 @compiled
 def xddot_of(rows: Array, xdot: float, terms: LinearTerms, model: Model) -> float:
     """Return xddot times h² from all lanes and xdot times h, as a double."""
     limb_count = model.limb_count
-    turn = double_of_lane(terms.turn, 0, 0, limb_count) / DOUBLED
-    x, vm = double_of_lane(rows, 0, X, limb_count), double_of_lane(rows, 0, VM, limb_count)
-    tension = double_of_lane(rows, 0, TENSION, limb_count)
+    turn = double_of(terms.turn, limb_count, 0, LANES) / DOUBLED
+    x, vm = double_of(rows, limb_count, X, LANES), double_of(rows, limb_count, VM, LANES)
+    tension = double_of(rows, limb_count, TENSION, LANES)
     value = turn * (2.0 * vm - turn * x) - tension * x
     if model.drag:
-        value += double_of_lane(terms.drag, 0, VX, limb_count) / DOUBLED * xdot
+        value += double_of(terms.drag, limb_count, VX, LANES) / DOUBLED * xdot
     return value

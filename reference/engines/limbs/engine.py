@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
 from fractions import Fraction
 
 from ...numbers.precision import NumberType
-from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
-from ..plan import Engine, Pace, Plan, Report, Run
+from ..plan import Engine, Plan
 from .size import LEAST_PREC, MOST_PREC
 
 STEP_S = 1.2e-5  # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
@@ -33,21 +31,8 @@ class Limbs(Engine):
         """Return a run of at most `prec` bits, with fewer limbs than the published run, and in other steps."""
         from .problem import highest_prec_of_fewer_limbs
 
-        return super().witness(
-            published, min(prec, highest_prec_of_fewer_limbs(published.inputs, published.number.prec))
-        )
-
-    def run(self, plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
-        """Integrate a plan; see `Engine.run`. It is in `inertial` whatever formulation the plan names."""
-        from .run import run
-
-        return run(plan, report, pace)
-
-    def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
-        """Yield the Taylor steps of a run, in the axes of a proof; return the run."""
-        from .run import taylor_steps
-
-        return taylor_steps(plan, coefficient_bits)
+        highest = highest_prec_of_fewer_limbs(published.inputs, published.number.prec)
+        return super().witness(published, min(prec, highest))
 
     def expected_s(self, steps: int, prec: int) -> float:
         """Return about how many CPU seconds a run takes that would be `steps` steps in double."""

@@ -213,20 +213,6 @@ def exp2_of(builder: Any, a: Any) -> Any:
     return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
 
 
-@instruction
-def within(_: Any, a: Any, bound: Any) -> Any:
-    """Return true if |a| <= bound in every lane; false if any lane is not a number."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        largest = _spread(builder, arguments[1])
-        low = builder.fcmp_ordered(">=", arguments[0], builder.fneg(largest))
-        high = builder.fcmp_ordered("<=", arguments[0], largest)
-        whole = builder.bitcast(builder.and_(low, high), ir.IntType(LANES))
-        return builder.icmp_unsigned("==", whole, ir.Constant(ir.IntType(LANES), (1 << LANES) - 1))
-
-    return types.boolean(Lanes, types.float64), generate
-
-
 def shuffled(order: tuple[int, ...], name: str) -> Any:
     """Return a compiled function that takes lane order[i] to lane i; lane i becomes 0 where order[i] is negative."""
     places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order])

@@ -61,13 +61,6 @@ def joined(limbs: Array) -> Any:
     return whole(np.moveaxis(limbs, -1, 0).astype(np.int64))
 
 
-@compiled
-def clear(rows: Array, count: int) -> None:
-    """Set `count` rows to zero."""
-    for r in range(count):
-        store(rows, LANES * r, spread(0.0))
-
-
 @inlined
 def carry(rows: Array, first: int, last: int) -> None:
     """Bring the rows below `first` into the range of limbs, from the last upwards; exact."""
@@ -82,7 +75,7 @@ def carry(rows: Array, first: int, last: int) -> None:
 
 @inlined
 def divide(rows: Array, first: int, last: int, divisor: float) -> None:
-    """Divide by an integer below 2**20, from row `first` downwards; the remainder at `last` is dropped."""
+    """Divide by an integer below 2**20, from row `first` downwards, and carry; the remainder at `last` is dropped."""
     radix, by, inverse = spread(RADIX), spread(divisor), spread(1.0 / divisor)
     remainder = spread(0.0)
     for r in range(first, last + 1):
@@ -90,6 +83,7 @@ def divide(rows: Array, first: int, last: int, divisor: float) -> None:
         quotient = nearest(limb * inverse)
         remainder = limb - quotient * by
         store(rows, LANES * r, quotient)
+    carry(rows, max(first - 1, 0), last)
 
 
 @compiled
@@ -130,29 +124,11 @@ def add_double(to: Array, value: float, limb_count: int) -> None:
 
 
 @compiled
-def sign_of(limbs: Array, limb_count: int) -> int:
-    """Return the sign of carried limbs: 1, 0 or -1."""
-    for q in range(limb_count):
-        if limbs[q] != 0.0:
-            return 1 if limbs[q] > 0.0 else -1
-    return 0
-
-
-@compiled
-def double_of(limbs: Array, limb_count: int) -> float:
-    """Return the approximate double value of carried limbs."""
+def double_of(limbs: Array, limb_count: int, first: int = 0, stride: int = 1) -> float:
+    """Return the approximate double value, which has the exact sign, of carried limbs: those `first` + `stride` q."""
     value = 0.0
     for q in range(limb_count - 1, -1, -1):
-        value = (value + limbs[q]) * INVERSE
-    return DOUBLED * value
-
-
-@compiled
-def double_of_lane(rows: Array, start: int, lane: int, limb_count: int) -> float:
-    """Return the approximate double value of one lane of rows from `start` on."""
-    value = 0.0
-    for q in range(limb_count - 1, -1, -1):
-        value = (value + rows[start + LANES * q + lane]) * INVERSE
+        value = (value + limbs[first + stride * q]) * INVERSE
     return DOUBLED * value
 
 

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...system.machine_code import kept
-from .dense_output import divide_place, evaluate, sign_at_start, sign_of_xdot, to_cartesian
+from .dense_output import divide_place, evaluate, to_cartesian, xdot_of
 from .lanes import LANES, OPTIONS, load, merged, store
-from .limb import Array, aligned
+from .limb import DOUBLED, Array, aligned, double_of
 from .recurrence import taylor_coefficients
-from .series import Counts, LinearTerms, Series, empty_series
+from .series import Counts, LinearTerms, Series, X, empty_series
 from .step import (
     LEAST_FACTOR,
     SAFETY_FACTOR,
@@ -41,8 +41,8 @@ class MarchState(NamedTuple):
             output times passed; zeros written; the step length that `terms` is for; the next step's length.
         s: the step's series.
         terms: its linear terms.
-        rows, place: working arrays: all lanes at some place in the step, and that place.
-        search: working arrays for the step's zeros.
+        rows: a working array: all lanes at some place in the step.
+        search: working arrays for that place, and for the step's zeros.
     """
 
     now: Array
@@ -50,7 +50,6 @@ class MarchState(NamedTuple):
     s: Series
     terms: LinearTerms
     rows: Array
-    place: Array
     search: Search
 
 
@@ -87,21 +86,21 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: Model) 
     now = aligned(len(start))
     now[:] = start
     series, search = empty_series(order, limb_count), empty_search(order, limb_count)
-    return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search)
+    return MarchState(now, counts, series, terms, rows, search)
 
 
 @merged
 def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
     """Write the states at the output times that the step passes."""
     counts, limb_count = state.counts, model.limb_count
-    start, m = counts[TIME], counts[LENGTH]
+    start, m, place = counts[TIME], counts[LENGTH], state.search.place
     while counts[ROWS] < len(out.whole) and out.whole[counts[ROWS]] < start + m:
         i = counts[ROWS]
-        state.place[:] = 0.0
+        place[:] = 0.0
         for q in range(limb_count):
-            state.place[q] = out.remainders[i * limb_count + q]
-        divide_place(state.place, out.whole[i] - start, m, limb_count)
-        evaluate(state.rows, state.s, state.place, model.order, limb_count)
+            place[q] = out.remainders[i * limb_count + q]
+        divide_place(place, out.whole[i] - start, m, limb_count)
+        evaluate(state.rows, state.s, place, model.order, limb_count)
         to_cartesian(out.states, i * limb_count * LANES, state.rows, state.s, state.terms, model, m)
         counts[ROWS] += 1
 
@@ -110,7 +109,7 @@ def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
 def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
     """Write the zeros of xdot on the step; return false if they stay in doubt."""
     counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
-    after = sign_of_xdot(state.now, model.terms.turn, state.s, limb_count)
+    after = int(np.sign(xdot_of(state.now, state.s, model.terms.turn, DOUBLED, limb_count)))
     count = bracket_zeros(z, state.s, state.terms, state.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
     if count == GRAZING:
         return False
@@ -139,7 +138,8 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
         m = counts[LENGTH]
         sum_series(state.rows, s, order, limb_count)
         if seek and counts[STEPS] == 0:
-            counts[SIGN] = sign_at_start(s, counts[MULTIPLICITY], limb_count)
+            leading = (counts[MULTIPLICITY] + 1) * limb_count * LANES + X  # the first coefficient of xdot that is not 0
+            counts[SIGN] = int(np.sign(double_of(s.c, limb_count, leading, LANES)))
         project(state.now, state.rows, s, m, limb_count)
         if seek and not _write_zeros(state, model, out):
             return DOUBTFUL

@@ -33,12 +33,12 @@ def classify(f: Array, size: int, middle: float, half: float, noise: float) -> t
 
 
 @compiled
-def value_at(g: Array, size: int, u: float) -> float:
-    """Return the polynomial's value."""
-    value = 0.0
+def value_and_slope(g: Array, size: int, u: float) -> tuple[float, float]:
+    """Return the polynomial's value and its derivative."""
+    value = slope = 0.0
     for k in range(size - 1, -1, -1):
-        value = value * u + g[k]
-    return value
+        slope, value = slope * u + value, value * u + g[k]
+    return value, slope
 
 
 @compiled
@@ -46,9 +46,7 @@ def crossing(g: Array, size: int, low: float, high: float, before: int) -> float
     """Return where the polynomial changes sign between `low` and `high`: Newton's method, safeguarded by bisection."""
     u = 0.5 * (low + high)
     for _ in range(HALVINGS):
-        value = slope = 0.0
-        for k in range(size - 1, -1, -1):
-            slope, value = slope * u + value, value * u + g[k]
+        value, slope = value_and_slope(g, size, u)
         if (value > 0.0) == (before > 0):
             low = u
         else:

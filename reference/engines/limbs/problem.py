@@ -71,9 +71,8 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     vectors = k.turn, k.pull, start.n, add(start.v, cross(k.turn, start.n))
     turn, pull, n, inertial = (_earth_axes(vector, sin, cos) for vector in vectors)
-    longest = (
-        min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / (h * ctx.sqrt(ctx.norm(pull)))))) if any(pull) else MOST_GRAINS
-    )
+    swing = h * ctx.sqrt(ctx.norm(pull))  # the rate of a small one
+    longest = min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / swing))) if swing else MOST_GRAINS
     if other_steps:
         order, first, longest = (max(1, int(size * OTHER_STEPS)) for size in (order, first, longest))
     model = Model(

@@ -15,8 +15,21 @@ lack its products with order 0, which the recurrence adds itself, as it needs th
 
 from __future__ import annotations
 
-from .lanes import LANES, compiled, inlined, load, merged, occupied, plus_product, shuffled, spread, store, within
-from .limb import DOUBLED, LARGEST, Array, carry, carry_scalar, divide
+from .lanes import (
+    LANES,
+    at_least,
+    compiled,
+    inlined,
+    load,
+    magnitude,
+    merged,
+    occupied,
+    plus_product,
+    shuffled,
+    spread,
+    store,
+)
+from .limb import DOUBLED, LARGEST, Array, carry_scalar, divide
 from .series import (
     PLANES,
     SPIN,
@@ -144,12 +157,10 @@ def taylor_coefficients(s: Series, terms: LinearTerms, order: int, limb_count: i
         while low < limb_count and not occupied(load(s.total, LANES * low)):
             low += 1
         divide(s.total, low, limb_count, k + 1.0)
-        low = max(low - 1, 0)
-        carry(s.total, low, limb_count)
         block = (k + 1) * limb_count * LANES
         for q in range(limb_count):
             store(s.c, block + LANES * q, load(s.total, LANES * q))
-        if not _note_first_limb(s.c, s.first, k + 1, low, limb_count):
+        if not _note_first_limb(s.c, s.first, k + 1, max(low - 1, 0), limb_count):
             return False
         add_products(s, k, order, limb_count, drag)
         if 2 * k < order:
@@ -166,7 +177,8 @@ def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int
     while first < limb_count and not occupied(load(c, block + LANES * first)):
         first += 1
     firsts[k] = first
-    return first > 0 or within(load(c, block), LARGEST)
+    small = at_least(spread(LARGEST), magnitude(load(c, block)))  # 0 also where a lane is not a number
+    return first > 0 or not occupied(small - spread(1.0))
 
 
 @merged

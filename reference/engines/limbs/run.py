@@ -6,7 +6,6 @@ Output times are counted in grains, a power of two in s: an integer, and limbs f
 from __future__ import annotations
 
 import time
-from bisect import bisect_right
 from collections.abc import Generator, Sequence
 from fractions import Fraction
 from functools import partial
@@ -25,7 +24,7 @@ from .lanes import LANES
 from .limb import Array, aligned, joined, split
 from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
 from .problem import limb_problem
-from .series import TENSION, Counts, M, W, X
+from .series import TENSION, M, W, X
 from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
@@ -36,17 +35,6 @@ ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since ev
 POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
 SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
-
-
-def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: int) -> tuple[Counts, Array]:
-    """Return exact times in s as whole grains and the limbs of the remainders, cut after the last limb.
-
-    Shapes (times,) and (times * limb_count,).
-    """
-    unit = 1 << fraction_bits(limb_count)
-    fixed = [unit * t.numerator * grain.denominator // (t.denominator * grain.numerator) for t in times]
-    whole, remainders = zip(*(divmod(t, unit) for t in fixed), strict=True)
-    return np.array(whole, dtype=np.int64), split(remainders, limb_count).ravel()
 
 
 class Integration:
@@ -64,18 +52,19 @@ class Integration:
     def __init__(self, plan: Plan, polynomials: int = 0, order: int | None = None) -> None:
         prec = plan.number.prec
         if prec > MOST_PREC:
-            advice = "Use the engine heyoka for more digits."
-            raise InputError("precision", prec, f"at most {MOST_PREC} bits", advice)
+            raise InputError("precision", prec, f"at most {MOST_PREC} bits", "Use the engine heyoka for more digits.")
         self.problem = problem = limb_problem(plan.inputs, prec, order, plan.other_steps)
         self.seek = seek = plan.transits and not xdot_vanishes(problem.start)
         limb_count, model = problem.model.limb_count, problem.model
-        whole, remainders = limbs_of_fractions(plan.times, problem.grain, limb_count)
+        unit, grain = 1 << fraction_bits(limb_count), problem.grain
+        fixed = [unit * t.numerator * grain.denominator // (t.denominator * grain.numerator) for t in plan.times]
+        whole, remainders = zip(*(divmod(t, unit) for t in fixed), strict=True)
         multiplicity = zero_at_release(problem.start) if seek else 0
         self.state = state_at_release(problem.state, problem.first, multiplicity, model)
         room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
         self.out = Outputs(
-            whole,
-            remainders,
+            np.array(whole, dtype=np.int64),
+            split(remainders, limb_count).ravel(),
             aligned(len(whole) * limb_count * LANES),
             np.zeros(3 * room, dtype=np.int64),
             np.zeros(room * limb_count),
@@ -83,10 +72,8 @@ class Integration:
             np.zeros(2 * polynomials, dtype=np.int64),
             aligned(polynomials * (model.order + 1) * limb_count * LANES),
         )
-        self.until = int(whole[-1]) + 1
-        self.moments: list[int] = []  # of zeros of xdot: times in grains and states, over 2**fraction_bits
-        self.zero_states: list[list[int]] = []
-        self.signs: list[int] = []
+        self.until = FOR_EVER if polynomials else whole[-1] + 1
+        self.zeros: list[Any] = []  # of xdot, of each call: time in grains and state, over 2**fraction_bits, and sign
         cpu_start = time.process_time()
         prepare(march, "limbs", COMPILE_S, *self._arguments(0))
         self.compile_s = time.process_time() - cpu_start
@@ -126,12 +113,10 @@ class Integration:
 
     def _keep_zeros(self) -> None:
         n, limb_count = int(self.state.counts[ZEROS]), self.problem.model.limb_count
-        starts, lengths, signs = self.out.moments[: 3 * n].reshape(n, 3).T.tolist()
+        starts, lengths, signs = self.out.moments[: 3 * n].reshape(n, 3).T.astype(object)
         places = joined(self.out.places[: n * limb_count].reshape(n, limb_count))
-        parts, bits = zip(starts, lengths, places, strict=True), fraction_bits(limb_count)
-        self.moments += [(start << bits) + length * place for start, length, place in parts]
-        self.zero_states += self.table(self.out.zero_states, n).tolist()
-        self.signs += signs
+        moments = (starts << fraction_bits(limb_count)) + lengths * places
+        self.zeros.append(np.column_stack([moments, self.table(self.out.zero_states, n), signs]))
         self.state.counts[ZEROS] = 0
 
     def table(self, rows: Array, count: int) -> Any:
@@ -149,11 +134,10 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order follows.
     """
     integration = Integration(plan, POLYNOMIALS_PER_CALL, round(ORDER_PER_BIT * coefficient_bits))
-    integration.until = FOR_EVER
-    spent, ahead = 0.0, False
+    spent = 0.0
     grain, limb_count, last = integration.problem.grain, integration.problem.model.limb_count, plan.times[-1]
     start, end, bits = Fraction(0), Fraction(1), fraction_bits(limb_count)
-    while not ahead:
+    while True:
         cpu_start = time.process_time()
         integration.advance(POLYNOMIALS_PER_CALL)
         spent += time.process_time() - cpu_start
@@ -162,9 +146,7 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
             t = grains * grain
             yield TaylorStep(t, length * grain, start, end, bits, partial(_digits, of_step, limb_count))
             if t > last:
-                ahead = True
-                break
-    return result(integration, plan, time.process_time() - spent)
+                return result(integration, plan, time.process_time() - spent)
 
 
 def _digits(series: Array, limb_count: int) -> Digits:
@@ -194,15 +176,16 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
 def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
     """Return what an integration computed, in SI units; `cpu_start` is `time.process_time()` when its steps began."""
     problem, bits = integration.problem, fraction_bits(integration.problem.model.limb_count)
-    si_bits = bits + SPARE_BITS
-    table = integration.table(integration.out.states, len(plan.times))
-    grid = Table(RUN, si_bits, list(zip(*_si(table, plan.inputs.length, problem.unit, bits, si_bits), strict=True)))
-    transits, signs = _transits(integration, plan, bits, si_bits) if integration.seek else (None, [])
+    factors = [plan.inputs.length / problem.unit ** (i // 3) for i in range(COLUMNS)]
+    grid = _si(integration.table(integration.out.states, len(plan.times)), factors)
+    zeros = np.concatenate(integration.zeros)
+    zeros = zeros[zeros[:, 0] <= int(plan.times[-1] / problem.grain * 2**bits)]
+    transits = Table(("t", *RUN), bits + SPARE_BITS, _si(zeros[:, :-1], [problem.grain, *factors]))
     return Run(
         plan=plan,
-        grid=grid,
-        transits=transits,
-        directions=signs,
+        grid=Table(RUN, bits + SPARE_BITS, grid),
+        transits=transits if integration.seek else None,
+        directions=zeros[:, -1].tolist(),
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
         compile_s=integration.compile_s,
@@ -210,22 +193,8 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
     )
 
 
-def _si(table: Any, length: Fraction, unit: Fraction, bits: int, si_bits: int) -> list[Any]:
-    """Return columns of integers over 2**bits, in l and the unit of time, as integers over 2**si_bits in SI units."""
-    return [_scaled(table[:, i], length / unit ** (i // 3) * 2 ** (si_bits - bits)) for i in range(len(RUN))]
-
-
-def _scaled(column: Any, factor: Fraction) -> Any:
-    """Return integers times a factor, rounded down."""
-    product = column * factor.numerator
-    return product if factor.denominator == 1 else product // factor.denominator
-
-
-def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> tuple[Table, list[int]]:
-    """Return the zeros up to the last output time, and the signs of the crossings."""
-    problem = integration.problem
-    count = bisect_right(integration.moments, int(plan.times[-1] / problem.grain * 2**bits))
-    moments = _scaled(np.array(integration.moments[:count], dtype=object), problem.grain * 2 ** (si_bits - bits))
-    states = np.array(integration.zero_states[:count], dtype=object).reshape(count, COLUMNS)
-    columns = _si(states, plan.inputs.length, problem.unit, bits, si_bits)
-    return Table(("t", *RUN), si_bits, list(zip(moments, *columns, strict=True))), integration.signs[:count]
+def _si(table: Any, factors: Sequence[Fraction]) -> list[tuple[int, ...]]:
+    """Return the rows of a table of integers, each column times a factor, over 2**SPARE_BITS times their unit."""
+    scaled = [factor * 2**SPARE_BITS for factor in factors]
+    columns = [column * f.numerator // f.denominator for column, f in zip(table.T, scaled, strict=True)]
+    return list(zip(*columns, strict=True))

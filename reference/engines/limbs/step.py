@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
-from .limb import DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, clear, divide, double_of_lane
+from .limb import DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, divide, double_of
 from .series import SPIN, TENSION, LinearTerms, Series, positions
 from .size import LIMB_BITS
 
@@ -60,17 +60,13 @@ class Model(NamedTuple):
 def scale_terms(to: LinearTerms, model: Model, m: int) -> None:
     """Write the linear terms for a step of m grains."""
     for i in range(len(to)):
-        _scale(to[i], model.terms[i], model.powers[i], m, model.limb_count, 1.0 if i == STEADY else DOUBLED)
-
-
-@compiled
-def _scale(to: Array, constants: Array, powers: Array, m: int, limb_count: int, factor: float) -> None:
-    for r in range(limb_count + 1):
-        store(to, LANES * r, load(constants, LANES * r))
-    for power in range(1, 4):
-        _multiply(to, powers, power, m, limb_count)
-    for r in range(limb_count + 1):
-        store(to, LANES * r, load(to, LANES * r) * spread(factor))
+        rows, factor = to[i], spread(1.0 if i == STEADY else DOUBLED)
+        for r in range(model.limb_count + 1):
+            store(rows, LANES * r, load(model.terms[i], LANES * r))
+        for power in range(1, 4):
+            _multiply(rows, model.powers[i], power, m, model.limb_count)
+        for r in range(model.limb_count + 1):
+            store(rows, LANES * r, load(rows, LANES * r) * factor)
 
 
 @compiled
@@ -97,7 +93,7 @@ def lane_products(to: Array, a: Array, b: Array, limb_count: int) -> None:
 def order_zero(s: Series, terms: LinearTerms, now: Array, m: int, limb_count: int) -> None:
     """Write the coefficients of order 0 from the state: n, h V, the tension λ = V·V + n·c and j."""
     speed = spread(SHIFT * m)
-    clear(s.total, limb_count + 1)
+    s.total[:] = 0.0
     for r in range(limb_count):
         store(s.total, LANES * (r + 1), _speeds(load(now, LANES * r)) * speed)
     carry(s.total, 0, limb_count)
@@ -138,7 +134,7 @@ def step_size_factor(s: Series, order: int, limb_count: int, tolerance: float) -
     while resolved_orders < 2 and 2 * k > order:
         size = 0.0
         for lane in range(6):
-            size = max(size, abs(double_of_lane(s.c, k * limb_count * LANES, lane, limb_count)))
+            size = max(size, abs(double_of(s.c, limb_count, k * limb_count * LANES + lane, LANES)))
         if size >= least_size:
             least = min(least, _exp2(target - _log2(size) / k))
             resolved_orders += 1
@@ -179,7 +175,7 @@ def next_length(m: int, factor: float, longest: int) -> int:
 @compiled
 def sum_series(to: Array, s: Series, order: int, limb_count: int) -> None:
     """Write the sum of all coefficients: all lanes at the step's end."""
-    clear(to, limb_count + 1)
+    to[:] = 0.0
     for k in range(order, -1, -1):
         for r in range(s.first[k], limb_count):
             store(to, LANES * r, load(to, LANES * r) + load(s.c, LANES * (k * limb_count + r)))
@@ -193,7 +189,6 @@ def project(now: Array, rows: Array, s: Series, m: int, limb_count: int) -> None
         store(s.total, LANES * r, _speeds(load(rows, LANES * r)) * spread(GRAINS))
     store(s.total, LANES * limb_count, spread(0.0))
     divide(s.total, 0, limb_count, m)
-    carry(s.total, 0, limb_count)
     for r in range(limb_count):
         store(now, LANES * r, positions(load(rows, LANES * r)) + load(s.total, LANES * r))
     lane_products(s.total, now, now, limb_count)
@@ -204,7 +199,7 @@ def project(now: Array, rows: Array, s: Series, m: int, limb_count: int) -> None
     outward = _excess(s, limb_count, 0.0)
     last = LANES * (limb_count - 1)
     for lane in range(3):
-        n = double_of_lane(now, 0, lane, limb_count)
+        n = double_of(now, limb_count, lane, LANES)
         now[last + lane] -= np.rint(0.5 * too_long * n)
         now[last + lane + 3] -= np.rint(outward * n)
     carry(now, 0, limb_count - 1)

@@ -14,7 +14,7 @@ import numpy as np
 
 from .dense_output import evaluate, xddot_of, xdot_at
 from .lanes import LANES, compiled, merged
-from .limb import Array, add_double, double_of, double_of_lane, set_double
+from .limb import Array, add_double, double_of, set_double
 from .polynomial import CONVEX, FREE, UNDECIDED, classify, crossing
 from .series import Counts, LinearTerms, Series, X
 from .size import LIMB_BITS
@@ -122,7 +122,8 @@ def _polynomial(z: Search, s: Series, multiplicity: int, model: Model) -> int:
     limb_count, largest, small = model.limb_count, 0.0, 0
     for k in range(multiplicity, model.order):
         # a double holds three limbs; those below make no difference to it
-        value = (k + 1.0) * double_of_lane(s.c, (k + 1) * limb_count * LANES, X, min(s.first[k + 1] + 4, limb_count))
+        limbs = min(s.first[k + 1] + 4, limb_count)
+        value = (k + 1.0) * double_of(s.c, limbs, (k + 1) * limb_count * LANES + X, LANES)
         z.f[k - multiplicity] = value
         largest = max(largest, abs(value))
         small = small + 1 if abs(value) < largest * NEGLIGIBLE else 0

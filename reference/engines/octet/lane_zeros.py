@@ -16,7 +16,7 @@ import numpy as np
 
 from ..limbs.lanes import LANES, at_least, compiled, fma, inlined, larger, load, magnitude, spread, store, where
 from ..limbs.limb import Array, aligned
-from ..limbs.polynomial import FREE, MONOTONE, classify, crossing, value_at
+from ..limbs.polynomial import FREE, MONOTONE, classify, crossing, value_and_slope
 from .series import MOST_ORDER, Series
 
 NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
@@ -203,7 +203,7 @@ def all_zeros(w: Bisection, z: Zeros, f: Array, lane: int, length: float, multip
         total = total * length + abs(w.f[k])
     noise = NOISE * total
     left = z.before[lane] if multiplicity < 0 else w.f[0]
-    right = value_at(w.f, size, length)
+    right = value_and_slope(w.f, size, length)[0]
     # the polynomial is cut off: the state's own value has to be on the same side
     if abs(left) <= noise or abs(right) <= noise or (right > 0.0) != (z.after[lane] > 0.0):
         return DOUBT
@@ -215,7 +215,7 @@ def all_zeros(w: Bisection, z: Zeros, f: Array, lane: int, length: float, multip
         kind = classify(w.f, size, low + half, half, noise)[0]
         if kind not in (FREE, MONOTONE):
             cut = low + _CUT * (high - low)
-            value = value_at(w.f, size, cut)
+            value = value_and_slope(w.f, size, cut)[0]
             if half < _NARROWEST or not abs(value) > noise:
                 return DOUBT
             n += 1

@@ -11,7 +11,7 @@ import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
 from reference import solve, sweep
-from reference.engines.heyoka.events import _first_contradiction, _Step, march, quiet_start
+from reference.engines.heyoka.events import _first_contradiction, _Step, march
 from reference.engines.heyoka.model import Numbers
 from reference.engines.heyoka.stepper import Stepper
 from reference.engines.heyoka.system import system_of
@@ -42,9 +42,8 @@ def bare_heyoka(scene, number, t_end, first_step=None):
 def guarded(scene, number, t_end=60, stepper=None):
     """The zeros of xdot that pass the guards."""
     stepper = stepper or stepper_of(scene, number, events=True)
-    quiet = quiet_start(stepper, zero_at_release(start_for(scene, number)))
-    _, zeros = march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)], quiet)
-    return zeros
+    multiplicity = zero_at_release(start_for(scene, number))
+    return march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)], multiplicity)[1]
 
 
 def exact_first_transit(scene, number):

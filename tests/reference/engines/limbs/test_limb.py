@@ -38,7 +38,6 @@ def compiled_with(**options):
         add_product(to, a, b, 0, limb_count)
         carry(to, 0, limb_count)
         divide(to, 0, limb_count, divisor)
-        carry(to, 0, limb_count)
 
     return multiply_and_divide
 
