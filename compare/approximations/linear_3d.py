@@ -48,7 +48,8 @@ def _path(case: Case, times: Array) -> Array:
     vx, vy, _ = plumb.inward(case.velocity)
     weights = modes.H * ctx.matrix([east * x, north * y, vx, vy])
     shares = np.array([[complex(modes[i, j] * weights[j]) for j in range(4)] for i in range(4)])
-    p = (shares @ np.exp(-1j * np.outer([float(w) for w in frequencies], times))).real
+    phases = np.exp(-1j * np.outer([float(w) for w in frequencies], times))
+    p = (shares[:, :, None] * phases).sum(axis=1).real  # term by term: a product by BLAS rounds as the processor likes
     return plumb.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))
 
 

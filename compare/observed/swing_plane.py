@@ -17,7 +17,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval
 
 from reference import Scene, UnreachableError, trajectory
 from reference.model.constants import Vector
