@@ -122,7 +122,7 @@ class Possible(Part):
 
 
 class SectionsRecord(Part):
-    """What the manifest says of `sections.csv`: digits and largest bound of each column, passages of each section.
+    """What `sections.csv` holds: digits and largest bound of each column; of each section its passages.
 
     `counts` are its rows, and `possible` intervals in which the proof could not decide.
     """
