@@ -129,7 +129,7 @@ PYTHON = {
     'reference.load_sweep("nowhere")': "a folder of a sweep",
     'reference.write("paris", "out")': "Solve the scene first.",
     'reference.load("paris").at("noon")': "times from 0 to 86400 s",
-    'reference.load("paris").at(-1)': "The scene ends there: run.t_end.",
+    'reference.load("paris").at(-1)': "The scene ends there: a larger run.t_end solves a longer one.",
     'compare.judge("paris", ROWS)': "The rows stand before the scene.",
     'compare.judge(ROWS, "pari")': "Did you mean paris?",
     'compare.judge({"x": [1], "y": [2]}, "paris")': "Wanted: t, x, y",

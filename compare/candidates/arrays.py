@@ -37,9 +37,10 @@ def candidate_of(
         InputError: as in `Candidate.of`.
     """
     columns = {key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays}
+    wide = {key: arrays[key] for key in columns if arrays[key].dtype.kind == "f"}  # an empty column may be of text
     with np.errstate(invalid="ignore"):  # of infinite numbers, which are refused
-        remainders = {key: np.asarray(arrays[key] - near, dtype=np.float64) for key, near in columns.items()}
-    low = {key: remainder for key, remainder in remainders.items() if remainder.any()}
+        remainders = {key: np.asarray(array - columns[key], dtype=np.float64) for key, array in wide.items()}
+    low = {key: part for key, part in remainders.items() if part.any() and np.isfinite(part).all()}
     columns, low = made.converted(columns, low)
     return Candidate.of(name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions)
 
@@ -48,10 +49,10 @@ def candidate_from(columns: Any) -> Candidate:
     """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
 
     Raises:
-        InputError: it has no names, not all that are needed, or as in `Candidate.of`.
+        InputError: it has no names, or as in `Candidate.of`.
     """
     names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
-    if not {"t", "x", "y"} <= {*names}:
+    if "t" not in names:
         got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
         raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
     arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
@@ -68,7 +69,7 @@ def real_array(values: Any, name: str) -> Array:
         array = np.asarray(values)
     except ValueError:
         raise InputError(name, "rows of different lengths", "an array of real numbers") from None
-    if array.dtype.kind not in "fiu":
+    if array.size and array.dtype.kind not in "fiu":
         raise InputError(name, f"dtype {array.dtype}", "an array of real numbers")
     return array
 

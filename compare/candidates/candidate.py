@@ -95,13 +95,20 @@ class Candidate:
         """Check the arrays and make a candidate of them.
 
         Raises:
-            InputError: lengths differ, a number is not finite, or times do not increase.
+            InputError: a column is missing, lengths differ, a number is not finite, or times do not increase.
         """
+        for required in ("x", "y"):
+            if required not in columns:
+                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {required}", ADVICE)
         for word, column in (("t", t), *columns.items()):
             if column.ndim != 1 or len(column) != t.size:
                 expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
                 raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
-            _check_finite(column, f"{name}: {word}", "in row")
+            invalid = ~(np.abs(column) <= LARGEST)  # true for NaN as well
+            if invalid.any():
+                row, expected = int(np.argmax(invalid)), f"a finite number below {LARGEST:g} in size"
+                advice = "The run failed there: score the rows before it, or correct it."
+                raise NotFiniteError(f"{name}: {word}", f"{column[row]} in row {row + 1}", expected, advice)
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
         _check_order(t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True)
@@ -118,22 +125,15 @@ def checked_transits(times: Array, name: str) -> Array:
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1:
         raise InputError(name, f"shape {times.shape}", "one-dimensional times in s")
-    _check_finite(times, name, "as transit")
+    if not np.isfinite(times).all():
+        row = int(np.argmin(np.isfinite(times)))
+        raise InputError(name, f"{times[row]} as transit {row + 1}", "finite times in s")
     _check_order(times, name, "as transit", "", strictly=False)
     return times
 
 
-def _check_finite(numbers: Array, name: str, at: str) -> None:
-    """Refuse numbers that are not finite, or too large; `at` is how a message names a place."""
-    invalid = ~(np.abs(numbers) <= LARGEST)  # true for NaN as well
-    if invalid.any():
-        row, expected = int(np.argmax(invalid)), f"a finite number below {LARGEST:g} in size"
-        advice = "The run failed there: score the rows before it, or correct it."
-        raise NotFiniteError(name, f"{numbers[row]} {at} {row + 1}", expected, advice)
-
-
 def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: bool) -> None:
-    """Refuse times before the release, and times that do not increase; `at` as in `_check_finite`."""
+    """Refuse times before the release, and times that do not increase; `at` is how a message names a place."""
     if len(times) and times[0] < 0:
         count = "Count them from the release, and leave out rows before it."
         raise InputError(name, f"{times[0]:.17g} {at} 1", "times from 0 on, in s", count)

@@ -194,9 +194,8 @@ def _marked(mark: str) -> Iterator[Process]:
 
 
 def _tail(errors: BinaryIO) -> str:
-    size = errors.seek(0, os.SEEK_END)
-    errors.seek(max(0, size - _TAIL))
-    text = errors.read().decode(errors="replace").strip()
+    size = os.fstat(errors.fileno()).st_size  # the program may still be writing: its place in the file stays
+    text = os.pread(errors.fileno(), _TAIL, max(0, size - _TAIL)).decode(errors="replace").strip()
     return f"It said: {text}" if text else "It said nothing on stderr."
 
 

@@ -241,7 +241,8 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
             raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
         if not best and name in needed:
             got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
-            raise InputError(where, got, f"one column {name}", advice(needed))
+            what_to_do = "" if where == "--columns" else advice(needed)
+            raise InputError(where, got, f"one column {name}", what_to_do)
         for i, word in best:
             if word.factor is None:
                 column = f"{where}: {words[i].strip()}"

@@ -129,4 +129,6 @@ def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
 
 def steps_between(times: Array, step: float) -> Any:
     """Return the number of steps that lead to each time from the one before (0 for the first), shape (rows,)."""
-    return np.ceil(np.diff(times, prepend=times[0]) / step * (1 - ROUNDING)).astype(np.int64)
+    counts = np.ceil(np.diff(times, prepend=times[0]) / step * (1 - ROUNDING)).astype(np.int64)
+    counts[1:] = np.maximum(counts[1:], 1)
+    return counts

@@ -91,7 +91,8 @@ class Options:
         steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))
         if not 1 <= steps <= MAX_STEPS:
             raise InputError("-t", values["t"], f"1 to {MAX_STEPS} steps up to T = {values['T']} s", "Change -t or -T.")
-        printed = " ".join(f"-{letter} {value}" for letter, value in values.items() if letter not in ("R", "a"))
+        shown = values | {"s": skip}
+        printed = " ".join(f"-{letter} {value}" for letter, value in shown.items() if letter not in ("R", "a"))
         return cls(scene, inputs.grid_step, steps, skip, values["R"], bits, exact, printed)
 
 

@@ -19,7 +19,7 @@ from ..scenes.fields import SECTION_WORD
 from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
 from .function import FunctionRecord, read_function
-from .manifest import FUNCTION, MANIFEST, Manifest
+from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
 from .place import RANGES
 from .sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER, Sheet
 
@@ -112,18 +112,24 @@ def read_manifest(folder: Path) -> Manifest:
         return DatasetError(str(folder), [f"{MANIFEST} {problem}"])
 
     try:
-        if not (folder / MANIFEST).is_file():
+        if MANIFEST not in os.listdir(folder):
             raise _no_dataset(folder)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        raise _no_dataset(folder) from None
     except OSError as error:
         raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
     try:
         if (size := (folder / MANIFEST).stat().st_size) > MAX_MANIFEST:
             raise refused(f"has {size} bytes, {MAX_MANIFEST} are the most")
         text = (folder / MANIFEST).read_bytes().decode()
-        manifest = Manifest.model_validate(json.loads(text))
+        document = json.loads(text)
+        manifest = Manifest.model_validate(document)
     except OSError as error:
         raise refused(f"cannot be read: {error.strerror}") from None
     except ValidationError as error:
+        older = document.get("schema_version") if isinstance(document, dict) else None
+        if older in range(1, FORMAT):
+            raise refused(f"is of format {older}: make the dataset again with `foucault generate`") from None
         details = error.errors()[0]
         where = ".".join(map(str, details["loc"]))
         raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None

@@ -1,6 +1,7 @@
 """An integrator: its input, `Plan`, its output, `Run`, tables of states and transits, and its interface, `Engine`.
 
-Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py` has what that does.
+Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py` has
+what that does, as `run(plan, report, pace)` and `taylor_steps(plan, coefficient_bits)`.
 """
 
 from __future__ import annotations

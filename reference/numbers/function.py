@@ -109,5 +109,7 @@ def moments_of(times: npt.ArrayLike, end: float | Fraction, later: float = 0.0) 
         raise InputError("t", times, expected) from None
     outside = t[~((t >= 0) & (t <= float(end) + later))]
     if outside.size:
-        raise InputError("t", f"{outside[0]:.17g}", expected, "The scene ends there: run.t_end.")
+        raise InputError(
+            "t", f"{outside[0]:.17g}", expected, "The scene ends there: a larger run.t_end solves a longer one."
+        )
     return t

@@ -102,7 +102,7 @@ def test_another_processor_gives_the_bytes_that_ship(tmp_path, size):
     folders = {"NUMBA_CACHE_DIR": tmp_path / "numba", "HOME": tmp_path, "XDG_CACHE_HOME": tmp_path / "cache"}
     path = os.pathsep.join([str(Path(__file__).parents[2] / "helpers"), os.environ.get("PYTHONPATH", "")])
     environment = os.environ | OTHER_PROCESSOR | {"PYTHONPATH": path} | {key: str(at) for key, at in folders.items()}
-    words = [sys.executable, "-c", SCRIPT, *size(SHORT[2:], (*SHORT, OVER))]
+    words = [sys.executable, "-c", SCRIPT, *size(SHORT[1:], (*SHORT, OVER))]
     done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     first, *rows = done.stdout.splitlines()

@@ -75,6 +75,13 @@ def test_a_broken_manifest_is_found(dataset, text):
     assert problems(dataset).startswith("manifest.json")
 
 
+def test_an_older_format_says_what_to_do(dataset):
+    document = json.loads((dataset / MANIFEST).read_text())
+    for older in (1, 2):
+        (dataset / MANIFEST).write_text(json.dumps({**document, "schema_version": older}))
+        assert f"format {older}: make the dataset again" in problems(dataset)
+
+
 def test_the_same_content_in_another_form_is_refused(dataset):
     text = (dataset / MANIFEST).read_text()
     for other in (

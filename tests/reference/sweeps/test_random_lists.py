@@ -62,12 +62,13 @@ def differences(one, other):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_engines_agree_over_a_list(name, size):
-    lists = [solved(name, engine, size(15, 1)) for engine in ("heyoka", "octet")]
+    lists = [solved(name, engine, size(7, 1)) for engine in ("heyoka", "octet")]
     pairs = [pair for pair in zip(*lists, strict=True) if not any(map(is_left, pair))]
     wrong = {one["row"]: differences(one, other) for one, other in pairs}
     assert {row: columns for row, columns in wrong.items() if columns} == {}
     by_solver = [[row for row in rows if is_left(row) or row["level"] != "computed"] for rows in lists]
     assert 0 < sum(map(len, by_solver)) <= MOST_SOLVED[name]
+    assert any(row["level"] != "computed" for pair in pairs for row in pair)
     assert len(pairs) >= 250 - size(MOST_SOLVED[name], 0)
 
 
