@@ -171,9 +171,10 @@ def trajectory(
         moments, state = _from_zero(times, model.numbers), model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
-    most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * start.fastest_rate * float(moments[-1]))
+    radians = start.fastest_rate * float(moments[-1])
+    propagator = model.propagator(tolerance, math.inf if number.hardware else radians)
     try:
-        states = model.propagator(tolerance).from_zero(state, moments, max_steps=most)
+        states = propagator.from_zero(state, moments, max_steps=LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians))
     except IntegrationError as error:
         where = SINGULAR.get(formulation)
         advice = f"The formulation {formulation} is singular {where}: take momentum." if where else ""

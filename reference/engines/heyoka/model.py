@@ -6,6 +6,7 @@ The modules that make heyoka's arrays import this one, so that its memory handle
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from numbers import Real
@@ -27,6 +28,11 @@ from .system import as_pairs, keep_on_disk, rates
 
 hy.install_custom_numpy_mem_handler()
 hy.set_logger_level_critical()  # its log is the process's stdout; what it would tell of lost roots is found otherwise
+
+# Optimised code takes 0.3 to 1.5 s more to compile. Hardware gains a third by it, with other last bits; MPFR a sixth of
+# a step, which takes the longer the more bits it has, and no bit changes. Runs of fewer radians are compiled quickly.
+SHORT_RUN = 2000  # radians
+SHORT_BY_BITS = 4e9  # beyond hardware, radians times the cube of the bits
 
 # type, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
@@ -82,9 +88,14 @@ class Numbers:
         """Return each number of an array as an integer over 2**bits, cut off towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
-    def integrator(self, system: Any, state: Sequence[Any], **options: Any) -> Any:
-        """Compile a system of pairs (variable, rate), or a variational one; return heyoka's integrator of it."""
+    def integrator(self, system: Any, state: Sequence[Any], *, radians: float = math.inf, **options: Any) -> Any:
+        """Compile a system of pairs (variable, rate), or a variational one; return heyoka's integrator of it.
+
+        `radians` is how far the run goes, by which compiling is thorough or quick.
+        """
         keep_on_disk(self.number)
+        if radians < (SHORT_RUN if self.number.hardware else SHORT_BY_BITS / self.number.prec**3):
+            options["opt_level"] = 0
         start = np.array(state, dtype=self.dtype)
         return hy.taylor_adaptive(system, start, fp_type=self.type, **self.keywords, **options)
 
@@ -116,6 +127,7 @@ class Propagator:
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
         parameters: number of parameters.
+        radians: how far a run goes, by which compiling is thorough or quick.
         varied: whether the derivative of the state with respect to the first parameter is integrated as well, by
             the first-order variational equations.
     """
@@ -128,6 +140,7 @@ class Propagator:
         *,
         tolerance: float | None = None,
         parameters: int = 0,
+        radians: float = math.inf,
         varied: bool = False,
     ) -> None:
         self.numbers = Numbers(number)
@@ -136,7 +149,7 @@ class Propagator:
         system: Any = as_pairs(state, derivatives(tuple(state), hy, *extra))
         if varied:
             system = hy.var_ode_sys(system, [hy.par[0]], order=1)
-        options: dict[str, Any] = {}
+        options: dict[str, Any] = {"radians": radians}
         if tolerance is not None:
             if not (isinstance(tolerance, Real) and 0 < tolerance < 1):
                 raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
@@ -181,10 +194,10 @@ class RoundedModel:
         """Return the state at t = 0, in numbers of the type."""
         return [self.numbers.of(value) for value in start.state(self.formulation)]
 
-    def propagator(self, tolerance: float | None = None) -> Propagator:
+    def propagator(self, tolerance: float | None = None, radians: float = math.inf) -> Propagator:
         """Compile the equations, without events; the tolerance is the type's epsilon if None."""
-        equations = rates(self.formulation, self.k)
-        return Propagator(self.formulation.variables, equations, self.numbers.number, tolerance=tolerance)
+        variables, equations = self.formulation.variables, rates(self.formulation, self.k)
+        return Propagator(variables, equations, self.numbers.number, tolerance=tolerance, radians=radians)
 
     def doubles(self, states: Any) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, nearest doubles, from states of shape (rows, variables)."""

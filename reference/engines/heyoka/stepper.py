@@ -20,7 +20,6 @@ from .model import RoundedModel
 from .system import system_of
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
-SHORT_RUN = 2000  # span times rate of a run beyond long double that is too short for optimised code to pay
 TIME_BITS = 64  # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
 
 
@@ -40,7 +39,7 @@ class Stepper:
         start: constants and release, in a precision finer than the run's.
         number: type to compute in.
         events: whether to detect the zeros of xdot.
-        span: time in s that will be integrated, by which compiling is thorough or quick; thorough if None.
+        span: time in s that will be integrated, by which compiling is thorough or quick.
         longest: longest step in s; heyoka's own choice if None.
     """
 
@@ -51,7 +50,7 @@ class Stepper:
         number: NumberType,
         *,
         events: bool = False,
-        span: Fraction | None = None,
+        span: Fraction | float = math.inf,
         longest: Fraction | None = None,
     ) -> None:
         self.number, self.model = number, RoundedModel(formulation, start.k, number)
@@ -60,9 +59,7 @@ class Stepper:
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
         equations, xdot = system_of(formulation, self.model.k)
-        options: dict[str, Any] = {}
-        if span is not None and float(span) * start.rate < SHORT_RUN:
-            options["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
+        options: dict[str, Any] = {"radians": float(span) * start.rate}
         if events:
             zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 

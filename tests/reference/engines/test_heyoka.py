@@ -10,6 +10,7 @@ import pytest
 from small_scenes import make_scene, model_at, stepper_of
 
 import reference.engines.heyoka.run as module
+from reference.engines.heyoka import model as model_module
 from reference.engines.heyoka import stepper as stepper_module
 from reference.engines.heyoka import system
 from reference.engines.heyoka.system import equations_text, system_of
@@ -174,7 +175,7 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path,
 def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris, monkeypatch, prec):
     plan = Plan(paris.exact, "space", real(prec), (Fraction(0), Fraction(50), Fraction(100)), transits=True)
     quick = module.run(plan)
-    monkeypatch.setattr(stepper_module, "SHORT_RUN", 0)
+    monkeypatch.setattr(model_module, "SHORT_BY_BITS", 0)
     thorough = module.run(plan)
     assert quick.grid.values == thorough.grid.values
     assert quick.transits.values == thorough.transits.values
