@@ -152,13 +152,13 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
         InputError: a file is no study.
     """
     results: dict[str, StudyResults] = defaultdict(StudyResults)
+    cells = TypeAdapter(list[Cell])
     for path in sorted(folder.glob("*.json")) if folder is not None else ():
         try:
             document = json_document(path, "--studies")
             scene = document.get("scene")
             if scene is None:
-                for row in document["rows"]:
-                    cell = TypeAdapter(Cell).validate_python(NOT_KEPT | row)
+                for cell in cells.validate_python([NOT_KEPT | row for row in document["rows"]]):
                     results[cell.scene].asked.setdefault(run_name(cell), cell)  # the first study that has it
             elif document["t_end"] > results[scene].span_s:
                 results[scene].least, results[scene].span_s = _least(rows_of(document)), float(document["t_end"])
