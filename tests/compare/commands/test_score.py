@@ -66,7 +66,9 @@ for k in range(601):
 """
 
 
-@pytest.mark.parametrize(("pull", "power"), [("168.0", "2"), ("1e95", "1"), ("1e-9", "60")])
+@pytest.mark.parametrize(
+    ("pull", "power"), [pytest.param("168.0", "2", marks=pytest.mark.long), ("1e95", "1"), ("1e-9", "60")]
+)
 def test_stdout_of_a_program_that_diverges_is_one_json_document(foucault, tmp_path, pull, power):
     """In a process of its own, whose stdout LAPACK would write to."""
     (tmp_path / "falls.py").write_text("print('t,x,y')" + FALLS.format(pull, power))
