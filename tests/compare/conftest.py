@@ -7,15 +7,23 @@ from pathlib import Path
 import pytest
 
 from compare import papers
+from compare.papers import points
 from compare.papers.checks import JudgedRow
 
 EACH = 9  # of so many rows the page shows one
+FEW = 2  # random points at which each row is judged; as many as the product takes under --long
 
 
 @pytest.fixture(scope="session")
-def judged() -> dict[str, JudgedRow]:
+def judged(pytestconfig: pytest.Config) -> dict[str, JudgedRow]:
     pytest.importorskip("numba")
-    return {row.id: row for row in papers.rows()}
+    with pytest.MonkeyPatch.context() as patch:
+        if not pytestconfig.getoption("--long"):
+            patch.setattr(points, "COUNT", FEW)
+        points.points.cache_clear()
+        rows = {row.id: row for row in papers.rows()}
+    points.points.cache_clear()
+    return rows
 
 
 @pytest.fixture(scope="session")

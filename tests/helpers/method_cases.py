@@ -16,7 +16,7 @@ from compare.methods.rhs.straight_line import FUNCTIONS
 from reference import Scene, Solution
 
 SECTIONS = {
-    "paris": {"run": {"t_end": "60", "grid_step": "10"}},
+    "paris": {"run": {"t_end": "60", "grid_step": "5"}},
     "steep": {
         "pendulum": {"length": "1"},
         "release": {"angle": "80", "azimuth": "20"},

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from disks import fill, small_disk
+from here import measured_here
 from places import ROOT
 
 import reference
@@ -24,6 +25,11 @@ STABILITY = ["stability", "--scenes", "hard", "--methods", "heyoka_double"]
 def disk(tmp_path):
     with small_disk(tmp_path / "disk", 1 << 19) as folder:
         yield folder
+
+
+@pytest.fixture
+def here(monkeypatch):
+    measured_here(monkeypatch)
 
 
 @pytest.fixture
@@ -67,12 +73,14 @@ def test_generate_finds_out_at_any_file(disk, foucault):
         assert os.listdir(disk) == ["filler"]
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("words", [STUDY, STABILITY], ids=lambda words: words[0])
 def test_a_campaign_ends_with_a_message(words, disk, foucault):
     fill(disk)
     assert refused(foucault(*words, "--out", disk / "report"), "--out")
 
 
+@pytest.mark.usefixtures("here")
 def test_a_report_stays_as_it_was(disk, foucault):
     assert foucault(*STUDY, "--out", disk / "report")[0] == 0
     before = contents(disk / "report")

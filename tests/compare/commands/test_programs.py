@@ -7,6 +7,7 @@ import shlex
 import sys
 
 import pytest
+from here import measured_here
 
 from compare.methods import named_programs
 
@@ -41,9 +42,10 @@ def test_names_go_with_commands_in_order():
     assert named_programs(["./p 1", "./p 2"], ["one", "zwei <2>"]) == {"one": "./p 1", "zwei <2>": "./p 2"}
 
 
-def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path):
+def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     pytest.importorskip("numba")
+    measured_here(monkeypatch)
     path = tmp_path / "harmonic.py"
     path.write_text(PROGRAM)
     command = " ".join(

@@ -29,7 +29,7 @@ def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch):
     reference.sweep(minute, ["site.latitude=0,45"], level="confirmed", workers=1)
     reference.sweep(minute, ["site.latitude=0,45"])
     assert_agrees("paris", golden.t[:9], np.column_stack([golden.x, golden.y])[:9])
-    assert study("paris", ["rk4"], t_end=60).rows
+    assert study("paris", items=[("rk4", "plane", 0.1)], t_end=60).rows
     problem = Problem.of(reference.load_scene("paris"), "momentum", [0.0, 1.0, 2.0])
     tried = [name for name in ("cvode_adams", "numbalsoda_lsoda") if not available(METHODS[name])]
     for name in tried:

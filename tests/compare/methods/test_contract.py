@@ -105,7 +105,7 @@ def test_fixed_steps_are_counted_by_the_step():
 
 def test_steps_end_on_output_times_that_they_do_not_divide(installed):
     problem = case("paris").problem("rk4")
-    assert installed("rk4").prepare(problem, 3.0)().steps == 6 * 4  # 10 s in four steps
+    assert installed("rk4").prepare(problem, 1.5)().steps == 12 * 4  # 5 s in four steps
 
 
 @pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.family is Family.SCIPY])

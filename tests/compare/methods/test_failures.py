@@ -23,7 +23,12 @@ def over_the_horizontal():
     )
 
 
-FIXED = [name for name, method in METHODS.items() if method.setting == "step" and "plane" in method.formulations]
+# Gauss-Legendre in `plane` is code that nothing else compiles; how it gives up is below
+FIXED = [
+    pytest.param(name, marks=pytest.mark.long) if name == "gauss_legendre" else name
+    for name, method in METHODS.items()
+    if method.setting == "step" and "plane" in method.formulations
+]
 EXPLICIT = [name for name, method in METHODS.items() if method.native and not name.startswith("cvode")]
 
 
@@ -63,10 +68,10 @@ def test_a_step_too_long_for_the_implicit_equations_is_said(installed):
 
 
 def test_an_unstable_step_ends_in_numbers_that_are_not_finite(installed):
-    scene = make_scene(pendulum={"length": "1", "drag": "1000"}, run={"t_end": "10", "grid_step": "1"})
-    outcome = installed("rk4").prepare(Problem.of(scene, "momentum"), 0.01)()
+    scene = make_scene(pendulum={"length": "1"}, run={"t_end": "40", "grid_step": "2"})
+    outcome = installed("rk4").prepare(Problem.of(scene, "plane"), 2.0)()
     assert outcome.status == "not_finite"
-    assert outcome.reached_t < 10
+    assert outcome.reached_t < 40
 
 
 def program(body):

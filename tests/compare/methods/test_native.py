@@ -46,7 +46,10 @@ def part(tmp_path):
 
 
 @needs_compiler
-@pytest.mark.parametrize("formulation", ["momentum", "space", "spin", "plane", "angles"])
+@pytest.mark.parametrize(
+    "formulation",  # those in every run have all that C++ is printed of: square roots, sines and arc tangents
+    ["plane", "angles", *(pytest.param(word, marks=pytest.mark.long) for word in ("momentum", "space", "spin"))],
+)
 def test_the_equations_in_cpp_are_those_in_python(formulation, here, part, monkeypatch):
     lively = make_scene(
         inputs="binary64",

@@ -123,15 +123,26 @@ ORDERS = {
 ABSOLUTE = "rad"  # the unit of quantities whose error is meant, not the relative one
 
 
+TRUTHS = {}
+
+
+def truth(scene):
+    """Return the reference's positions at TIMES, computed once for all approximations that are held against them."""
+    key = scene.model_dump_json()
+    if key not in TRUTHS:
+        TRUTHS[key] = trajectory(scene, TIMES)[:, :3]
+    return TRUTHS[key]
+
+
 def error(word, scene):
     """Return the largest distance in m over TIMES, or the error of a quantity: relative, but of an angle in rad."""
     approximation = APPROXIMATIONS[word]
     if isinstance(approximation, Motion):
-        approximate, true = (rows.T[:3] for rows in (approximation.trajectory(scene, TIMES), trajectory(scene, TIMES)))
-        return float(np.linalg.norm(approximate - true, axis=0).max())
-    truth = approximation.truth(scene)
-    gap = approximation.value(scene) - truth
-    return float(abs(gap if approximation.unit == ABSOLUTE else gap / truth))
+        off = approximation.trajectory(scene, TIMES)[:, :3] - truth(scene)
+        return float(np.linalg.norm(off, axis=1).max())
+    true = approximation.truth(scene)
+    gap = approximation.value(scene) - true
+    return float(abs(gap if approximation.unit == ABSOLUTE else gap / true))
 
 
 def errors_of(word, order):

@@ -21,6 +21,12 @@ def run(
     return campaign(Answers(**fields), items, journal_path=journal_path, report=report)
 
 
+@pytest.fixture
+def in_process(here: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what is kept, not of processes: answers come from this one."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+
+
 def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "load_per_core", lambda: 0.5)
     results = run([("m", word) for word in ("a", "dies", "b", "hangs", "c")])
@@ -75,17 +81,21 @@ def test_after_an_interruption_the_results_before_it_are_there(tmp_path: Path) -
     assert [json.loads(line)["item"] for line in path.read_text().splitlines()] == [["m", "a"], ["m", "b"]]
 
 
+@pytest.mark.usefixtures("in_process")
 @pytest.mark.parametrize("half", ['{"recipe": "cut off by a full di', "\x00\x00", "\udcff not UTF-8"])
 def test_after_half_a_line_the_next_result_has_a_line_of_its_own(tmp_path: Path, half: str) -> None:
     path, items = tmp_path / "rows.jsonl", [("m", "a"), ("m", "b")]
     first = run(items[:1], journal_path=path)
     with path.open("a", errors="surrogateescape") as stream:
         stream.write(half)
-    second = run(items, journal_path=path)
+    reports: list[str] = []
+    second = run(items, journal_path=path, report=lambda finished, total, now: reports.append(f"{finished} of {total}"))
     assert second[0] == first[0]
-    assert run(items, journal_path=path) == second
+    assert run(items, journal_path=path, report=lambda *now: reports.append("again")) == second
+    assert reports == ["1 of 2"]
 
 
+@pytest.mark.usefixtures("in_process")
 @pytest.mark.parametrize(
     "line",
     [

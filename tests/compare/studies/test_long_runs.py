@@ -13,6 +13,7 @@ from reference import load_scene
 ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4", "plane", 0.1))
 
 
+@pytest.mark.usefixtures("here")
 def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path: Path) -> None:
     scene = load_scene("paris", ["inputs=binary64", "run.t_end=7200"])
     journal_path = tmp_path / "long.jsonl"

@@ -47,13 +47,15 @@ def shortened(folder: Path, name: str, t_end: str, grid_step: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
+def cells(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> list[Cell]:
     folder = tmp_path_factory.mktemp("stability")
     journal_path = folder / "cells.jsonl"
     # the first falls from the top and comes back there; a few swings of the others show as much as many
     scenes = (("near_inverted", "10", "0.125"), ("creeping", "1", "0.0125"), ("hard", "10", "1"))
-    names = [shortened(folder, *scene) for scene in scenes]
     methods = ["heyoka_double", "scipy_dop853", "scipy_radau", "rkmk4"]
+    if not pytestconfig.getoption("--long"):
+        scenes, methods = scenes[:1], methods[:1]
+    names = [shortened(folder, *scene) for scene in scenes]
     with pytest.MonkeyPatch.context() as patch:
         measured_here(patch)
         measured = stability(names, methods, limit_s=0.5, journal_path=journal_path)
@@ -142,7 +144,8 @@ def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_a
     own = tmp_path / "stiff.toml"
     own.write_text('id = "stiff"\n[pendulum]\ndrag = "1e9"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "600"\n')
     solved: list[tuple[float, int]] = []
-    lost, measured = stability([str(own), "hard"], ["rkmk4"], solving=lambda done, total: solved.append((done, total)))
+    hard = shortened(tmp_path, "hard", "10", "1")
+    lost, measured = stability([str(own), hard], ["rkmk4"], solving=lambda done, total: solved.append((done, total)))
     assert solved == sorted(solved) and (1, 2) in solved and solved[-1] == (2, 2)
     assert (lost.status, lost.digits, lost.cpu_s) == (Status.UNREACHABLE, None, None)
     assert lost.reason.startswith("The reference cannot solve it: ") and "Stiff" in lost.reason
@@ -157,8 +160,9 @@ def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
     assert "grows like t^1.5" in next(laws([run]))
 
 
-def test_the_command_reports_rows_and_a_page(foucault, tmp_path: Path) -> None:
-    scenes = ",".join(shortened(tmp_path, name, "10", "1") for name in ("hard", "two_radians"))
+@pytest.mark.usefixtures("here")
+def test_the_command_reports_rows_and_a_page(foucault, tmp_path: Path, size) -> None:
+    scenes = ",".join(shortened(tmp_path, name, "10", "1") for name in size(["hard"], ["hard", "two_radians"]))
     words = ("stability", "--scenes", scenes, "--methods", "rkmk4,scipy_dop853", "--json")
     status, out, _ = foucault(*words, "--out", tmp_path / "out")
     assert status == 0

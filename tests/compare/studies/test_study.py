@@ -143,7 +143,8 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
 @pytest.mark.usefixtures("here")
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path) -> None:
     short = load_scene("paris", ["run.t_end=20", "inputs=binary64"])
-    items = [item for item in plan(short, ["rk4", "heyoka_double"], False) if item[2] != 0.002]
+    planned = plan(short, ["rk4", "heyoka_double"], False)
+    items = [*planned[:3], *planned[-3:]]
     reports: list[str] = []
     journal_path = tmp_path / "rows.jsonl"
     first = study(short, items=items[:4], journal_path=journal_path)
@@ -160,6 +161,7 @@ def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path
     assert rows_of(json.loads(json.dumps(again.document()))) == again.rows
 
 
+@pytest.mark.usefixtures("here")
 def test_the_command_writes_a_report_and_one_json_document(foucault, tmp_path: Path) -> None:
     words = ("study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json")
     status, out, _ = foucault(*words, "--out", tmp_path / "out")

@@ -88,6 +88,7 @@ grid_step = "1"
 """
 
 
+@pytest.mark.usefixtures("here")
 def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole(foucault, command, tmp_path):
     pytest.importorskip("scipy")
     pytest.importorskip("matplotlib")
