@@ -104,25 +104,27 @@ def test_limits_of_the_command_line_are_those_of_python():
     assert inspect.signature(studies.stability).parameters["limit"].default == STABILITY_LIMIT_S
 
 
-def completed(*words: str) -> list[str]:
-    """Return what bash is offered for the last of the words."""
+def asked(*words: str) -> dict[str, str]:
+    """Return the variables with which bash asks what it can offer for the last of the words."""
     line = " ".join(["foucault", *words])
-    asked = {"_FOUCAULT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words))}
+    return {"_FOUCAULT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words))}
+
+
+def test_a_shell_completes_a_command_by_a_process_of_its_own():
     done = subprocess.run(
         [sys.executable, "-m", "foucault"],
         check=False,
-        env={**os.environ, **asked},
+        env={**os.environ, **asked("gen")},
         cwd=ROOT,
         capture_output=True,
         text=True,
     )
-    return done.stdout.split()
+    assert (done.stdout, done.stderr) == ("generate\n", "")
 
 
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        (("gen",), ["generate"]),
         (("generate", "par"), ["paris", "paris_30d", "paris_measured"]),
         (("study", "paris", "--methods", "rk4,rkng"), ["rk4,rkng56", "rk4,rkng67"]),
         (("stability", "--scenes", "hard,par"), ["hard,paris", "hard,paris_30d", "hard,paris_measured"]),
@@ -132,8 +134,10 @@ def completed(*words: str) -> list[str]:
         (("score", "paris", "--approximation", "linear_3"), ["linear_3d"]),
     ],
 )
-def test_a_shell_completes_commands_scenes_methods_and_fields(words, offered):
-    assert completed(*words) == offered
+def test_a_shell_completes_commands_scenes_methods_and_fields(foucault, monkeypatch, words, offered):
+    for name, value in asked(*words).items():
+        monkeypatch.setenv(name, value)
+    assert foucault()[1].split() == offered
 
 
 def test_completion_can_be_installed_and_shown(foucault):

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 from mpmath import findroot, mpf, sqrt
+from sampled import one_in
 from small_scenes import make_scene
 
 import reference
@@ -81,7 +82,7 @@ UNCHANGING = {
 }
 
 
-@pytest.mark.parametrize("sections", UNCHANGING.values(), ids=UNCHANGING.keys())
+@pytest.mark.parametrize("sections", one_in(3, UNCHANGING.values()), ids=UNCHANGING.keys())
 @pytest.mark.parametrize("level", ["self_consistent", "confirmed"])
 def test_what_never_changes_may_be_equal_in_both_runs(level, sections):
     """Exact zeros and constants: no error, and a bound above zero unless no rate at all is in the scene."""
@@ -119,7 +120,7 @@ def transits_in_double(name):
     return rough, on_grid, rough.transits.only(TRANSITS).distance(fine.transits)
 
 
-@pytest.mark.parametrize("name", TRANSIT_SCENES)
+@pytest.mark.parametrize("name", one_in(2, TRANSIT_SCENES))
 def test_the_errors_of_transits_follow_from_those_of_the_grid(name):
     rough, on_grid, gaps = transits_in_double(name)
     table = with_transit_errors(rough, on_grid, None)

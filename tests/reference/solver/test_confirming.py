@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+import unhurried
 from forgery import forge
 
 import reference
@@ -149,8 +150,11 @@ def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeyp
 
     monkeypatch.setattr(enclosed, "proved", noted)
     monkeypatch.setattr(registry, "usable_cores", lambda: 2)
-    monkeypatch.setattr("reference.solver.enclosed.WORTH_A_PROCESS", 0.0)
-    end = 9000.0
+    monkeypatch.setattr(enclosed, "WORTH_A_PROCESS", 0.0)
+    monkeypatch.setattr(enclosed, "AUDIT_STEPS", 0)
+    monkeypatch.setattr(enclosed, "_send_digits", unhurried.digits)
+    monkeypatch.setattr(enclosed, "send_run", unhurried.confirming_run)
+    end = 60.0
     reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm="whole", report=seen.append)
     assert before[-1] < end  # the proof has ended, its audit has not
     after = seen[len(before) :]

@@ -27,12 +27,12 @@ from reference.solver import proof_steps
 from reference.solver.enclosed import audited, proved_digits
 from reference.solver.proof_steps import Feed
 
-SHORT = {"t_end": "300", "digits": 30, "level": "enclosed"}
+SHORT = {"t_end": "120", "digits": 30, "level": "enclosed"}
 
 
 @pytest.fixture(scope="module")
 def enclosed():
-    return reference.solve(reference.load_scene("paris"), t_end="600", level="enclosed", engine="limbs")
+    return reference.solve(reference.load_scene("paris"), t_end="240", level="enclosed", engine="limbs")
 
 
 def finer(scene, prec=300):
@@ -41,7 +41,7 @@ def finer(scene, prec=300):
 
 
 def test_an_enclosed_file_is_digit_for_digit_the_confirmed_one(enclosed):
-    confirmed = reference.solve(reference.load_scene("paris"), t_end="600", level="confirmed")
+    confirmed = reference.solve(reference.load_scene("paris"), t_end="240", level="confirmed")
     assert grid_sheet(enclosed) == grid_sheet(confirmed)
     ours, theirs = transits_sheet(enclosed), transits_sheet(confirmed)
     assert [row[:-1] for row in ours.rows] == [row[:-1] for row in theirs.rows]
@@ -72,23 +72,23 @@ def test_the_manifest_carries_the_proof(enclosed, tmp_path):
 
 
 SCENES = {
-    "equator": {"site": {"latitude": "0"}},
+    "drag": {"pendulum": {"drag": "0.01"}},
     "pole": {"site": {"latitude": "90"}},
     "south": {"site": {"latitude": "-33.9"}},
     "fast Earth": {"site": {"rotation_rate": "0.001"}},
     "no rotation": {"site": {"rotation_rate": "0"}},
-    "drag": {"pendulum": {"drag": "0.01"}},
+    "equator": {"site": {"latitude": "0"}},
     "meridian": {"release": {"x": "0", "y": "0.5"}},
     "moving": {"release": {"x": "0.3", "y": "0.4", "vx": "0.067", "vy": "-0.2"}},
-    "binary64": {"inputs": "binary64"},
-    "2 rad": {"pendulum": {"length": "1"}, "release": {"angle": "114.59155902616464", "azimuth": "53"}},
     "3.1 rad": {"pendulum": {"length": "1"}, "release": {"angle": "177.61691649055521", "azimuth": "53"}},
+    "2 rad": {"pendulum": {"length": "1"}, "release": {"angle": "114.59155902616464", "azimuth": "53"}},
+    "binary64": {"inputs": "binary64"},
 }
 
 
-@pytest.mark.parametrize("sections", one_in(2, SCENES.values()), ids=SCENES.keys())
+@pytest.mark.parametrize("sections", one_in(4, SCENES.values()), ids=SCENES.keys())
 def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections, size):
-    scene = make_scene(**sections, run={**SHORT, "t_end": size("12", "60")})
+    scene = make_scene(**sections, run={**SHORT, "t_end": size("5", "60")})
     solution = reference.solve(scene)
     sheet, truth = grid_sheet(solution), finer(scene, 256)
     for name, text in zip(sheet.header[1:], sheet.rows[-1][1:], strict=True):
@@ -108,7 +108,7 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize(("name", "engine"), one_in(2, HARD.values()), ids=HARD.keys())
+@pytest.mark.parametrize(("name", "engine"), one_in(4, HARD.values()), ids=HARD.keys())
 def test_scenes_that_bounds_find_hard_are_proved(name, engine):
     solution = reference.solve(reference.load_scene(name), level="enclosed", engine=engine)
     assert solution.level == "enclosed"
@@ -146,10 +146,10 @@ def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_pa
     assert manifest.transits == "undecided intervals"
     (possible,) = manifest.possible
     assert possible.parity == "odd"
-    truth = finer(make_scene(run=SHORT))
+    truth = finer(make_scene(run=SHORT | {"t_end": "60"}), 160)
     assert Fraction(possible.from_s) < truth.transits.exact("t")[3] < Fraction(possible.to_s)
     assert Fraction(possible.to_s) - Fraction(possible.from_s) < Fraction(1, 10**19)
-    assert manifest.counts.transits == 35
+    assert manifest.counts.transits == 13
     assert "possible transit in [" in (path / "certified.txt").read_text()
     assert problems_of(path) == []
 
@@ -179,7 +179,7 @@ def test_a_possible_transit_is_reported_within_the_run(monkeypatch):
 
     doctored(monkeypatch, doubt)
     early, late = reference.solve(make_scene(run=SHORT)).possible
-    assert (early[0], late[1]) == (0, 300)
+    assert (early[0], late[1]) == (0, 120)
 
 
 @pytest.mark.parametrize(("engine", "shift"), [("heyoka", Fraction(1, 10**35)), ("limbs", Fraction(1, 10**29))])
@@ -196,7 +196,7 @@ def test_a_state_outside_its_ball_names_time_and_component(monkeypatch, engine, 
 
 def test_a_transit_that_heyoka_does_not_see_is_named(monkeypatch):
     doctored(monkeypatch, lambda proved: replace(proved, transits=proved.transits[:-1]))
-    with pytest.raises(IntegrationError, match="heyoka finds 36 transits, the enclosure 35"):
+    with pytest.raises(IntegrationError, match="heyoka finds 14 transits, the enclosure 13"):
         reference.solve(make_scene(run=SHORT))
 
 
@@ -282,7 +282,7 @@ def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
 
     monkeypatch.setattr(proof_steps, "fastest", watched)
     by_limbs = reference.solve(scene, engine="limbs")
-    assert by_limbs.run.engine == "heyoka"
+    assert (by_limbs.run.engine, by_limbs.level, by_limbs.possible) == ("heyoka", "enclosed", ())
     names, precs = zip(*tried, strict=True)
     again = names.index("heyoka") + 1
     assert names[0] == "limbs"

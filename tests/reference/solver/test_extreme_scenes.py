@@ -81,7 +81,7 @@ def axis_distance(k: Inputs) -> Any:
     return (normal + number(k.altitude)) * MP.cos(phi)
 
 
-@pytest.mark.parametrize("name", one_in(2, UNDAMPED))
+@pytest.mark.parametrize("name", one_in(5, UNDAMPED))
 def test_it_keeps_to_the_sphere_and_keeps_its_energy(name: str) -> None:
     """h = v²/2 + g z - Ω²/2 (squared distance from the Earth's axis), to 17 digits of its terms."""
     k = load_scene(name).exact
@@ -129,17 +129,18 @@ def by_newton(k: Inputs, start: list[Any], t: Any) -> list[Any]:
 @pytest.mark.parametrize(
     ("name", "t"),
     one_in(
-        2,
+        4,
         [
+            ("creeping_rotation", "0.005"),
             ("creeping_rotation", "0.02"),
             ("creeping", "0.005"),
             ("damped", "2"),
-            ("overdamped", "0.3"),
             ("small_body", "1"),
+            ("overdamped", "0.3"),
             ("microgravity", "10"),
             ("close_pair", "0.3"),
-            ("gravity_zero", "5"),
             ("over_top", "0.2"),
+            ("gravity_zero", "5"),
             ("almost_inverted", "2"),
             ("creeping_far", "0.00001"),
             ("fast_pole", "0.2"),
@@ -207,16 +208,19 @@ def nanometre(t: Any) -> tuple[Any, ...]:
 
 @pytest.mark.parametrize(
     ("name", "path", "end", "error"),
-    [
-        ("conical", exactly_conical(number("3.5")), "60", 1e-38),
-        ("conical_pole", exactly_conical(number("3.5") - number("7.292115e-5")), "60", 1e-38),
-        ("separatrix", separatrix, "20", 1e-29),
-        ("meridian_plane", planar, "30", 1e-38),
-        ("force_free", on_a_great_circle, "600", 1e-28),
-        ("weightless", weightless, "3000", 1e-28),
-        ("nanometre", nanometre, "600", 1e-27),  # the swing's own nonlinearity, (1e-9/67)² of 1e-9 m times w t
-        ("inverted_rest", lambda _: (MP.zero, MP.zero, MP.one), "60", 1e-60),
-    ],
+    one_in(
+        2,
+        [
+            ("conical_pole", exactly_conical(number("3.5") - number("7.292115e-5")), "60", 1e-38),
+            ("conical", exactly_conical(number("3.5")), "60", 1e-38),
+            ("separatrix", separatrix, "20", 1e-29),
+            ("meridian_plane", planar, "30", 1e-38),
+            ("weightless", weightless, "3000", 1e-28),
+            ("force_free", on_a_great_circle, "600", 1e-28),
+            ("inverted_rest", lambda _: (MP.zero, MP.zero, MP.one), "60", 1e-60),
+            ("nanometre", nanometre, "600", 1e-27),  # the swing's own nonlinearity, (1e-9/67)² of 1e-9 m times w t
+        ],
+    ),
 )
 def test_it_follows_its_closed_solution(name: str, path: Path, end: str, error: float) -> None:
     solution = solve(changed(name, t_end=end, transits=False, level="confirmed"))
@@ -295,7 +299,9 @@ def text(value: Fraction) -> str:
     return f"{(value * 10**places).numerator}e-{places}"
 
 
-@pytest.mark.parametrize("name", ["small_body", "near_inverted", "creeping_rotation", "microgravity", "barely_over"])
+@pytest.mark.parametrize(
+    "name", one_in(2, ["small_body", "microgravity", "creeping_rotation", "barely_over", "near_inverted"])
+)
 def test_four_times_larger_and_twice_as_slow_is_the_same_motion(name: str) -> None:
     step = load_scene(name).run.grid_step
     asked = {"t_end": text(Fraction(step) * 5), "digits": 20, "level": "computed", "transits": False}

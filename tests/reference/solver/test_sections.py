@@ -7,7 +7,6 @@ from random import Random
 import pytest
 from passages import found, outside
 from random_scenes import random_scene
-from sampled import one_in
 
 import reference
 from reference.errors import InputError
@@ -62,7 +61,10 @@ def test_what_the_end_of_a_steps_polynomial_lacks_counts_in_the_bounds(monkeypat
     assert off() != []
 
 
-@pytest.mark.parametrize("seed", one_in(8, range(40)))
+# in every run: a push with drag on the Earth, and a release at rest where it turns 1500 times as fast
+@pytest.mark.parametrize(
+    "seed", [seed if seed in (8, 10) else pytest.param(seed, marks=pytest.mark.long) for seed in range(40)]
+)
 def test_sections_of_random_scenes_are_those_of_another_code(seed):
     scene, words, swing = drawn(seed)
     check(reference.solve(scene, level="enclosed", sections=words), words, swing)

@@ -21,7 +21,7 @@ from reference.engines.plan import Plan
 from reference.engines.registry import run, run_both
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.columns import GRID
-from reference.numbers.precision import DOUBLE, real
+from reference.numbers.precision import DOUBLE, LONG_DOUBLE, real
 from reference.scenes.shipped import data_root
 from reference.solver import pilot
 from reference.solver import solve as solver
@@ -53,7 +53,7 @@ HARD = {
 
 @pytest.mark.parametrize("release", one_in(2, HARD.values()), ids=HARD.keys())
 def test_large_angles_keep_forty_digits(release, size):
-    scene = make_scene(pendulum={"length": "1"}, release=release, run={"t_end": size("15", "60"), "digits": 40})
+    scene = make_scene(pendulum={"length": "1"}, release=release, run={"t_end": size("6", "60"), "digits": 40})
     solution = reference.solve(scene)
     sheet = grid_sheet(solution)
     truth = by_higher_precision(scene)
@@ -65,7 +65,7 @@ def test_large_angles_keep_forty_digits(release, size):
     assert solution.checks[0].number != solution.run.number
 
 
-@pytest.mark.parametrize("digits", [1, 5, 12, 17, 25])
+@pytest.mark.parametrize("digits", one_in(2, [1, 5, 17, 12, 25]))
 @pytest.mark.parametrize("level", ["computed", "self_consistent", "confirmed"])
 def test_the_last_printed_digit_is_off_by_at_most_one_at_every_level(level, digits):
     scene = make_scene(run={"t_end": "300", "digits": digits, "level": level})
@@ -77,11 +77,11 @@ def test_the_last_printed_digit_is_off_by_at_most_one_at_every_level(level, digi
 
 
 def test_the_bound_of_every_transit_holds_against_a_finer_run(paris):
-    solution = reference.solve(paris, t_end="1200", digits=20, level="confirmed")
+    solution = reference.solve(paris, t_end="600", digits=20, level="confirmed")
     finer = run(Plan(solution.scene.exact, "spin", real(160), solution.times, transits=True))
     exact = finer.transits.exact("t")
     sheet = transits_sheet(solution)
-    assert len(exact) == len(sheet.rows) == 146
+    assert len(exact) == len(sheet.rows) == 73
     for row, t in zip(sheet.rows, exact, strict=True):
         assert abs(Fraction(row[1]) - t) <= Fraction(row[-1])
 
@@ -142,13 +142,13 @@ def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(pari
         {"site": {"latitude": "90"}},
         pytest.param({"site": {"latitude": "0"}}, marks=pytest.mark.long),
         pytest.param({"site": {"latitude": "-33.9"}}, marks=pytest.mark.long),
-        {"site": {"rotation_rate": "0"}},
+        pytest.param({"site": {"rotation_rate": "0"}}, marks=pytest.mark.long),
         pytest.param({"site": {"rotation_rate": "0.001"}}, marks=pytest.mark.long),
-        {"site": {"rotation_rate": "0.001", "gravity_is": "effective"}},
+        pytest.param({"site": {"rotation_rate": "0.001", "gravity_is": "effective"}}, marks=pytest.mark.long),
         {"pendulum": {"drag": "0.01"}},
         {"site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "1", "vx": "1", "vy": "0"}},
         {"release": {"x": "0", "y": "0"}},
-        {"release": {"x": "1e-9", "y": "0"}},
+        pytest.param({"release": {"x": "1e-9", "y": "0"}}, marks=pytest.mark.long),
     ],
     ids=[
         "pole",
@@ -163,8 +163,8 @@ def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(pari
         "tiny",
     ],
 )
-def test_every_kind_of_scene_is_confirmed_to_thirty_digits(sections):
-    scene = make_scene(**sections, run={"t_end": "120", "digits": 30})
+def test_every_kind_of_scene_is_confirmed_to_thirty_digits(sections, size):
+    scene = make_scene(**sections, run={"t_end": size("30", "120"), "digits": 30})
     solution = reference.solve(scene)
     truth = by_higher_precision(scene, 300)
     for name, exact in zip(solution.grid.columns, truth, strict=True):
@@ -181,7 +181,8 @@ def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
     assert effective.transits is not None
     assert [effective.grid.exact(name) for name in GRID] == [on_axis.grid.exact(name) for name in GRID]
     assert effective.transits.exact("t") == on_axis.transits.exact("t")
-    assert abs(effective.x[-1] - reference.solve(make_scene(site=fast, run=run)).x[-1]) > 1e-3
+    otherwise = reference.solve(make_scene(site=fast, run=run | {"digits": "9", "level": "computed"}))
+    assert abs(effective.x[-1] - otherwise.x[-1]) > 1e-3
 
 
 def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris):
@@ -321,9 +322,9 @@ def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypa
         pendulum={"length": "1"},
         site={"rotation_rate": "0"},
         release={"angle": "179.999999999999", "azimuth": "30"},
-        run={"t_end": "60", "digits": 20},
+        run={"t_end": "30", "digits": 20},
     )
-    assert pilot.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
+    assert pilot.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > LONG_DOUBLE.prec
     solution = reference.solve(scene)
     truth = by_higher_precision(scene, 400)
     assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
@@ -367,9 +368,11 @@ def test_an_error_in_the_second_process_arrives_in_the_first(paris):
 
 
 def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
-    """Rounding the inputs of Paris to binary64 alone moves the bob by 5e-13 m in a day."""
+    """Rounding the inputs of Paris to binary64 alone moves the bob by 5e-13 m in a day, and by 1e-13 m in six hours."""
     ends = [
-        reference.solve(paris.with_values([f"inputs={reading}"]), digits=11, level="computed", transits=False).x[-1]
+        reference.solve(
+            paris.with_values([f"inputs={reading}"]), t_end="21600", digits=11, level="computed", transits=False
+        ).x[-1]
         for reading in ("decimal", "binary64")
     ]
     assert 1e-14 < abs(np.subtract(*ends)) < 5e-12
@@ -379,7 +382,7 @@ SCRIPT = """
 import reference, reference.engines.registry
 reference.engines.registry.WORTH_A_PROCESS = 0.0
 for level in ("confirmed", "enclosed"):
-    solution = reference.solve(reference.load_scene("paris"), t_end="120", digits=20, level=level)
+    solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=20, level=level)
     print(level, len(solution.directions))
 """
 
@@ -388,4 +391,4 @@ def test_a_plain_script_without_a_main_guard_may_use_both_cores(tmp_path):
     script = tmp_path / "mine.py"
     script.write_text(SCRIPT)
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
-    assert (done.stdout, done.stderr) == ("confirmed 14\nenclosed 14\n", "")
+    assert (done.stdout, done.stderr) == ("confirmed 7\nenclosed 7\n", "")
