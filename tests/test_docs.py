@@ -101,6 +101,9 @@ def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
     for command, shown in commands(MEASURED):
         got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
+    late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
+    (tmp_path / "late.csv").write_text(late, encoding="utf-8")
+    assert "late.csv disagrees" in typed('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
 
 
 def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path, typed):
