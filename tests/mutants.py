@@ -23,6 +23,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from itertools import islice
 from pathlib import Path
 from queue import Queue
 from typing import Any, NamedTuple
@@ -63,7 +64,7 @@ class Mutant(NamedTuple):
     number: int
     line: str
     change: str  # before -> after
-    source: str  # of the whole file
+    index: int  # among those of its file
     tests: str
 
     def __str__(self) -> str:
@@ -73,6 +74,13 @@ class Mutant(NamedTuple):
     def key(self) -> tuple[str, str, str]:
         """What an entry of the table of equivalents names; the number of a line may change."""
         return self.file, self.line, self.change
+
+    @property
+    def source(self) -> str:
+        """The whole file with the change, written out when asked for: that takes far longer than the change."""
+        tree = ast.parse((ROOT / self.file).read_text())
+        next(islice(changes(tree), self.index, None))
+        return ast.unparse(tree)
 
 
 def others(node: Any) -> Iterator[Any]:
@@ -112,19 +120,24 @@ def places(node: Any) -> Iterator[tuple[Any, str, int | None]]:
                 yield from places(child)
 
 
-def mutants(file: str, tests: str) -> Iterator[Mutant]:
-    """Yield every mutant of a file."""
-    source = (ROOT / file).read_text()
-    tree = ast.parse(source)
+def changes(tree: ast.Module) -> Iterator[tuple[Any, Any]]:
+    """Yield each node that may be changed and what stands in its place, which it does until the next is asked for."""
     for parent, field, i in places(tree):
         old = getattr(parent, field)
         node = old if i is None else old[i]
         for new in others(node):
             setattr(parent, field, new if i is None else [*old[:i], new, *old[i + 1 :]])
-            before, after = (ast.unparse(part).partition("\n")[0] for part in (node, new))
-            line = source.splitlines()[node.lineno - 1].strip()
-            yield Mutant(file, node.lineno, line, f"{before} -> {after}", ast.unparse(tree), tests)
+            yield node, new
             setattr(parent, field, old)
+
+
+def mutants(file: str, tests: str) -> Iterator[Mutant]:
+    """Yield every mutant of a file."""
+    source = (ROOT / file).read_text()
+    lines = source.splitlines()
+    for index, (node, new) in enumerate(changes(ast.parse(source))):
+        before, after = (ast.unparse(part).partition("\n")[0] for part in (node, new))
+        yield Mutant(file, node.lineno, lines[node.lineno - 1].strip(), f"{before} -> {after}", index, tests)
 
 
 def every_mutant() -> Iterator[list[Mutant]]:

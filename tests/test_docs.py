@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import doctest
+import io
 import json
+import locale
 import math
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 import tomllib
+import warnings
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -290,18 +293,27 @@ def test_every_command_and_option_in_the_text_of_a_page_is_there():
             assert set(re.findall(r"(?<!\S)--[\w-]+", words)) <= options[name], (page, name, words)
 
 
-def build(source: Path, site: Path) -> subprocess.CompletedProcess[str]:
-    """Make a site as `make docs` does."""
+def build(source: Path, site: Path) -> tuple[int, str]:
+    """Make a site as `make docs` does, in this process and without an index for the search; return status, stderr."""
+    from sphinx.builders.html import StandaloneHTMLBuilder
+    from sphinx.cmd.build import main
+
     (line,) = re.findall(r"-m sphinx (.+) -c docs \. build/docs$", (ROOT / "Makefile").read_text("utf-8"), re.M)
-    words = [sys.executable, "-m", "sphinx", *line.split(), "-c", str(ROOT / "docs"), str(source), str(site)]
-    return subprocess.run(words, capture_output=True, text=True, check=False)
+    err = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings(), contextlib.redirect_stderr(err):
+        warnings.simplefilter("ignore")  # Sphinx's own about its future
+        patch.setattr(StandaloneHTMLBuilder, "search", False)
+        patch.setattr(sys, "path", [*sys.path])
+        patch.setattr(locale, "setlocale", lambda *_: "C")  # it would choose one for all tests that follow
+        status = main([*line.split(), "-c", str(ROOT / "docs"), str(source), str(site)])
+    return status, err.getvalue()
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
-    made = build(ROOT, folder)
-    assert made.returncode == 0, made.stderr  # any warning is an error: broken links, unknown names, pages in no list
+    status, err = build(ROOT, folder)
+    assert status == 0, err  # any warning is an error: broken links, unknown names, pages in no list
     return folder
 
 
@@ -329,9 +341,9 @@ def test_a_broken_link_fails(tmp_path):
     links = ["[a](other.md)", "[b](other.md#there)", "[c](other.md#gone)", "[d](gone.md)", "[e](#nowhere)"]
     (tmp_path / "docs/index.md").write_text("# I\n\n" + " ".join(links) + "\n\n```{toctree}\nother\n```\n", "utf-8")
     (tmp_path / "docs/other.md").write_text("# O\n\n## There\n", "utf-8")
-    made = build(tmp_path, tmp_path / "site")
-    assert made.returncode == 1
-    assert re.findall(r": '([\w.]+)' \[myst.xref_missing\]", made.stderr) == ["gone", "gone.md", "nowhere"]
+    status, err = build(tmp_path, tmp_path / "site")
+    assert status == 1
+    assert re.findall(r": '([\w.]+)' \[myst.xref_missing\]", err) == ["gone", "gone.md", "nowhere"]
 
 
 def test_every_file_and_folder_that_a_page_names_exists():

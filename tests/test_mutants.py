@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 
 import pytest
@@ -41,3 +42,13 @@ def test_no_equivalent_is_drawn_and_how_many_are_left_out_is_counted(monkeypatch
     drawn, left_out = mutants.drawn(10**4, 1, one["file"])
     assert (len(drawn), left_out) == (len(whole) - 1, 1)
     assert one["change"] not in {mutant.change for mutant in drawn if mutant.line == one["line"]}
+
+
+def test_the_source_of_a_mutant_is_the_file_with_its_change_and_no_other(files):
+    for every in files:
+        mutant = every[len(every) // 2]
+        whole = ast.unparse(ast.parse((ROOT / mutant.file).read_text())).splitlines()
+        changed = [pair for pair in zip(whole, mutant.source.splitlines(), strict=True) if pair[0] != pair[1]]
+        assert len(changed) == 1, mutant
+        before, after = mutant.change.split(" -> ")
+        assert before in changed[0][0] and after in changed[0][1], mutant

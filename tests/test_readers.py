@@ -21,6 +21,7 @@ from reference.numbers.columns import STATE
 READERS = ROOT / "docs/readers"
 PARIS = ROOT / "data/golden/paris"
 MOST_LINES, MOST_OF_FUNCTIONS = 40, 100
+END = 30  # s, of the motions whose functions are evaluated; one has more than a hundred pieces by then
 # the tool that is wanted, what compiles the program (none for scripts), and what runs it
 COMMANDS = {
     "golden.c": (["cc", "-O2", "{file}", "-o", "{program}"], ["{program}"]),
@@ -40,7 +41,7 @@ EVALUATORS = {
     "function.mjs": ([], ["node", "{file}"]),
     "function.go": (["go", "build", "-o", "{program}", "{file}"], ["{program}"]),
     "function.rs": (["rustc", "-O", "{file}", "-o", "{program}"], ["{program}"]),
-    "Function.java": ([], ["java", "{file}"]),
+    "Function.java": ([], ["java", "-XX:TieredStopAtLevel=1", "{file}"]),
     "function_at.m": ([], ["octave-cli", "--norc", "{file}"]),
     "function.R": ([], ["Rscript", "--vanilla", "{file}"]),
 }
@@ -60,14 +61,21 @@ def test_every_program_is_run_is_short_and_stands_in_the_table():
     assert set(table) == files
 
 
-def printed(name: str, folder: Path, tmp_path: Path, *words: str, flags: tuple[str, ...] = ()) -> list[list[str]]:
+@pytest.fixture(scope="module")
+def programs(tmp_path_factory):
+    """Where programs are compiled, each once."""
+    return tmp_path_factory.mktemp("programs")
+
+
+def printed(name: str, folder: Path, programs: Path, *words: str, flags: tuple[str, ...] = ()) -> list[list[str]]:
     """Return the words of each line that a program prints about a dataset, given more words."""
-    places = {"file": str(READERS / name), "program": str(tmp_path / "program")}
+    program = programs / "-".join(("run", name.replace(".", "_"), *flags))
+    places = {"file": str(READERS / name), "program": str(program)}
     both = (COMMANDS | EVALUATORS)[name]
     compiling, running = ([word.format(**places) for word in command] for command in both)
-    if compiling:
-        subprocess.run([*compiling, *flags], check=True, capture_output=True, cwd=tmp_path)
-    done = subprocess.run([*running, str(folder), *words], check=True, capture_output=True, text=True, cwd=tmp_path)
+    if compiling and not program.exists():
+        subprocess.run([*compiling, *flags], check=True, capture_output=True, cwd=programs)
+    done = subprocess.run([*running, str(folder), *words], check=True, capture_output=True, text=True, cwd=programs)
     return [line.split() for line in done.stdout.splitlines()]
 
 
@@ -83,12 +91,12 @@ NAMES = [pytest.param(name, marks=[pytest.mark.long] if name in LONG else []) fo
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_reads_paris(name, paris, tmp_path):
+def test_it_reads_paris(name, paris, programs):
     compiling, running = COMMANDS[name]
     tool = (compiling or running)[0]
     if not works(tool):
         pytest.skip(f"{tool} is not installed for this user")
-    grid, state, transits, *vectors = _parted(printed(name, PARIS, tmp_path))
+    grid, state, transits, *vectors = _parted(printed(name, PARIS, programs))
     assert grid == ["grid", str(len(paris.times))]
     assert [words[0] for words in state] == ["t", "x", "y", "z", "vx", "vy", "vz"]
     assert [float(words[1]) for words in state] == [float(paris.exact(words[0])[-1]) for words in state]
@@ -108,10 +116,10 @@ def _parted(lines):
     return [lines[0], lines[1:8], lines[8], *lines[9:]]
 
 
-def test_fortran_reads_as_many_digits_as_quadruple_precision_has(paris, tmp_path):
+def test_fortran_reads_as_many_digits_as_quadruple_precision_has(paris, programs):
     if shutil.which("gfortran") is None:
         pytest.skip("gfortran is not installed")
-    for column, value, *_ in printed("golden.f90", PARIS, tmp_path)[2:8]:
+    for column, value, *_ in printed("golden.f90", PARIS, programs)[2:8]:
         exact = paris.exact(column)[-1]
         assert abs(Fraction(value) - exact) <= abs(exact) / 2**111
 
@@ -120,7 +128,7 @@ def test_fortran_reads_as_many_digits_as_quadruple_precision_has(paris, tmp_path
 def with_function(request, tmp_path_factory):
     """A dataset whose z follows from the sphere, and one in which z has a series."""
     pytest.importorskip("flint")
-    scene = reference.load_scene(request.param, ["run.t_end=120", "run.grid_step=60", "run.digits=12"])
+    scene = reference.load_scene(request.param, [f"run.t_end={END}", f"run.grid_step={END // 2}", "run.digits=12"])
     solution = reference.solve(scene, level="enclosed", transits=False, engine="limbs", function=True)
     return reference.write(solution, tmp_path_factory.mktemp("function") / scene.id)
 
@@ -133,7 +141,7 @@ EVALUATING = [
 
 
 @pytest.mark.parametrize(("name", "flags"), EVALUATING)
-def test_it_evaluates_as_python_does(name, flags, with_function, tmp_path):
+def test_it_evaluates_as_python_does(name, flags, with_function, programs):
     """At 10,000 times: the same doubles; with fused operations as near to a run in limbs as the bounds say."""
     tool = (EVALUATORS[name][0] or EVALUATORS[name][1])[0]
     if not works(tool):
@@ -143,7 +151,7 @@ def test_it_evaluates_as_python_does(name, flags, with_function, tmp_path):
     golden = reference.load(with_function)
     times = random_times(golden.function, 10_000)
     words = [t.hex() if name.endswith(".R") else repr(t) for t in times.tolist()]
-    found = np.array(printed(name, with_function, tmp_path, *words, flags=flags), dtype=np.float64)
+    found = np.array(printed(name, with_function, programs, *words, flags=flags), dtype=np.float64)
     at = golden.at(times)
     expected = np.column_stack([times, *(getattr(at, name) for name in STATE)])
     assert found.shape == expected.shape
@@ -157,11 +165,11 @@ def test_it_evaluates_as_python_does(name, flags, with_function, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["function.c", "function.mjs", "function_at.m", "function.R"])
-@pytest.mark.parametrize("t", ["-1", "120.5", "nan"])
-def test_a_time_outside_is_refused(name, t, with_function, tmp_path):
+@pytest.mark.parametrize("t", ["-1", f"{END}.5", "nan"])
+def test_a_time_outside_is_refused(name, t, with_function, programs):
     tool = (EVALUATORS[name][0] or EVALUATORS[name][1])[0]
     if not works(tool):
         pytest.skip(f"{tool} is not installed for this user")
     with pytest.raises(subprocess.CalledProcessError) as refused:
-        printed(name, with_function, tmp_path, t)
-    assert "not within 0 to 120 s" in refused.value.stderr
+        printed(name, with_function, programs, t)
+    assert f"not within 0 to {END} s" in refused.value.stderr

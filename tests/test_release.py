@@ -8,11 +8,14 @@ import subprocess
 import sys
 import tarfile
 import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import citation
 import pytest
+from hatchling.builders.sdist import SdistBuilder
 from places import ROOT
 
 from reference.scenes.shipped import data_root, scene_ids, seals
@@ -30,6 +33,7 @@ COMMANDS = [
     ["sweep", "paris", "--over", "site.latitude=0:40:20", "--t-end", "60", "--engine", "heyoka", "--json"],
     ["atlas", "--data", ".", "--out", "atlas"],
 ]
+QUICKER = {"score": ["--no-diagnosis"]}  # an explanation reads no file that a verdict does not
 SCRIPT = """
 import json, sys
 from pathlib import Path
@@ -62,17 +66,16 @@ def test_a_person_and_the_addresses_come_from_the_one_place():
     assert lines[-1] == "  - family-names: Lovelace\n    given-names: Ada M."
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("built")
-    subprocess.run([sys.executable, "-m", "hatchling", "build", "-d", str(folder)], cwd=ROOT, check=True)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def wheel(built: Path) -> Path:
-    (path,) = built.glob("*.whl")
+def built(kind: str, folder: Path) -> Path:
+    """Build the wheel or the source distribution; return its path."""
+    subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)], cwd=ROOT, check=True)
+    (path,) = folder.iterdir()
     return path
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return built("wheel", tmp_path_factory.mktemp("wheel"))
 
 
 def names_of(root: Path, *parts: str) -> set[str]:
@@ -100,12 +103,28 @@ def test_the_wheel_holds_every_module_and_all_data_and_no_more(wheel: Path) -> N
     assert sum(path.stat().st_size for path in data_root().rglob("*") if path.is_file()) < DATA_BYTES
 
 
-def test_the_source_distribution_holds_what_makes_and_tests_it(built: Path) -> None:
-    (path,) = built.glob("*.tar.gz")
-    with tarfile.open(path) as archive:
-        found = {name.partition("/")[2] for name in archive.getnames()}
+def files_of_sdist() -> set[str]:
+    """Return what the source distribution is to hold, as hatchling finds it."""
+    return {one.distribution_path for one in SdistBuilder(str(ROOT)).recurse_included_files()}
+
+
+def test_the_source_distribution_holds_what_makes_and_tests_it(wheel: Path) -> None:
+    """The wheel is packed already, with nearly all of the bytes; the rest is compressed here as it would be there."""
+    found = files_of_sdist()
     kept = names_of(ROOT, "foucault.py", "reference", "compare", "data", "docs", "tests", "Makefile", "README.md")
     assert kept <= found
+    rest = (name for name in sorted(found) if not name.startswith(("foucault.py", "reference/", "compare/", "data/")))
+    packed = zlib.compress(b"".join((ROOT / name).read_bytes() for name in rest), 9)
+    assert wheel.stat().st_size + len(packed) < WHEEL_BYTES
+
+
+@pytest.mark.long
+def test_the_source_distribution_is_written_as_hatchling_finds_it(tmp_path: Path) -> None:
+    path = built("sdist", tmp_path)
+    with tarfile.open(path) as archive:
+        found = {name.partition("/")[2] for name in archive.getnames()}
+    assert found - files_of_sdist() == {"PKG-INFO", "pyproject.toml", ".gitignore"} - files_of_sdist()
+    assert files_of_sdist() <= found
     assert path.stat().st_size < WHEEL_BYTES
 
 
@@ -114,10 +133,11 @@ def test_every_scene_ships_and_every_dataset_that_the_index_names_is_there() -> 
     assert {path.name for path in (data_root() / "golden").iterdir() if path.is_dir()} == set(seals())
 
 
-def test_its_commands_work_in_an_empty_folder(
-    wheel: Path, tmp_path: Path, size: Callable[[dict[str, str], dict[str, str]], dict[str, str]]
-) -> None:
-    """What numba compiles, most of a minute of work, is compiled under --long; its absence is an installation too."""
+def test_its_commands_work_in_an_empty_folder(wheel: Path, tmp_path: Path, size: Callable[[Any, Any], Any]) -> None:
+    """What numba compiles, most of a minute of work, is compiled under --long; its absence is an installation too.
+
+    So is what explains the error of a wrong file.
+    """
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path / "site")
     place = tmp_path / "empty"
@@ -126,8 +146,9 @@ def test_its_commands_work_in_an_empty_folder(
     (place / "wrong.csv").write_text("t,x,y\n0,0.3,0.4\n60,-0.176,-0.415\n")
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site"), "FOUCAULT_CACHE": str(tmp_path / "cache")}
     environment |= size({"NUMBA_DISABLE_JIT": "1"}, {})
+    commands = [[*words, *size(QUICKER.get(words[0], []), [])] for words in COMMANDS]
     done = subprocess.run(
-        [sys.executable, "-P", "-c", SCRIPT, json.dumps(COMMANDS)],
+        [sys.executable, "-P", "-c", SCRIPT, json.dumps(commands)],
         cwd=place,
         env=environment,
         capture_output=True,

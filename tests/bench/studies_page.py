@@ -11,7 +11,6 @@ from textwrap import wrap
 from typing import Any
 
 from pydantic import TypeAdapter
-from scipy.stats import kendalltau
 
 from compare.methods import METHODS
 from compare.report.pareto import TARGETS_M, Curve, cost_at, cost_of, curves, rows_of, seconds, sentences, tidy
@@ -288,6 +287,8 @@ def _cheapest(curve: Curve) -> float:
 
 
 def _again(kept: Documents) -> Iterator[str]:
+    from scipy.stats import kendalltau  # whose import takes half a second
+
     yield from _section("### The same again", "paris_again")
     first, second = (
         {row.key: row.cpu_s or 0.0 for row in rows_of(kept[name]) if row.status == Status.OK}

@@ -9,11 +9,10 @@ import sys
 import pytest
 from places import ROOT
 
-pytest.importorskip("numba")
-
 
 @pytest.mark.long
 def test_no_index_of_the_sums_of_digits_is_out_of_range(tmp_path):
+    pytest.importorskip("numba")
     environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
     words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/reference/enclosure/test_digits.py"]
     command = [sys.executable, *words]

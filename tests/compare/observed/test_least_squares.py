@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from scipy.stats import linregress
 
 from compare.observed.least_squares import (
     Numbers,
@@ -93,6 +92,8 @@ def test_numbers_that_are_not_finite_are_refused_and_lapack_prints_nothing(bad, 
 
 
 def test_the_power_law_and_its_standard_error_are_those_of_scipy():
+    from scipy.stats import linregress  # whose import takes more than a second
+
     x = [10.0, 19.0, 31.0, 45.0, 74.0]
     y = [0.9, 2.1, 6.3, 11.0, 37.0]
     law, truth = power_law(x, y), linregress([math.log(v) for v in x], [math.log(v) for v in y])

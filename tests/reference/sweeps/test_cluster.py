@@ -14,8 +14,6 @@ import pytest
 from reference import InputError, load_scene, load_sweep
 from reference.sweeps.sweep import asked_for, run
 
-distributed = pytest.importorskip("distributed")
-pytest.importorskip("pyarrow")
 pytestmark = [
     pytest.mark.filterwarnings("ignore"),
     pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes"),
@@ -29,9 +27,16 @@ def asked(out):
     return replace(whole, rows_per_part=8)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def libraries():
+    pytest.importorskip("distributed")  # here and not above, where whatever collects tests would wait for it
+    pytest.importorskip("pyarrow")
+
+
 @pytest.fixture(scope="module")
 def cluster():
     import dask
+    import distributed
 
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 1, "distributed.deploy.lost-worker-timeout": 1e7}),
@@ -68,6 +73,8 @@ def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(clu
 
 
 def test_if_the_scheduler_is_lost_what_is_done_stays_and_the_same_command_goes_on(tmp_path):
+    import distributed
+
     from reference.sweeps.cluster import ClusterError
 
     folder = tmp_path / "out"
@@ -136,6 +143,8 @@ def test_a_wrong_address_is_named(tmp_path, monkeypatch, address, said):
 
 
 def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
+    import distributed
+
     from reference.sweeps import cluster as module
 
     monkeypatch.setattr(module, "WAIT_S", 1.0)
