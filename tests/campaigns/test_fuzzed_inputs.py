@@ -23,11 +23,11 @@ from reference.errors import FoucaultError, UnreachableError
 from reference.scenes.scene import load_scene
 
 KINDS = {  # what makes an input, what takes it from a file or as it is, and how many in a short run, in a long one
-    "scene": (a_scene, lambda path: examine(str(path)), 120, 3000),
-    "--set": (an_assignment, lambda word: examine("paris", word), 100, 2000),
-    "candidate": (a_candidate, read, 150, 3000),
-    "transits": (a_list_of_transits, read_transits, 50, 1000),
-    "--run": (a_command, lambda word: run_program(arguments(word, load_scene("paris"))), 50, 1000),
+    "scene": (a_scene, lambda path: examine(str(path)), 40, 3000),
+    "--set": (an_assignment, lambda word: examine("paris", word), 40, 2000),
+    "candidate": (a_candidate, read, 50, 3000),
+    "transits": (a_list_of_transits, read_transits, 25, 1000),
+    "--run": (a_command, lambda word: run_program(arguments(word, load_scene("paris"))), 20, 1000),
 }
 
 

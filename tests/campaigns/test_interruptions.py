@@ -9,12 +9,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import product
 from pathlib import Path
 
 import pytest
 from interruption import gone_within
 from moments import chosen, ended_at, undisturbed
 from places import ROOT
+from sampled import one_in
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
 
@@ -103,8 +105,16 @@ LOST = """
 ENGINE = 'InputError("--engine", "heyoka", "an installed engine")'
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.parametrize("body", [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST])
+@pytest.mark.parametrize(
+    ("number", "body"),
+    one_in(
+        2,
+        product(
+            [signal.SIGINT, signal.SIGTERM, signal.SIGHUP],
+            [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST],
+        ),
+    ),
+)
 def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(number: signal.Signals, body: str) -> None:
     """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser."""
     body = body.replace("INTERRUPT", f"os.kill(os.getpid(), {int(number)})")

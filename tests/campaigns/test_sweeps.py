@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ from reference.engines.registry import batches
 WORDS = ["sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
 SMALL_PARTS = """import reference.sweeps.request as request
 from foucault import main
-request.PART_S, request.LEAST_PART = 0.0, 4
+request.PART_S, request.LEAST_PART = 0.0, 2
 main()"""
 
 
@@ -30,8 +31,8 @@ main()"""
 def test_no_transit_is_lost_and_no_error_is_larger_than_estimated(size, tally, engine):
     *common, over = KINDS
     many = [
-        *random_kinds(20261122, size(16, 3000), kinds=tuple(common)),
-        *random_kinds(20261123, size(4, 500), kinds=(over,)),
+        *random_kinds(20261122, size(8, 3000), kinds=tuple(common)),
+        *random_kinds(20261123, size(2, 500), kinds=(over,)),
     ]
     found = compare(batches()[engine], many)
     tally(f"sweeps, {engine}: {found}")
@@ -44,12 +45,10 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes")
-def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally):
-    long, kills, longest = size(0, 1), size(1, 20), size(4, 7)
-    grid = ("-90:90:0.18", "0.1:0.5995:0.0005") if long else ("-90:90:10", "0.1:0.58:0.02")
-    over = ["--over", f"site.latitude={grid[0]}", "--over", f"release.x={grid[1]}"]
-    program = ["foucault.py"] if long else ["-c", SMALL_PARTS]
-    command = [sys.executable, *program, *WORDS, *over, "--engine", "octet" if long else "heyoka"]
+@pytest.mark.long  # the next test kills one after its first part in every run
+def test_kills_leave_parts_that_the_same_command_completes(tmp_path, tally):
+    over = ["--over", "site.latitude=-90:90:0.18", "--over", "release.x=0.1:0.5995:0.0005"]
+    command = [sys.executable, "foucault.py", *WORDS, *over, "--engine", "octet"]
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     subprocess.run([*command, "--out", whole], check=True, cwd=ROOT, capture_output=True)
     generator, done = random.Random(5), 0
@@ -58,7 +57,7 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally
             [*command, "--out", killed], cwd=ROOT, stdout=subprocess.DEVNULL, start_new_session=True
         )
         try:
-            process.wait(generator.uniform(1.0, longest) if done < kills else None)
+            process.wait(generator.uniform(1.0, 7.0) if done < 20 else None)
             break
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
@@ -73,12 +72,12 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally
 # rows side by side, in threads; rows that the solver solves, in processes
 WAYS = {
     "threads": ["--over", "site.latitude=-90:90:1", "--engine", "heyoka"],
-    "processes": ["--over", "site.latitude=-78:78:13", "--digits", "16", "--want", "transits", "--workers", "2"],
+    "processes": ["--over", "site.latitude=-78:78:26", "--digits", "16", "--want", "transits", "--workers", "2"],
 }
 MANY_DIGITS = {"many digits": ["--over", "site.latitude=-80:80:4", "--digits", "32", "--workers", "2"]}
 
 
-@pytest.fixture(scope="module", params=WAYS)
+@pytest.fixture(scope="module")
 def way(request, tmp_path_factory):
     """A sweep of many parts: its command, and the folder that it fills when nothing stops it."""
     whole = tmp_path_factory.mktemp(request.param) / "whole"
@@ -87,10 +86,18 @@ def way(request, tmp_path_factory):
     return command, whole
 
 
+# each way and each kind of end in every run
+ENDS = [
+    *(("threads", "SIGINT"), ("processes", "SIGKILL")),
+    *(
+        pytest.param(*case, marks=pytest.mark.long)
+        for case in (("threads", "SIGKILL"), ("processes", "SIGINT"), *product(WAYS, ("SIGTERM", "SIGHUP")))
+    ),
+]
+
+
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
-@pytest.mark.parametrize(
-    "number", ["SIGKILL", "SIGINT", *(pytest.param(name, marks=pytest.mark.long) for name in ("SIGTERM", "SIGHUP"))]
-)
+@pytest.mark.parametrize(("way", "number"), ENDS, indirect=["way"])
 def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, number, tmp_path):
     """The signal reaches the sweep alone, and its processes notice; to the whole group it goes in another test."""
     command, whole = way

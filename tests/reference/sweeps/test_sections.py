@@ -26,7 +26,7 @@ NEAR = 1e-6  # s, of DOP853 in double
 @pytest.fixture(scope="module")
 def drawn(pytestconfig):
     """Random scenes of all kinds, words of sections, and of each its passages by limbs at 110 bits."""
-    count = 40 if pytestconfig.getoption("--long") else 20
+    count = 40 if pytestconfig.getoption("--long") else 10
     many, generator = list(random_kinds("sections", count, SPAN)), random.Random("sections")
     words = [
         "highest",
