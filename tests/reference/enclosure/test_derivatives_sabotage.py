@@ -142,7 +142,7 @@ RUNS = {  # close to equality, or far from it with derivatives that are exact
     "soon": ({"x": "1", "y": "0.1", "vx": "0.02"}, {"x": "0.3", "vx": "1e-6", "length": "0.001"}, 36),
     "tiny": ({"x": "0.3", "y": "0.4"}, {"x": "1e-25"}, 9),
 }
-IN_EVERY_RUN = ("lean", "release", "angles", "damped", "paris", "tiny")
+IN_EVERY_RUN = ("lean", "release", "angles", "damped", "paris", "soon", "tiny")
 COARSE = 40  # bits of steps that are farther from the motion than the box is wide
 TRUTHS = {}
 
