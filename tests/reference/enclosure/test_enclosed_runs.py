@@ -23,7 +23,7 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize("inputs, end", one_in(2, [
+@pytest.mark.parametrize("inputs, end", one_in(3, [
     (scene(), 100),
     (scene(latitude="0"), 100),
     (scene(latitude="90"), 100),
@@ -46,7 +46,7 @@ def test_forty_digits_hold_the_truth(inputs, end, size):
         assert all(contains(i, x) for i, x in zip(row, exact, strict=True))
 
 
-@pytest.mark.parametrize("name", HARD)
+@pytest.mark.parametrize("name", one_in(2, reversed(HARD)))
 def test_the_hard_scenes_lie_inside(name, size):
     inputs, end = HARD[name], Fraction(size(12, 60))
     proof = enclose(inputs, [end], radius=WANTED, approximant=recurrence(inputs))

@@ -45,6 +45,8 @@ POSSIBLE = {
     ("own plane", "gate 30@0"),
     ("pole", "turn 120"),
 }  # what vanishes at the release, so that nothing is decided
+# with the checks by made-up motions these find every fault below
+IN_EVERY_RUN = ("paris", "plane", "pole")
 TRUTHS = {}
 
 
@@ -168,7 +170,7 @@ def passages_hold(module, names=CASES):
         assert tuple(made.passages) == words
         with mp.workprec(200):
             if name not in TRUTHS:
-                times = [Fraction(end * k, 400) for k in range(1, 401)]
+                times = [Fraction(end * k, 100) for k in range(1, 101)]
                 TRUTHS[name] = [[mp.mpf(x.numerator) / x.denominator for x in row] for row in truth(inputs, times, 200)]
             for word in words:
                 check(inputs, word, made.passages[word], TRUTHS[name], end, name)
@@ -279,17 +281,17 @@ def courses_hold(module):
     assert mine.finish(proved) in module.FINISHED
 
 
-def all_holds(module, papers):
+def all_holds(module, papers, names):
     forms_hold(module)
     few_bits_hold(module)
     apses_hold(module)
     courses_hold(module)
     papers_hold(module, papers)
-    passages_hold(module)
+    passages_hold(module, names)
 
 
-def test_the_module_as_it_is_passes_every_check(papers):
-    all_holds(reference.enclosure.sections, papers)
+def test_the_module_as_it_is_passes_every_check(papers, size):
+    all_holds(reference.enclosure.sections, papers, size(IN_EVERY_RUN, CASES))
 
 
 FAULTS = [
@@ -420,9 +422,9 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("old", "new"), one_in(8, FAULTS))
-def test_each_fault_is_found(old, new, papers):
+def test_each_fault_is_found(old, new, papers, size):
     module = sabotaged(old, new)
     with pytest.raises(
         (AssertionError, ArithmeticError, LookupError, TypeError, ValueError, AttributeError, pytest.fail.Exception)
     ):
-        all_holds(module, papers)
+        all_holds(module, papers, size(IN_EVERY_RUN, CASES))

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from sampled import one_in
 from schemas import path_of, schema_of
 from small_scenes import make_scene
 
@@ -187,7 +188,7 @@ def test_a_broken_assignment_is_refused(paris, assignment):
         paris.with_values([assignment])
 
 
-@given(st.text(max_size=40))
+@given(st.lists(st.sampled_from("ab_7-.A/ \n\0é٣"), max_size=9).map("".join))
 def test_only_plain_words_are_ids(text):
     if is_scene_id(text):
         assert "/" not in text
@@ -236,7 +237,7 @@ def test_a_file_without_an_id_is_named_after_itself(tmp_path, name, own):
             load_scene(path)
 
 
-@pytest.mark.parametrize("name", scene_ids())
+@pytest.mark.parametrize("name", one_in(5, scene_ids()))
 def test_a_scene_as_a_template_is_the_same_scene_and_follows_the_schema(tmp_path, name):
     scene = load_scene(name)
     path = tmp_path / f"{name}.toml"

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 pytest.importorskip("numba")
@@ -62,16 +62,24 @@ def test_an_integer_comes_back_from_its_limbs(value):
     assert joined(np.array(limbs)) == value
 
 
-@given(numbers, numbers, st.integers(min_value=1, max_value=4096))
-def test_a_product_and_a_quotient_are_off_by_less_than_the_last_limbs(a, b, divisor):
-    one = 2 ** fraction_bits(LIMB_COUNT)
-    for got, x, y in zip(product_over(a, b, divisor, usual), a, b, strict=True):
-        assert abs(got - Fraction(round(x * one) * round(y * one), divisor * one)) < 4
+def test_a_product_and_a_quotient_are_off_by_less_than_the_last_limbs(size):
+    @settings(max_examples=size(25, 100))
+    @given(numbers, numbers, st.integers(min_value=1, max_value=4096))
+    def of_any_numbers(a, b, divisor):
+        one = 2 ** fraction_bits(LIMB_COUNT)
+        for got, x, y in zip(product_over(a, b, divisor, usual), a, b, strict=True):
+            assert abs(got - Fraction(round(x * one) * round(y * one), divisor * one)) < 4
+
+    of_any_numbers()
 
 
-@given(numbers, numbers, st.integers(min_value=1, max_value=4096))
-def test_canary_a_compiler_that_may_rearrange_and_fuse_gives_the_same_bits(a, b, divisor):
-    assert (product_over(a, b, divisor, usual) == product_over(a, b, divisor, careless)).all()
+def test_canary_a_compiler_that_may_rearrange_and_fuse_gives_the_same_bits(size):
+    @settings(max_examples=size(25, 100))
+    @given(numbers, numbers, st.integers(min_value=1, max_value=4096))
+    def of_any_numbers(a, b, divisor):
+        assert (product_over(a, b, divisor, usual) == product_over(a, b, divisor, careless)).all()
+
+    of_any_numbers()
 
 
 def test_canary_the_largest_limbs_there_can_be_are_multiplied_exactly():

@@ -59,7 +59,7 @@ SPARE = 8  # times what heyoka loses at the same precision: the conditioning of 
 FLOOR_BITS = 6
 
 
-@pytest.mark.parametrize(("name", "digits"), one_in(3, CASES))
+@pytest.mark.parametrize(("name", "digits"), one_in(6, CASES))
 def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
     scene, prec = make_scene(**SCENES[name]), int(digits * 3.33) + 4
     times = tuple(t / 10 for t in TIMES) if name in FAST else TIMES
