@@ -164,6 +164,14 @@ def test_a_file_is_judged_by_path_and_id(golden, states, tmp_path):
     assert len(repr(again.swing)) < 100
 
 
+QUIET = """
+import pytest
+from compare.score.explanation.case import Explanation
+
+@pytest.fixture(autouse=True)
+def nothing_is_explained(monkeypatch):
+    monkeypatch.setattr("compare.score.explanation.explain.explain", lambda *_: Explanation())
+"""  # which mistake it is takes long to find; the tests above are of that
 OTHERS = """
 def test_right(assert_agrees):
     assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
@@ -174,6 +182,7 @@ def test_wrong(assert_agrees):
 
 
 def test_the_fixture_is_found_in_somebody_elses_tests(tmp_path):
+    (tmp_path / "conftest.py").write_text(QUIET)
     (tmp_path / "test_theirs.py").write_text(OTHERS)
     words = [sys.executable, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", str(tmp_path)]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -203,6 +212,7 @@ def test_without_scenes(assert_agrees):
 
 
 def test_a_test_runs_over_several_scenes_with_a_tolerance_each(tmp_path):
+    (tmp_path / "conftest.py").write_text(QUIET)
     (tmp_path / "test_theirs.py").write_text(SCENES)
     words = [sys.executable, "-m", "pytest", "-q", "-W", "error", "--strict-markers", "-p", "no:cacheprovider"]
     done = subprocess.run([*words, "-rA", str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -411,8 +411,12 @@ def test_a_damaged_archive_is_read_or_explained(data):
 
 FLOOD = """
 import io, resource, sys
-from compare.candidates.read import read
+import heyoka, numpy  # what is loaded anyway
+from compare.candidates import read as reading
 from reference import InputError
+
+reading.MAX_ROWS //= {part}
+reading.MAX_LINES //= {part}
 
 class Flood(io.RawIOBase):
     def __init__(self, head, piece, total):
@@ -427,36 +431,39 @@ class Flood(io.RawIOBase):
         target[:len(data)] = data
         return len(data)
 
-sys.stdin = io.TextIOWrapper(io.BufferedReader(Flood({head!r}, {piece!r}, {total})))
-import heyoka, numpy  # what is loaded anyway
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-try:
-    read("-")
-except InputError as error:
-    print(error)
-else:
-    sys.exit("was read")
-print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) // 1024)
+for head, piece, total in {floods}:
+    sys.stdin = io.TextIOWrapper(io.BufferedReader(Flood(head, piece, total)))
+    try:
+        reading.read("-")
+    except InputError as error:
+        print(error)
+    else:
+        sys.exit("was read")
+    print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) // 1024)
 """
 
 
-@pytest.mark.parametrize(
-    ("head", "piece", "total", "said"),
-    [
-        (b"", b"\0", 1 << 28, "line of more than"),
-        (b"", b"0\n", 1 << 28, "header"),
-        (b"t,x,y\n", b"0,0,0\n", 1 << 25, "more than 2000000 rows"),
-        (b"t,x,y\n", b"\n", 1 << 23, "more than 4000000 lines"),
-        pytest.param(b"t,x,y\n", b"# all is well\n", 1 << 26, "more than 4000000 lines", marks=pytest.mark.long),
-        pytest.param(b"PK\x03\x04", b"\0", (1 << 30) + 1, "more than 1073741824 bytes", marks=pytest.mark.long),
-    ],
-)
-def test_a_stream_of_nothing_is_refused_in_bounded_memory(head, piece, total, said):
-    program = FLOOD.format(head=head, piece=piece, total=total)
+FLOODS = [
+    (b"", b"\0", 1 << 28, "line of more than"),
+    (b"", b"0\n", 1 << 28, "header"),
+    (b"t,x,y\n", b"0,0,0\n", 1 << 25, "more than {rows} rows"),
+    (b"t,x,y\n", b"\n", 1 << 23, "more than {lines} lines"),
+    (b"t,x,y\n", b"# all is well\n", 1 << 26, "more than {lines} lines"),
+    (b"PK\x03\x04", b"\0", (1 << 30) + 1, "more than 1073741824 bytes"),
+]
+
+
+def test_a_stream_of_nothing_is_refused_in_bounded_memory(size):
+    """Of a tenth of the rows and lines that are allowed a tenth of the memory is taken."""
+    part, floods = size((10, FLOODS[:4]), (1, FLOODS))
+    program = FLOOD.format(part=part, floods=[flood[:3] for flood in floods])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True)
-    message, megabytes = done.stdout.strip().splitlines()
-    assert said in message
-    assert int(megabytes) < 400
+    answers = done.stdout.splitlines()
+    assert len(answers) == 2 * len(floods)
+    for flood, message, megabytes in zip(floods, answers[::2], answers[1::2], strict=True):
+        assert flood[3].format(rows=2_000_000 // part, lines=4_000_000 // part) in message
+        assert int(megabytes) < 400 // part
 
 
 def test_more_rows_than_are_judged_are_refused(monkeypatch):

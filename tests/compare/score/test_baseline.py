@@ -109,7 +109,7 @@ def check(found: Since, words: set[str], outcome: str) -> None:
     assert (bool(found.worse), found.better) == (outcome == WORSE, outcome == BETTER) or not outcome, found.text
 
 
-QUICK = (1, 5, 11, 14, 17, 20, 21)  # at least one of each kind
+QUICK = (1, 5, 11, 17, 21)  # one of each kind
 NUMBERED = [
     pytest.param(i, pair, id=f"{i}-{pair[0]}", marks=() if i in QUICK else pytest.mark.long)
     for i, pair in enumerate(PAIRS)
@@ -139,13 +139,13 @@ def solved(made: Case, tolerance: float, method: str) -> Candidate:
     """Return what SciPy's integrators make of the pendulum, with g effective: no centrifugal force."""
     a = made.arguments
     latitude, rate = math.radians(a["lat"]), 7.292115e-5
-    turn = np.array([0, rate * math.cos(latitude), rate * math.sin(latitude)])
-    down, square = np.array([0, 0, -9.80665]), a["l"] ** 2
+    north, up, square = 2 * rate * math.cos(latitude), 2 * rate * math.sin(latitude), a["l"] ** 2
 
-    def right(_: float, state: np.ndarray) -> np.ndarray:
-        r, v = state[:3], state[3:]
-        force = down - 2 * np.cross(turn, v)
-        return np.concatenate([v, force - r * (v @ v + r @ force) / square])
+    def right(_: float, state: np.ndarray) -> tuple[float, ...]:
+        x, y, z, vx, vy, vz = state.tolist()  # in floats: NumPy takes ten times as long for three numbers
+        fx, fy, fz = up * vy - north * vz, -up * vx, north * vx - 9.80665
+        pull = (vx * vx + vy * vy + vz * vz + x * fx + y * fy + z * fz) / square
+        return vx, vy, vz, fx - pull * x, fy - pull * y, fz - pull * z
 
     start = [a["x0"], a["y0"], -math.sqrt(square - a["x0"] ** 2 - a["y0"] ** 2), 0, 0, 0]
     times = a["out"] * np.arange(101.0)
@@ -155,7 +155,12 @@ def solved(made: Case, tolerance: float, method: str) -> Candidate:
 
 @pytest.mark.parametrize(
     ("method", "old", "new", "outcome"),
-    [("RK45", 1e-10, 1e-6, ""), ("RK45", 1e-6, 1e-9, ""), ("DOP853", 1e-12, 1e-5, ""), ("DOP853", 1e-11, 1e-11, SAME)],
+    [
+        ("RK45", 1e-10, 1e-6, ""),
+        pytest.param("RK45", 1e-6, 1e-9, "", marks=pytest.mark.long),
+        pytest.param("DOP853", 1e-12, 1e-5, "", marks=pytest.mark.long),
+        ("DOP853", 1e-11, 1e-11, SAME),
+    ],
 )
 def test_a_tolerance_is_the_step(method: str, old: float, new: float, outcome: str) -> None:
     made = small(5)

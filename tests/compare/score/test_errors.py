@@ -164,8 +164,8 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     near = times.astype(float)
     truth = dense(golden, near, 2.0**-80)
     late = (times - near).astype(float)
-    after, before = (dense(golden, near + h).states for h in (1e-3, -1e-3))
-    rates = np.hstack([truth.states[:, 3:], (after - before)[:, 3:] / 2e-3])
+    around = dense(golden, np.ravel(near[:, None] + [-1e-3, 1e-3])).states
+    rates = np.hstack([truth.states[:, 3:], (around[1::2] - around[::2])[:, 3:] / 2e-3])
     wide = truth.states.astype(np.longdouble) + truth.low + rates * late[:, None]
     columns = dict(zip(COLUMNS, wide.T, strict=True))
     made = trajectory_errors(candidate_of("wide", {"t": times, **columns}), truth, golden)

@@ -126,7 +126,7 @@ UNTOLD = {
 }  # fmt: skip
 ENOUGH = 0.9
 # the others under --long
-ALWAYS = ("w01", "w04", "w06", "w11", "w13", "w18", "w20", "w21", "w24", "w25", "w27", "w30")
+ALWAYS = ("w01", "w04", "w06", "w11", "w13", "w18", "w20", "w24", "w25", "w27", "w30")
 
 
 def explained(name: str) -> Explanation:
