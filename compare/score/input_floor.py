@@ -28,7 +28,7 @@ def input_floor(scene: Scene, until: float) -> float:
     ships = floor_of_what_ships(scene, until)
     if ships is not None:
         return ships
-    from reference.solver.sensitivity import sensitivity
+    from reference.solver.sensitivity import Sensitivity
 
     decimal = scene.with_values(["inputs=decimal"])
     document = decimal.model_dump(mode="json")
@@ -37,7 +37,7 @@ def input_floor(scene: Scene, until: float) -> float:
     recipe = json.dumps([_FORMAT, parts, float(times[-1])], sort_keys=True).encode()
 
     def make() -> dict[str, Array]:
-        moved = sensitivity(decimal, times).rounding()[:, :3]
+        moved = Sensitivity(decimal, times).rounding()[:, :3]
         return {"largest": np.maximum.accumulate(np.sqrt((moved**2).sum(axis=1)))}
 
     largest = arrays("floor", f"{hashlib.sha256(recipe).hexdigest()[:32]}.npz", make)["largest"]

@@ -17,7 +17,7 @@ from reference.model.constants import Constants, constants_in_double
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
-from reference.solver.sensitivity import digits_lost, sensitivity
+from reference.solver.sensitivity import Sensitivity, digits_lost
 from reference.status import Status
 
 from .row import Row
@@ -113,7 +113,7 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     They follow a trajectory in double, which leaves the true one where little more than its errors is left; then runs
     from neighbouring releases are compared in as many bits as that takes, and a relative change counts.
     """
-    response = sensitivity(scene, times)
+    response = Sensitivity(scene, times)
     names = [name for name in ("x", "y", "angle", "azimuth") if f"release.{name}" in response.values]
     factors = [1.0]
     for name in names:

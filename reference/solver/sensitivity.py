@@ -94,7 +94,7 @@ class Sensitivity:
     """
 
     scene: Scene
-    times: tuple[float, ...]
+    times: Sequence[float] | Array
 
     @cached_property
     def values(self) -> dict[str, Fraction]:
@@ -169,8 +169,3 @@ def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
         old = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
         fields = {kind: tuple(value if name == key else before for name, before in old)}
     return replace(inputs, **fields)
-
-
-def sensitivity(scene: Scene, times: Sequence[float] | Array) -> Sensitivity:
-    """Return the response of a scene's trajectory to its inputs, at increasing times from 0 in s."""
-    return Sensitivity(scene, tuple(float(t) for t in times))

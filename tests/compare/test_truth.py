@@ -13,7 +13,7 @@ from compare import judge
 from compare.score.input_floor import floor_of_what_ships
 from compare.truth import _why_solved, by_function, golden_of, shipping, solves, truth_at
 from reference import load, load_scene
-from reference.solver.sensitivity import sensitivity
+from reference.solver.sensitivity import Sensitivity
 from reference.system import cache
 
 RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
@@ -215,7 +215,7 @@ def test_of_a_scene_that_ships_it_is_said_why_it_is_solved():
 def test_the_input_floor_of_what_ships_is_that_of_first_order(name):
     scene = load_scene(name)
     end = float(scene.exact.t_end)
-    moved = sensitivity(scene, np.linspace(0, end, 577)).rounding()[:, :3]
+    moved = Sensitivity(scene, np.linspace(0, end, 577)).rounding()[:, :3]
     expected = np.sqrt((moved**2).sum(axis=1)).max()
     assert floor_of_what_ships(scene, end) == pytest.approx(expected, rel=0.1)
     assert floor_of_what_ships(scene, 0.0) < 0.5 * expected

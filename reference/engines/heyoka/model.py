@@ -96,8 +96,7 @@ class Numbers:
         keep_on_disk(self.number)
         if radians < (SHORT_RUN if self.number.hardware else SHORT_BY_BITS / self.number.prec**3):
             options["opt_level"] = 0
-        start = np.array(state, dtype=self.dtype)
-        return hy.taylor_adaptive(system, start, fp_type=self.type, **self.keywords, **options)
+        return hy.taylor_adaptive(system, np.array(state, self.dtype), fp_type=self.type, **self.keywords, **options)
 
     def propagated(self, integrator: Any, times: Sequence[Any], **options: Any) -> tuple[Any, int]:
         """Return the states of a heyoka integrator at increasing times from its own on, and the number of steps.

@@ -26,9 +26,9 @@ from reference.numbers.table import Table
 from reference.scenes.scene import load_scene
 from reference.scenes.shipped import golden_root, index, seals
 
-# tables of few and of many bits, and a function
-SHORT = ("weightless", "conical", "force_free.binary64")
-LONG = ("near_inverted.binary64", "nearly_conical", "barely_over")  # the same code on longer ways
+# tables of few and of many bits, a function, and a way close by the top
+SHORT = ("weightless", "near_inverted.binary64", "conical", "force_free.binary64")
+LONG = ("nearly_conical", "barely_over")  # the same code on longer ways
 # another kind of processor, as far as software can make one: no FMA in numba's code and in libm, another BLAS kernel
 OTHER_PROCESSOR = {
     "NUMBA_CPU_NAME": "generic",

@@ -11,7 +11,7 @@ from small_scenes import make_scene
 
 from reference import load, trajectory
 from reference.numbers.precision import LONG_DOUBLE
-from reference.solver.sensitivity import sensitivity, with_value
+from reference.solver.sensitivity import Sensitivity, with_value
 
 TIMES = np.linspace(0.0, 600.0, 31)
 SCENES = {
@@ -49,7 +49,7 @@ ALONE = {"pendulum.length", "pendulum.drag", "site.latitude", "site.inverse_flat
 
 @cache
 def response_of(scene):
-    return sensitivity(SCENES[scene], TIMES)
+    return Sensitivity(SCENES[scene], TIMES)
 
 
 def cases():
@@ -76,7 +76,7 @@ def test_the_rounding_of_the_inputs_is_the_difference_of_the_two_golden_datasets
     decimal, binary = load("paris"), load("paris.binary64")
     rows = range(0, 1441, 60)
     times = decimal.t[::60]
-    moved = sensitivity(decimal.scene, times).rounding()
+    moved = Sensitivity(decimal.scene, times).rounding()
     for i, name in enumerate(("x", "y", "z", "vx", "vy", "vz")):
         pairs = zip(binary.exact(name), decimal.exact(name), strict=True)
         differences = [float(b - a) for a, b in ((d, n) for n, d in pairs)]
@@ -88,15 +88,15 @@ def test_the_rounding_of_the_inputs_is_the_difference_of_the_two_golden_datasets
 
 def test_inputs_that_are_doubles_already_move_nothing():
     scene = load("paris.binary64").scene
-    assert not sensitivity(scene, TIMES).rounding().any()
+    assert not Sensitivity(scene, TIMES).rounding().any()
 
 
 def test_on_a_sphere_there_is_no_flattening_to_vary():
     scene = make_scene(site={"inverse_flattening": "inf"})
-    assert "site.inverse_flattening" not in sensitivity(scene, TIMES).values
+    assert "site.inverse_flattening" not in Sensitivity(scene, TIMES).values
 
 
 def test_a_release_answers_to_its_own_coordinates_at_once():
-    first = sensitivity(SCENES["paris"], TIMES).derivative("release.x")[0]
+    first = Sensitivity(SCENES["paris"], TIMES).derivative("release.x")[0]
     assert first[:2].tolist() == [1.0, 0.0]
     assert first[2] == pytest.approx(0.3 / 66.998134301, rel=1e-9)  # z = -sqrt(l² - x² - y²)
