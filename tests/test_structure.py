@@ -148,7 +148,7 @@ PUBLIC = {
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",
     "reference.scenes.fields": "LEVELS RunTable",
     "reference.solver.ranges": "Intervals",
-    "reference.solver.sensitivity": "digits_lost sensitivity",
+    "reference.solver.sensitivity": "Sensitivity digits_lost",
     "reference.solver.solve": "roughly",
     "reference.solver.uncertain": "exact_texts solve_ranges widths_of",
     "reference.status": "Status",

@@ -32,7 +32,7 @@ hy.set_logger_level_critical()  # its log is the process's stdout; what it would
 # Optimised code takes 0.3 to 1.5 s more to compile. Hardware gains a third by it, with other last bits; MPFR a sixth of
 # a step, which takes the longer the more bits it has, and no bit changes. Runs of fewer radians are compiled quickly.
 SHORT_RUN = 2000  # radians
-SHORT_BY_BITS = 4e9  # beyond hardware, radians times the cube of the bits
+SHORT_WORK = 4e9  # beyond hardware, radians times the cube of the bits
 
 # type, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
@@ -94,7 +94,7 @@ class Numbers:
         `radians` is how far the run goes, by which compiling is thorough or quick.
         """
         keep_on_disk(self.number)
-        if radians < (SHORT_RUN if self.number.hardware else SHORT_BY_BITS / self.number.prec**3):
+        if radians < (SHORT_RUN if self.number.hardware else SHORT_WORK / self.number.prec**3):
             options["opt_level"] = 0
         return hy.taylor_adaptive(system, np.array(state, self.dtype), fp_type=self.type, **self.keywords, **options)
 

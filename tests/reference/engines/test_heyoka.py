@@ -187,7 +187,7 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path,
 def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris, monkeypatch, prec):
     plan = Plan(paris.exact, "space", real(prec), (Fraction(0), Fraction(50), Fraction(100)), transits=True)
     quick = module.run(plan)
-    monkeypatch.setattr(model_module, "SHORT_BY_BITS", 0)
+    monkeypatch.setattr(model_module, "SHORT_WORK", 0)
     thorough = module.run(plan)
     assert quick.grid.values == thorough.grid.values
     assert quick.transits.values == thorough.transits.values
