@@ -29,10 +29,11 @@ from .system import as_pairs, keep_on_disk, rates
 hy.install_custom_numpy_mem_handler()
 hy.set_logger_level_critical()  # its log is the process's stdout; what it would tell of lost roots is found otherwise
 
-# Optimised code takes 0.3 to 1.5 s more to compile. Hardware gains a third by it, with other last bits; MPFR a sixth of
-# a step, which takes the longer the more bits it has, and no bit changes. Runs of fewer radians are compiled quickly.
-SHORT_RUN = 2000  # radians
-SHORT_WORK = 4e9  # beyond hardware, radians times the cube of the bits
+# Optimised code takes 0.2 to 2 s longer to compile. A step in hardware numbers is then a third faster, with other last
+# bits; one beyond them a sixth, with the same bits, and steps take the longer the more bits they have. So a run of
+# fewer radians than these is compiled quickly.
+SHORT_RUN = 2000  # in hardware numbers
+SHORT_WORK = 4e9  # beyond them: times the cube of the bits
 
 # type, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
