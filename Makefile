@@ -1,7 +1,7 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
 #   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
-#   make quick    runs the tests of every day, in two minutes
+#   make quick    runs the tests of every day, in two to four minutes
 #   make atlas    makes every dataset that ships and is missing, and a page over all
 # And `make peers` runs the tests of the methods that want a Fortran compiler, JAX or the GPL, in an environment of its own.
 PYTHON ?= python3
@@ -30,7 +30,7 @@ all-tests: .venv/testing
 
 # For every day: structure, numbers, scenes, model, solver with its closed forms and proofs, score
 quick: .venv/testing
-	@echo "Running the tests of every day: below two minutes on two cores"
+	@echo "Running the tests of every day: two to four minutes on two cores"
 	$(PYTEST) tests/test_structure.py tests/reference/numbers tests/reference/scenes tests/reference/model tests/reference/solver \
 	  tests/compare/score
 
