@@ -145,7 +145,8 @@ def page_text(document: dict[str, Any]) -> str:
         parts.append(section("Long runs", picture, findings(laws(runs))))
     programs = document["programs"]
     if programs:
-        parts.append(section("Programs", _programs(programs)))
+        rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
+        parts.append(section("Programs", Table({"name": "wrapped", "command": "wrapped"}, rows).html()))
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
     lead = paragraph(
         "Each method was asked for the same number of digits on every scene, and its result was compared with the "
@@ -166,11 +167,6 @@ def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:
         run = (cell.scene, cell.method, cell.precision, setting(cell), cell.status.words)
         rows.append((*run, f"{cell.asked:.1f}", kept, cpu(cell.cpu_s), cell.reason)[: len(columns)])
     return Table(columns, rows).html()
-
-
-def _programs(programs: Mapping[str, str]) -> Html:
-    rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
-    return Table({"name": "wrapped", "command": "wrapped"}, rows).html()
 
 
 def _scenes(cells: Sequence[Cell]) -> Html:

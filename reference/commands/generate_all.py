@@ -7,7 +7,7 @@ from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import typer
 
@@ -95,8 +95,7 @@ def made(job: Job) -> tuple[Row, dict[str, Content]]:
 def isolated(job: Job) -> tuple[Row, dict[str, Content]]:
     """Make a dataset in a process that is started for it: the solver is not made for several threads."""
     with Pool(1) as pool:
-        result: tuple[Row, dict[str, Content]] = pool.submit(made, job).result()
-    return result
+        return cast("tuple[Row, dict[str, Content]]", pool.submit(made, job).result())
 
 
 def generate_all(

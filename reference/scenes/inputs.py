@@ -175,10 +175,6 @@ Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
 
 
-def _unsigned(value: object) -> object:
-    return value.strip().removeprefix("±") if isinstance(value, str) else value
-
-
 def _by_full_name(widths: object) -> object:
     """Return widths by names such as pendulum.length, which without quotes is a table in a table for TOML."""
     if not isinstance(widths, Mapping):
@@ -191,7 +187,7 @@ def _by_full_name(widths: object) -> object:
 
 Width = Annotated[
     Positive,
-    BeforeValidator(_unsigned),
+    BeforeValidator(lambda width: width.strip().removeprefix("±") if isinstance(width, str) else width),
     AfterValidator(lambda width: f"±{width}"),
     WithJsonSchema({**_SCHEMA, "pattern": f"^±?{_DECIMAL.pattern}$"}),
 ]

@@ -148,14 +148,12 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
             yield Executor(workers, lambda rows: pool.submit(compute, request.text, rows, folder))
         return
 
-    def begin(rows: range) -> Future[Any]:
-        return threads.submit(solve_and_save, request, rows, folder, promote, stop)
-
     def prepare() -> None:
         took_s = prepared(request)  # before the sum is read, to which other threads add meanwhile
         executor.compile_s += took_s
 
-    executor, stop = Executor(workers, begin), threading.Event()
+    executor = Executor(workers, lambda rows: threads.submit(solve_and_save, request, rows, folder, promote, stop))
+    stop = threading.Event()
     threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=prepare)
     with Pool(1) as pool:
         promote = partial(isolated, pool)

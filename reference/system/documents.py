@@ -32,13 +32,9 @@ def open_at_once(path: Path) -> BinaryIO:
         OSError: it cannot be opened; also for a path that no file can have, such as one with a zero byte.
     """
     try:
-        return open(path, "rb", opener=_unblocked)
+        return open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK))
     except ValueError as error:
         raise OSError(errno.EINVAL, f"No file has this path, {error}") from None
-
-
-def _unblocked(path: str, flags: int) -> int:
-    return os.open(path, flags | os.O_NONBLOCK)
 
 
 def toml_document(path: Path, field: str) -> dict[str, Any]:

@@ -6,22 +6,46 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+Handler = Callable[[int, FrameType | None], object]
 AGAIN_S = 0.05  # seconds after which a signal is sent again whose exception was lost
 
 
 @contextmanager
-def held() -> Iterator[None]:
-    """Hold the signals back: a process that is started meanwhile begins with them held back too."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+def _replaced(handler: Handler, chosen: Callable[[Any], bool]) -> Iterator[dict[int, Any]]:
+    """Replace those handlers that are chosen meanwhile, in the main thread; yield them by their signals' numbers."""
+    main = threading.current_thread() is threading.main_thread()
+    before: dict[int, Any] = {number: usual for number in SIGNALS if main and chosen(usual := signal.getsignal(number))}
     try:
-        yield
+        for number in before:
+            signal.signal(number, handler)
+        yield before
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, usual in before.items():
+            signal.signal(number, usual)
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """Hold the signals back: a process or a thread that is started meanwhile begins with them held back too.
+
+    In the main thread their handlers wait as well, whichever thread a signal reaches: an exception out of one of them
+    can leave a lock of Python's `threading` taken, for which another thread then waits without end.
+    """
+    came: list[int] = []
+    with _replaced(lambda number, _: came.append(number), callable) as handlers:
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    for number in came[:1]:
+        handlers[number](number, None)
 
 
 @contextmanager
@@ -36,9 +60,6 @@ def terminable() -> Iterator[list[int]]:
         interrupted while it is imported raises an ImportError instead.
     """
     came: list[int] = []
-    if threading.current_thread() is not threading.main_thread():
-        yield came
-        return
 
     def stop(number: int, frame: FrameType | None) -> None:
         came.append(number)
@@ -55,13 +76,8 @@ def terminable() -> Iterator[list[int]]:
             usual_hook(lost)
 
     usual_hook, sys.unraisablehook = sys.unraisablehook, again
-    usual = (signal.SIG_DFL, signal.default_int_handler)
-    before = {number: handler for number in SIGNALS if (handler := signal.getsignal(number)) in usual}
-    for number in before:
-        signal.signal(number, stop)
-    try:
-        yield came
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        sys.unraisablehook = usual_hook
+    with _replaced(stop, (signal.SIG_DFL, signal.default_int_handler).__contains__):
+        try:
+            yield came
+        finally:
+            sys.unraisablehook = usual_hook

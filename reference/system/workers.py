@@ -17,7 +17,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import islice
 from multiprocessing.connection import Connection, Pipe
 from types import TracebackType
@@ -186,17 +186,20 @@ def as_done(
         at_once: how many are begun and not yet yielded, at most.
         check: called now and then while nothing is done; raises if nothing will come any more.
     """
-    waiting, begun = iter(items), dict[Future[Any], Item]()
+    waiting, done, begun = iter(items), queue.SimpleQueue[tuple[Item, Future[Any]]](), 0
     while True:
-        for item in islice(waiting, at_once - len(begun)):
-            begun[begin(item)] = item
+        with held():
+            for item in islice(waiting, at_once - begun):
+                begin(item).add_done_callback(lambda future, item=item: done.put((item, future)))  # type: ignore[misc]
+                begun += 1
         if not begun:
             return
-        while not (finished := wait(begun, CHECK_S, FIRST_COMPLETED).done):
+        try:
+            yield done.get(timeout=CHECK_S)
+            begun -= 1
+        except queue.Empty:
             if check is not None:
                 check()
-        for future in finished:
-            yield begun.pop(future), future
 
 
 class Parent:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from against_limbs import compare
-from interruption import gone_within
+from interruption import gone_within, stderr_of
 from places import ROOT
 from random_rows import KINDS, random_kinds
 
@@ -103,12 +103,13 @@ def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, num
     command, whole = way
     folder = tmp_path / "stopped"
     process = subprocess.Popen(
-        [*command, "--out", folder], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
+        [*command, "--out", folder], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        env=os.environ | {"PYTHONFAULTHANDLER": "1"},
+    )  # fmt: skip
     while process.poll() is None and not (contents(folder) if folder.exists() else {}):
         time.sleep(0.01)
     process.send_signal(getattr(signal, number))
-    _, err = process.communicate()
+    err = stderr_of(process)
     assert gone_within(process.pid, 10.0), "processes run on"
     stopped = getattr(signal, number)
     assert process.returncode == (-stopped if stopped == signal.SIGKILL else 128 + stopped), err

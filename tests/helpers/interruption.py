@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from places import ROOT
 
@@ -23,7 +24,9 @@ def interrupted(
     Everything that is left of it is killed if it does not get to work or does not end.
     """
     command = [sys.executable, "-m", "foucault", *words]
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, start_new_session=True) as process:
+    with subprocess.Popen(
+        command, cwd=ROOT, stderr=subprocess.PIPE, start_new_session=True, env=os.environ | {"PYTHONFAULTHANDLER": "1"}
+    ) as process:
         assert process.stderr is not None
         os.set_blocking(process.stderr.fileno(), False)
         err, deadline = b"", time.monotonic() + PATIENCE_S
@@ -35,11 +38,23 @@ def interrupted(
                 time.sleep(0.02)
             process.send_signal(number)
             os.set_blocking(process.stderr.fileno(), True)
-            err += process.communicate(timeout=PATIENCE_S)[1]
+            err += stderr_of(process)
         except BaseException:
             os.killpg(process.pid, signal.SIGKILL)
             raise
     return process.returncode, err, process.pid
+
+
+def stderr_of(process: subprocess.Popen[Any]) -> Any:
+    """Return what a process writes to stderr until it ends; one that does not is made to tell where its threads are.
+
+    It does so where PYTHONFAULTHANDLER is set in its environment.
+    """
+    try:
+        return process.communicate(timeout=PATIENCE_S)[1]
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGABRT)
+        raise AssertionError(f"it does not end: {process.communicate(timeout=PATIENCE_S)[1]}") from None
 
 
 def members(group: int) -> int:

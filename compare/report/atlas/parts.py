@@ -73,20 +73,17 @@ def trust(golden: Golden) -> Mapping[str, str]:
     ]
     count = manifest.counts.transits
     within = f", each within {bounds.transit_s} s" if bounds.transit_s else ""
+    none = f"none: {manifest.transits}".removesuffix(": complete")
     return {
         "inputs": f"read as {manifest.inputs}",
         "level": f"{manifest.level}, {manifest.digits} digits",
         "behind it": " ".join(behind),
         "bounds": f"positions {bounds.position_m} m, velocities {bounds.velocity_m_s} m/s",
         "rows": f"{manifest.counts.grid} golden times",
-        "transits": f"{count} ({manifest.transits}){within}" if count else _none(manifest.transits),
+        "transits": f"{count} ({manifest.transits}){within}" if count else none,
         "made by": manifest.command,
         "seal": manifest.seal,
     }
-
-
-def _none(reason: str) -> str:
-    return "none" if reason == "complete" else f"none: {reason}"
 
 
 def dataset(golden: Golden, base: str) -> Html:

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from ...model.algebra import add, cross
-from ...model.constants import Vector
 from ...model.start import Start
 from ...numbers.precision import GUARD_BITS
 from ...scenes.inputs import Inputs
@@ -70,7 +69,8 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
     h = ctx.mpf(unit.numerator) / unit.denominator
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     vectors = k.turn, k.pull, start.n, add(start.v, cross(k.turn, start.n))
-    turn, pull, n, inertial = (_earth_axes(vector, sin, cos) for vector in vectors)
+    # from the axes east, north, up to x, m, w
+    turn, pull, n, inertial = ((a, b * sin - c * cos, b * cos + c * sin) for a, b, c in vectors)
     swing = h * ctx.sqrt(ctx.norm(pull))  # the rate of a small one
     longest = min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / swing))) if swing else MOST_GRAINS
     if other_steps:
@@ -111,11 +111,6 @@ def _swing_bits(start: Start) -> int:
     rate = ctx.sqrt(ctx.norm(k.pull))
     swing = max(abs(n[0]), abs(n[1]), 1 + n[2] if k.pull[1] else 0, ctx.norm(v) / rate if rate else 1)
     return min(MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2))))) if swing else 0
-
-
-def _earth_axes(a: Vector, sin: Any, cos: Any) -> Vector:
-    """Turn a vector from the axes east, north, up to x, m, w."""
-    return a[0], a[1] * sin - a[2] * cos, a[1] * cos + a[2] * sin
 
 
 # of the step length in the constants of `LinearTerms`, lane by lane

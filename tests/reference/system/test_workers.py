@@ -16,6 +16,7 @@ from pathlib import Path
 import child
 import pytest
 from child import count_to, die, die_once, doubled, finalise, freeze, refuse
+from interruption import PATIENCE_S
 from places import ROOT
 
 from reference.errors import IntegrationError
@@ -182,3 +183,12 @@ def test_what_is_done_comes_first_and_no_more_is_begun_at_once_than_asked(monkey
         last.set_result(0)
 
     assert [item for item, _ in as_done(begin, range(5), 3, check)] == [2, 3, 4, 1, 0]
+
+
+def test_ctrl_c_at_any_instruction_leaves_no_thread_waiting(size):
+    """Each exception comes out as it is: none amid the locks of `threading`, for which another thread then waits."""
+    command = [sys.executable, ROOT / "tests/helpers/any_instruction.py", str(size(31, 3))]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+    count, _, ends = ended.stdout.partition(" ")
+    assert ends == f"{{'KeyboardInterrupt()': {count}}}\n", ended.stderr
+    assert int(count) > size(100, 1000)
