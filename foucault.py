@@ -131,6 +131,7 @@ def _run() -> None:
 
 def _end(status: str | int | None, message: str = "") -> NoReturn:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
+    exec("")  # else Python ends by SIGINT itself where the exception of Ctrl-C has gone through another exec
     if message:
         print(f"foucault: {message}", file=sys.stderr)
     raise SystemExit(status) from None

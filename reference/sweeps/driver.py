@@ -18,6 +18,7 @@ from typing import Any
 
 from ..engines.registry import batches
 from ..status import Status
+from ..system.interruption import held
 from ..system.workers import Pool, WorkerDied, as_done
 from .estimate import MOVED, PASSAGES
 from .part import Part, Promote, Tally, solve_part
@@ -155,15 +156,14 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
     executor = Executor(workers, lambda rows: threads.submit(solve_and_save, request, rows, folder, promote, stop))
     stop = threading.Event()
     threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=prepare)
-    with Pool(1) as pool:
-        promote = partial(isolated, pool)
-        try:
+    try:
+        with Pool(1) as pool:
+            promote = partial(isolated, pool)
             yield executor
-        except BaseException:
-            stop.set()
-            raise
-        finally:
-            threads.shutdown(cancel_futures=stop.is_set())
+    finally:
+        stop.set()
+        with held():
+            threads.shutdown(cancel_futures=True)
 
 
 def prepared(request: Request) -> float:

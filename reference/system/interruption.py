@@ -12,12 +12,12 @@ from types import FrameType
 from typing import Any
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-Handler = Callable[[int, FrameType | None], object]
+ENDS = (KeyboardInterrupt, SystemExit)
 AGAIN_S = 0.05  # seconds after which a signal is sent again whose exception was lost
 
 
 @contextmanager
-def _replaced(handler: Handler, chosen: Callable[[Any], bool]) -> Iterator[dict[int, Any]]:
+def _replaced(handler: Callable[..., object], chosen: Callable[[Any], bool]) -> Iterator[dict[int, Any]]:
     """Replace those handlers that are chosen meanwhile, in the main thread; yield them by their signals' numbers."""
     main = threading.current_thread() is threading.main_thread()
     before: dict[int, Any] = {number: usual for number in SIGNALS if main and chosen(usual := signal.getsignal(number))}
@@ -53,7 +53,8 @@ def terminable() -> Iterator[list[int]]:
     """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away; note SIGINT as well.
 
     Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
-    thread. A signal whose exception is lost, as Python ignores those in a finaliser, is sent again a moment later.
+    thread. A signal whose exception is lost, as Python ignores those in a finaliser, is sent again a moment later; one
+    that comes while that of another is handled changes nothing.
 
     Yields:
         The numbers of the signals that have come. The exception that arrives does not always tell: code in C that is
@@ -61,14 +62,13 @@ def terminable() -> Iterator[list[int]]:
     """
     came: list[int] = []
 
-    def stop(number: int, frame: FrameType | None) -> None:
+    def stop(number: int, _: FrameType | None) -> None:
         came.append(number)
-        if number == signal.SIGINT:
-            signal.default_int_handler(number, frame)
-        raise SystemExit(128 + number)
+        if not isinstance(sys.exc_info()[1], ENDS):  # else what was begun is being cleared away
+            raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
 
     def again(lost: sys.UnraisableHookArgs) -> None:
-        if came and isinstance(lost.exc_value, KeyboardInterrupt | SystemExit):
+        if came and isinstance(lost.exc_value, ENDS):
             timer = threading.Timer(AGAIN_S, os.kill, (os.getpid(), came[-1]))
             timer.daemon = True
             timer.start()

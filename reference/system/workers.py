@@ -17,7 +17,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from itertools import islice
 from multiprocessing.connection import Connection, Pipe
 from types import TracebackType
@@ -137,23 +137,25 @@ class Pool:
 
     def __exit__(self, kind: type[BaseException] | None, *_: TracebackType | BaseException | None) -> None:
         """Wait for what is begun; after an exception, end it."""
-        if kind:
-            self._ended.set()
-            for process in list(self._processes.values()):  # a thread may be taking one out
-                process.kill()
-        self._threads.shutdown(cancel_futures=kind is not None)
-        for process in self._processes.values():
-            process.stop()
+        with held():
+            if kind:
+                self._ended.set()
+                for process in list(self._processes.values()):  # a thread may be taking one out
+                    process.kill()
+            self._threads.shutdown(cancel_futures=kind is not None)
+            for process in self._processes.values():
+                process.stop()
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call of a function that stands at the top level of a module.
 
-        Its future has the function's result, or raises its OSError; or `WorkerDied`, also after another error.
+        Its future has the function's result, or raises its OSError; or `WorkerDied`, also after another error; or
+        `CancelledError`, where the pool ended it.
         """
         return self._threads.submit(self._call, function, arguments)
 
     def _call(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        thread, reason = threading.get_ident(), "the work was ended"
+        thread, reason = threading.get_ident(), ""
         for _ in range(TRIES):
             idle = self._processes.get(thread)
             if idle is None or idle.ended:  # one that was killed while idle costs no try
@@ -172,7 +174,7 @@ class Pool:
             if error is not None:
                 raise error
             return result
-        raise WorkerDied(reason)
+        raise CancelledError if self._ended.is_set() else WorkerDied(reason)
 
 
 def as_done(

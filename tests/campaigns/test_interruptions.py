@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import shutil
 import signal
@@ -103,6 +104,16 @@ LOST = """
     print("went on")
 """
 ENGINE = 'InputError("--engine", "heyoka", "an installed engine")'
+AGAIN = """
+    try:
+        INTERRUPT
+    finally:
+        INTERRUPT
+        print("cleared away")
+"""
+EXECUTED = """
+    exec("INTERRUPT")
+"""
 
 
 @pytest.mark.parametrize(
@@ -111,14 +122,21 @@ ENGINE = 'InputError("--engine", "heyoka", "an installed engine")'
         2,
         product(
             [signal.SIGINT, signal.SIGTERM, signal.SIGHUP],
-            [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST],
+            [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST, AGAIN, EXECUTED],
         ),
     ),
 )
-def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(number: signal.Signals, body: str) -> None:
-    """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser."""
+def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(
+    number: signal.Signals, body: str, tmp_path: Path
+) -> None:
+    """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser.
+
+    Besides, Python ends by SIGINT itself after an exec that Ctrl-C has ended; and what is cleared away is so whole.
+    """
     body = body.replace("INTERRUPT", f"os.kill(os.getpid(), {int(number)})")
     program = f"import os, time, foucault\nfrom reference.errors import InputError\n\ndef interrupted(prog_name):{body}"
     program += "\nfoucault.commands = lambda: interrupted\nfoucault.main()\n"
-    ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")
+    (tmp_path / "program.py").write_text(program)
+    command, env = [sys.executable, "-m", "program"], os.environ | {"PYTHONPATH": str(ROOT)}
+    ended = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "cleared away\n" * ("cleared" in body), "")
