@@ -1,7 +1,7 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
 #   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
-#   make quick    runs the tests of every day, in two to four minutes
+#   make quick    runs the tests of every day, in one to two minutes
 #   make atlas    makes every dataset that ships and is missing, and a page over all
 # And `make peers` runs the tests of the methods that want a Fortran compiler, JAX or the GPL, in an environment of its own.
 PYTHON ?= python3
@@ -28,11 +28,12 @@ all-tests: .venv/testing
 	@echo "Running the tests: 5 to 15 minutes on two cores"
 	$(PYTEST)
 
-# For every day: structure, numbers, scenes, model, solver with its closed forms and proofs, score
+# For every day: model, closed forms, solver with proofs, score; not what takes longest and is seldom touched
+SELDOM := $(patsubst %,tests/reference/solver/test_%.py,confirming extreme_scenes ranges sampled_confirmation sections sensitivity) \
+  $(patsubst %,tests/compare/score/test_%.py,baseline experiments explanation passages wild)
 quick: .venv/testing
-	@echo "Running the tests of every day: two to four minutes on two cores"
-	$(PYTEST) tests/test_structure.py tests/reference/numbers tests/reference/scenes tests/reference/model tests/reference/solver \
-	  tests/compare/score
+	@echo "Running the tests of every day: one to two minutes on two cores"
+	$(PYTEST) tests/reference/numbers tests/reference/model tests/reference/solver tests/compare/score $(addprefix --ignore=,$(SELDOM))
 
 # Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was
 atlas: .venv/testing
