@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import re
@@ -98,7 +99,7 @@ def main() -> None:
     try:
         _run()
     except KeyboardInterrupt:
-        _end(INTERRUPTED)
+        _end(INTERRUPTED, interrupted=True)
 
 
 def _run() -> None:
@@ -113,12 +114,12 @@ def _run() -> None:
             finally:
                 sys.stdout.flush()
     except SystemExit as end:
-        _end(end.code)
+        _end(end.code, interrupted=bool(signals))
     except Stopped as stopped:
-        _end(stopped.exit_status, str(stopped))
+        _end(stopped.exit_status, str(stopped), interrupted=bool(signals))
     except Exception as error:
         if signals:  # what followed from the interruption is no mistake of the user's
-            _end(128 + signals[0])
+            _end(128 + signals[0], interrupted=True)
         if isinstance(error, FoucaultError):
             _end(error.exit_status, str(error))
         if not isinstance(error, OSError):
@@ -129,11 +130,15 @@ def _run() -> None:
         _end(2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"))
 
 
-def _end(status: str | int | None, message: str = "") -> NoReturn:
+def _end(status: str | int | None, message: str = "", interrupted: bool = False) -> NoReturn:
+    """End with a message and an exit status; an interrupted run waits for no thread that is still at work."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
-    exec("")  # else Python ends by SIGINT itself where the exception of Ctrl-C has gone through another exec
     if message:
         print(f"foucault: {message}", file=sys.stderr)
+    if interrupted and isinstance(status, int):
+        _forget_output()
+        atexit._run_exitfuncs()
+        os._exit(status)
     raise SystemExit(status) from None
 
 

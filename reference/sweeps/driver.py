@@ -18,7 +18,6 @@ from typing import Any
 
 from ..engines.registry import batches
 from ..status import Status
-from ..system.interruption import held
 from ..system.workers import Pool, WorkerDied, as_done
 from .estimate import MOVED, PASSAGES
 from .part import Part, Promote, Tally, solve_part
@@ -137,7 +136,8 @@ def solve_and_save(
 def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
     """Provide workers on this machine.
 
-    In the end what is running is waited for; of threads, where the sweep was interrupted, a few rows.
+    Where the sweep is interrupted, processes are ended, and threads end after the rows that they are at, which may take
+    minutes and are not waited for.
 
     Args:
         request: the sweep.
@@ -162,8 +162,7 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
             yield executor
     finally:
         stop.set()
-        with held():
-            threads.shutdown(cancel_futures=True)
+        threads.shutdown(wait=False, cancel_futures=True)
 
 
 def prepared(request: Request) -> float:

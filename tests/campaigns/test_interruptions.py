@@ -10,12 +10,11 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from itertools import product
 from pathlib import Path
 
 import pytest
 from interruption import gone_within
-from moments import chosen, ended_at, undisturbed
+from moments import PATIENCE_S, chosen, ended_at, undisturbed
 from places import ROOT
 from sampled import one_in
 
@@ -111,32 +110,35 @@ AGAIN = """
         INTERRUPT
         print("cleared away")
 """
+AT_WORK = """
+    from concurrent.futures import ThreadPoolExecutor
+
+    ThreadPoolExecutor().submit(time.sleep, 600)
+    INTERRUPT
+"""
 EXECUTED = """
     exec("INTERRUPT")
 """
 
 
-@pytest.mark.parametrize(
-    ("number", "body"),
-    one_in(
-        2,
-        product(
-            [signal.SIGINT, signal.SIGTERM, signal.SIGHUP],
-            [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST, AGAIN, EXECUTED],
-        ),
-    ),
-)
+BODIES = [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST, AGAIN, EXECUTED, AT_WORK]
+
+
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("number", one_in(3, [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]))
 def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(
     number: signal.Signals, body: str, tmp_path: Path
 ) -> None:
     """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser.
 
-    Besides, Python ends by SIGINT itself after an exec that Ctrl-C has ended; and what is cleared away is so whole.
+    It ends by SIGINT itself after an exec that Ctrl-C has ended, waits for threads, and would interrupt clearing away.
     """
     body = body.replace("INTERRUPT", f"os.kill(os.getpid(), {int(number)})")
     program = f"import os, time, foucault\nfrom reference.errors import InputError\n\ndef interrupted(prog_name):{body}"
     program += "\nfoucault.commands = lambda: interrupted\nfoucault.main()\n"
     (tmp_path / "program.py").write_text(program)
     command, env = [sys.executable, "-m", "program"], os.environ | {"PYTHONPATH": str(ROOT)}
-    ended = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False, timeout=PATIENCE_S
+    )
     assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "cleared away\n" * ("cleared" in body), "")
