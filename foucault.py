@@ -124,7 +124,7 @@ def _run() -> None:
             _end(error.exit_status, str(error))
         if not isinstance(error, OSError):
             raise
-        _forget_output()
+        _flush_output()
         if isinstance(error, BrokenPipeError):
             _end(1)
         _end(2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"))
@@ -136,14 +136,14 @@ def _end(status: str | int | None, message: str = "", interrupted: bool = False)
     if message:
         print(f"foucault: {message}", file=sys.stderr)
     if interrupted and isinstance(status, int):
-        _forget_output()
+        _flush_output()
         atexit._run_exitfuncs()
         os._exit(status)
     raise SystemExit(status) from None
 
 
-def _forget_output() -> None:
-    """Drop what could not be written to stdout, which Python would try again when it ends."""
+def _flush_output() -> None:
+    """Write out what waits for stdout; drop what cannot be written, which Python would try again when it ends."""
     try:
         sys.stdout.flush()
     except OSError:

@@ -25,7 +25,7 @@ from .promote import Promoted, promoted
 from .request import Request, request_of
 from .store import Store
 
-BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
+BLOCKS = 16  # of a whole part, solved one after the other: a thread that is to end ends after one
 LEAST_BLOCK = 256  # rows
 PER_WORKER = 3  # parts that wait or are computed for each worker
 DIED_REASON = "Its process died each time, alone as well"
@@ -136,8 +136,8 @@ def solve_and_save(
 def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
     """Provide workers on this machine.
 
-    Where the sweep is interrupted, processes are ended, and threads end after the rows that they are at, which may take
-    minutes and are not waited for.
+    Where the sweep is interrupted, processes are ended; threads end after the block of rows that they are at, which may
+    take minutes and is not waited for.
 
     Args:
         request: the sweep.

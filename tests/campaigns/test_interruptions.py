@@ -119,8 +119,6 @@ AT_WORK = """
 EXECUTED = """
     exec("INTERRUPT")
 """
-
-
 BODIES = [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST, AGAIN, EXECUTED, AT_WORK]
 
 
