@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -32,7 +33,7 @@ class Sheet:
         """Yield, row by row, the printed numbers of some columns."""
         places = [self.header.index(name) for name in columns]
         for row in self.rows:
-            yield [Fraction(row[i]) for i in places]
+            yield [Fraction(Decimal(row[i])) for i in places]
 
     def integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
         """Return some columns of decimals as integers over a common unit, and the unit, a power of ten."""
