@@ -113,13 +113,11 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     They follow a trajectory in double, which leaves the true one where little more than its errors is left; then runs
     from neighbouring releases are compared in as many bits as that takes, and a relative change counts.
     """
-    response = Sensitivity(scene, times)
-    names = [name for name in ("x", "y", "angle", "azimuth") if f"release.{name}" in response.values]
-    factors = [1.0]
-    for name in names:
-        displacement = response.derivative(f"release.{name}")[:, :3]
+    response, factors = Sensitivity(scene, times), [1.0]
+    for name in scene.exact.by_name.keys() & {"release.x", "release.y", "release.angle", "release.azimuth"}:
+        displacement = response.derivative(name)[:, :3]
         sizes = np.linalg.norm(displacement, axis=1)
-        at_release = float(sizes[0]) if name in ("angle", "azimuth") else 1.0
+        at_release = 1.0 if name in ("release.x", "release.y") else float(sizes[0])
         if at_release > 1e-12 * length:
             factors.append(float(sizes.max()) / at_release)
     if max(factors) <= IN_DOUBLE:

@@ -33,11 +33,9 @@ class Variants:
 
     _MODEL = FORMULATIONS["spin"]
     _PARAMETERS = (
-        *(f"turn_{i}" for i in range(3)),
-        *(f"pull_{i}" for i in range(3)),
-        *(f"centrifugal_{i}" for i in range(4)),
-        "drag",
-    )
+        "turn_0", "turn_1", "turn_2", "pull_0", "pull_1", "pull_2",
+        "centrifugal_0", "centrifugal_1", "centrifugal_2", "centrifugal_3", "drag",
+    )  # fmt: skip
 
     def __init__(self) -> None:
         from .heyoka.model import Propagator

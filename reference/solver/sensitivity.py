@@ -10,7 +10,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -96,11 +95,6 @@ class Sensitivity:
     scene: Scene
     times: Sequence[float] | Array
 
-    @cached_property
-    def values(self) -> dict[str, Fraction]:
-        """Each input's exact value, by its name in the scene file, such as "site.gravity"."""
-        return self.scene.exact.by_name
-
     def derivative(self, name: str) -> Array:
         """Return the derivatives of x, y, z (m) and vx, vy, vz (m/s) with respect to one input, shape (times, 6).
 
@@ -110,36 +104,33 @@ class Sensitivity:
 
     def rounding(self) -> Array:
         """Return how far rounding every input to binary64 moves the trajectory, shape (times, 6)."""
-        changes = {name: Fraction(float(value)) - value for name, value in self.values.items()}
+        changes = {name: Fraction(float(value)) - value for name, value in self.scene.exact.by_name.items()}
         slopes = [float(change) * self._slope(name) for name, change in changes.items() if change]
         return self._along(np.sum(slopes, axis=0)) if slopes else np.zeros((len(self.times), 6))
 
     def _slope(self, name: str) -> Array:
         """Return the derivative of start, constants and length with respect to one input."""
-        inputs, value = self.scene.exact, self.values[name]
+        inputs, value = self.scene.exact, self.scene.exact.by_name[name]
         nudge = _NUDGE * max(abs(value), Fraction(1))
         ahead, behind = (_parts(with_value(inputs, name, value + side * nudge)) for side in (1, -1))
         return np.array([float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)])
 
     def _along(self, slope: Array) -> Array:
         """Return the response to a change of start, constants and length."""
+        from ..engines.heyoka.model import Propagator
+
         size = len(_MODEL.variables)
         base = np.array([float(part) for part in _parts(self.scene.exact)])
         start, turn, length = base[:size], np.array([0.0, *base[size : size + 2]]), base[-1]
         strength = max(1.0, float(np.abs(slope).max()))  # keeps the derivative near 1, for the step size
         parameters = [0.0, *base[size:-1], *(slope[size:-1] / strength)]
-        rows = self._propagator.from_zero([*start, *(slope[:size] / strength)], self.times, parameters)
+        count = len(parameters)
+        propagator = Propagator(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
+        rows = propagator.from_zero([*start, *(slope[:size] / strength)], self.times, parameters)
         n, momentum, dn, dmomentum = np.split(rows, 4, axis=1)
         dn, dspin = strength * dn, strength * dmomentum - np.array([0.0, *slope[size : size + 2]])
         v, dv = np.cross(momentum - turn, n), np.cross(dspin, n) + np.cross(momentum - turn, dn)
         return np.hstack([slope[-1] * n + length * dn, slope[-1] * v + length * dv])
-
-    @cached_property
-    def _propagator(self) -> Any:
-        from ..engines.heyoka.model import Propagator
-
-        count = 1 + 2 * len(_CONSTANTS)
-        return Propagator(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
 
 
 def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
@@ -159,7 +150,7 @@ def _parts(inputs: Inputs) -> list[Any]:
 
 
 def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
-    """Return the inputs with one of `Sensitivity.values` replaced, unchecked, so that a mistaken value can be tried."""
+    """Return the inputs with one of `Inputs.by_name` replaced, unchecked, so that a mistaken value can be tried."""
     section, key = name.split(".")
     fields: dict[str, Any] = {key: value}
     if key == "inverse_flattening":

@@ -8,10 +8,11 @@ and are read in the same way.
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
@@ -59,12 +60,10 @@ class Trial:
     @cached_property
     def causes(self) -> dict[tuple[str, str, int], Cause]:
         """The mistakes that a program of its scene may have, by family, id, and number among those of one id."""
-        found, seen = {}, Counter[tuple[str, str]]()
+        found, seen = {}, defaultdict[tuple[str, str], Iterator[int]](count)
         for kind in ("sphere", *MODELS):
             for cause in (*causes_of(self.case, kind), CLOCK):
-                word = kind, cause.id
-                found[*word, seen[word]] = cause
-                seen[word] += 1
+                found[kind, cause.id, next(seen[kind, cause.id])] = cause
         return found
 
     def given(self, name: str) -> float:

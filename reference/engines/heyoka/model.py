@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from copy import copy
 from fractions import Fraction
+from functools import lru_cache
 from numbers import Real
 from typing import Any
 
@@ -34,6 +36,7 @@ hy.set_logger_level_critical()  # its log is the process's stdout; what it would
 # fewer radians than these is compiled quickly.
 SHORT_RUN = 2000  # in hardware numbers
 SHORT_WORK = 4e9  # beyond them: times the cube of the bits
+KEPT = 24  # integrators, of 2 to 5 MB each, that are kept for further runs of their equations
 
 # type, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
@@ -90,14 +93,17 @@ class Numbers:
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
     def integrator(self, system: Any, state: Sequence[Any], *, radians: float = math.inf, **options: Any) -> Any:
-        """Compile a system of pairs (variable, rate), or a variational one; return heyoka's integrator of it.
+        """Return heyoka's integrator of a system of pairs (variable, rate), compiled unless it was so before.
 
         `radians` is how far the run goes, by which compiling is thorough or quick.
         """
-        keep_on_disk(self.number)
         if radians < (SHORT_RUN if self.number.hardware else SHORT_WORK / self.number.prec**3):
             options["opt_level"] = 0
-        return hy.taylor_adaptive(system, np.array(state, self.dtype), fp_type=self.type, **self.keywords, **options)
+        make = _compiled if "nt_events" in options else _kept  # a callback belongs to its own run
+        integrator = copy(make(self.number, tuple(system), **options))
+        exact = state if self.number.hardware else [hy.real(x, self.number.prec) for x in state]
+        integrator.state[: len(state)] = np.array(exact, self.dtype)
+        return integrator
 
     def propagated(self, integrator: Any, times: Sequence[Any], **options: Any) -> tuple[Any, int]:
         """Return the states of a heyoka integrator at increasing times from its own on, and the number of steps.
@@ -115,6 +121,20 @@ class Numbers:
             reached = f"{float(integrator.time)} s, after {steps} steps"
             raise IntegrationError(f"heyoka stopped at t = {reached}, with outcome {outcome}.")
         return states, int(steps)
+
+
+def _compiled(number: NumberType, system: Any, varied: bool = False, **options: Any) -> Any:
+    """Return an integrator that begins at zero; a copy of it shares its code, and takes a millisecond."""
+    keep_on_disk(number)
+    numbers, pairs = Numbers(number), list(system)
+    if "tol" in options:
+        options["tol"] = numbers.of(options["tol"])
+    equations = hy.var_ode_sys(pairs, [hy.par[0]], order=1) if varied else pairs
+    zero = np.array([numbers.of(0)] * len(pairs), numbers.dtype)
+    return hy.taylor_adaptive(equations, zero, fp_type=numbers.type, **numbers.keywords, **options)
+
+
+_kept = lru_cache(maxsize=KEPT)(_compiled)
 
 
 class Propagator:
@@ -146,15 +166,13 @@ class Propagator:
         self.numbers = Numbers(number)
         state = [hy.expression(name) for name in variables]
         extra = ([hy.par[i] for i in range(parameters)],) if parameters else ()
-        system: Any = as_pairs(state, derivatives(tuple(state), hy, *extra))
-        if varied:
-            system = hy.var_ode_sys(system, [hy.par[0]], order=1)
-        options: dict[str, Any] = {"radians": radians}
+        system = as_pairs(state, derivatives(tuple(state), hy, *extra))
+        options: dict[str, Any] = {"radians": radians, "varied": varied}
         if tolerance is not None:
             if not (isinstance(tolerance, Real) and 0 < tolerance < 1):
                 raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
-            options["tol"] = self.numbers.of(Fraction(tolerance))
-        self._ta = self.numbers.integrator(system, [self.numbers.of(0)] * len(state), **options)
+            options["tol"] = Fraction(tolerance)
+        self._ta = self.numbers.integrator(system, [], **options)
         self.steps = 0
 
     def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:
@@ -170,8 +188,7 @@ class Propagator:
         ta = self._ta
         ta.time = self.numbers.of(0)
         ta.state[:] = start
-        if len(parameters):
-            ta.pars[:] = parameters
+        ta.pars[:] = parameters
         states, steps = self.numbers.propagated(ta, times, max_steps=max_steps)
         self.steps += steps
         return states

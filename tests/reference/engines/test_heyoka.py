@@ -71,6 +71,32 @@ def test_events_are_compiled_only_when_asked_for(paris):
     assert stepper_of(paris, DOUBLE, events=True)._ta.with_events
 
 
+@pytest.mark.parametrize("number", [DOUBLE, real(48), real(90)], ids=str)
+def test_runs_of_the_same_equations_share_their_code_and_nothing_else(paris, number):
+    model_module._kept.cache_clear()
+    first, second = stepper_of(paris, number), stepper_of(paris, number)
+    kept = model_module._kept.cache_info()
+    assert (kept.misses, kept.hits) == (1, 1)
+    release = first.state.tolist()
+    times = [first.numbers.of(t) for t in (0, 7, 20)]
+    states = first.propagate(times).tolist()
+    assert second.time == 0
+    assert second.state.tolist() == release
+    assert second.propagate(times).tolist() == states
+    model_module._kept.cache_clear()
+    assert stepper_of(paris, number).propagate(times).tolist() == states
+
+
+def test_other_constants_bits_or_tolerances_are_other_code(paris):
+    model_module._kept.cache_clear()
+    stepper_of(make_scene(pendulum={"length": "68"}), DOUBLE)
+    for number in (LONG_DOUBLE, real(90), real(91), DOUBLE):
+        model = stepper_of(paris, number).model
+    for tolerance in (1e-9, 1e-8):
+        model.propagator(tolerance)
+    assert model_module._kept.cache_info().hits == 0
+
+
 def test_the_equations_shown_are_the_ones_compiled():
     _, k, _, _ = model_at(make_scene(site={"latitude": "90"}), 100)
     text = "\n".join(equations_text(FORMULATIONS["momentum"], k))
@@ -149,7 +175,8 @@ def test_one_time_is_the_release_itself(paris):
 
 @pytest.fixture
 def asked_anew():
-    """The place of the cache is looked for again where this process had none before: locked, or without a home."""
+    """Code is compiled, and the place of its cache looked for again where there was none: locked, or without a home."""
+    model_module._kept.cache_clear()
     if not system._has_place():
         system._has_place.cache_clear()
 
@@ -174,6 +201,7 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path,
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(system.hy.llvm_state, "get_diskcache_path", lambda: place)
     system._has_place.cache_clear()
+    model_module._kept.cache_clear()
     try:
         stepper_of(paris, DOUBLE)
         assert not hy.llvm_state.get_diskcache_enabled()
