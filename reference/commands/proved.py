@@ -6,9 +6,12 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..dataset.ranges import ends
+from ..engines.registry import in_background
 from ..numbers.precision import rounded_up
 from ..scenes.scene import Scene, unit_of
 from ..solver.solve import solve
+from ..solver.uncertain import exact_texts, widths_of
+from ..system.workers import Emit
 
 FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
 PROVED_DIGITS = 15  # of the highest points from which period and precession follow
@@ -30,8 +33,7 @@ def proved_swing(scene: Scene) -> dict[str, Any]:
 
 def _told(swing: Any, names: Iterable[str]) -> dict[str, list[str] | None]:
     """Return intervals of what a swing has, as text; None where one is open."""
-    found = {name: getattr(swing, SWING[name], None) for name in names}
-    return {name: interval and list(ends(*interval)) for name, interval in found.items()}
+    return {name: list(ends(*found)) if (found := getattr(swing, SWING[name], None)) else None for name in names}
 
 
 def swing_line(proved: dict[str, Any]) -> str:
@@ -49,23 +51,25 @@ def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
     """
     asked = scene.run.sections or ()
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
-    ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*asked, "highest"))])
-    tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in asked}}
-    first = {word: [list(ends(*t)) for t in table.exact("t")[:FIRST]] for word, table in tables.items()}
-    return {
-        "over_s": scene.run.t_end,
-        "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
-        "period_s": ranges.period and list(ends(*ranges.period)),
-        **_told(ranges.swing, MEAN[1:]),
-        "first_transits_s": first.pop("transit"),
-        "first_passages_s": first,
-        "possible": len(ranges.possible),
-        "limits": _limits(scene, ranges.uncertain),
-    }
+    texts = exact_texts(widths_of(scene, widths))
+    with in_background(True, _send_limits, scene, texts) as limits:  # it takes as long as the intervals do
+        ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*asked, "highest"))])
+        tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in asked}}
+        first = {word: [list(ends(*t)) for t in table.exact("t")[:FIRST]] for word, table in tables.items()}
+        return {
+            "over_s": scene.run.t_end,
+            "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
+            "period_s": ranges.period and list(ends(*ranges.period)),
+            **_told(ranges.swing, MEAN[1:]),
+            "first_transits_s": first.pop("transit"),
+            "first_passages_s": first,
+            "possible": len(ranges.possible),
+            "limits": limits.result(),
+        }
 
 
-def _limits(scene: Scene, uncertain: dict[str, str]) -> dict[str, Any]:
-    """Return how far each input moves the period, to first order: by derivatives close to the scene's own inputs.
+def _send_limits(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
+    """Send how far each input moves the period, to first order: by derivatives close to the scene's own inputs.
 
     With it go the derivatives of period and precession to the input, as intervals.
     """
@@ -76,7 +80,7 @@ def _limits(scene: Scene, uncertain: dict[str, str]) -> dict[str, Any]:
         of, moves = near.derivative(name), {"moves_period_s": rounded_up(far * 10**CLOSER), "share": share}
         slopes = {"s_per_unit": of.period or (far, far), "deg_per_h_per_unit": of.precession}
         limits[name] = moves | {word: slope and list(ends(*slope)) for word, slope in slopes.items()}
-    return limits
+    emit(limits)
 
 
 def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
