@@ -75,11 +75,11 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     """
     coefficients, h = stepper.coefficients()
     scaled: list[Any] = [abs((k + 1) * a * h**k) for k, a in enumerate(coefficients[0][1:])]
-    step, head, tail = Fraction(float(h)), scaled[multiplicity], scaled[multiplicity + 1 :]
+    head, tail = scaled[multiplicity], scaled[multiplicity + 1 :]  # not numbers where h is infinite, as at rest
     for halvings in range(stepper.number.prec):
         weight = stepper.numbers.power_of_two(-halvings)
         if head > 2 * sum((b * weight ** (j + 1) for j, b in enumerate(tail)), start=0 * head):
-            return step / Fraction(2) ** halvings
+            return Fraction(float(h)) / Fraction(2) ** halvings
     raise IntegrationError("xdot does not leave zero at t = 0 in the working precision.", AT_REST)
 
 

@@ -106,11 +106,8 @@ SHORT_RUNS = {  # close to equality: in small steps, and early
         30,
     ),
 }
-# these find every fault below that made-up polynomials do not
-IN_EVERY_RUN = (
-    *("gravity", "rate", "latitude", "drag", "gravity and y", "nearly upright"),
-    *("narrow", "narrow, effective"),
-)
+# these find every fault that is tried in every run and that made-up polynomials do not; test_box.py follows more boxes
+IN_EVERY_RUN = ("gravity", "rate", "drag", "nearly upright", "narrow")
 TRUTHS = {}
 
 
@@ -198,7 +195,7 @@ def test_without_a_fault_nothing_is_found(size):
     defects_hold(module)
 
 
-@pytest.mark.parametrize("old, new", one_in(8, FAULTS))
+@pytest.mark.parametrize("old, new", one_in(16, FAULTS))
 def test_a_fault_is_found(old, new, size):
     module = sabotaged(old, new, SOURCE)
     with pytest.raises((AssertionError, ArithmeticError, TypeError, AttributeError, ValueError)):

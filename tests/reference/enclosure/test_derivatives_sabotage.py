@@ -142,7 +142,7 @@ RUNS = {  # close to equality, or far from it with derivatives that are exact
     "soon": ({"x": "1", "y": "0.1", "vx": "0.02"}, {"x": "0.3", "vx": "1e-6", "length": "0.001"}, 36),
     "tiny": ({"x": "0.3", "y": "0.4"}, {"x": "1e-25"}, 9),
 }
-IN_EVERY_RUN = ("lean", "release", "angles", "damped", "paris", "soon", "tiny")
+IN_EVERY_RUN = ("angles", "damped")  # test_derivatives.py follows more boxes
 COARSE = 40  # bits of steps that are farther from the motion than the box is wide
 TRUTHS = {}
 
@@ -411,7 +411,7 @@ def test_without_a_fault_nothing_is_found(size):
     found_by(sabotaged("TINY = ", "TINY  = ", SOURCE), size(IN_EVERY_RUN, RUNS))
 
 
-@pytest.mark.parametrize("old, new", one_in(16, FAULTS))
+@pytest.mark.parametrize("old, new", one_in(32, FAULTS))
 def test_a_fault_is_found(old, new, size):
     module = sabotaged(old, new, SOURCE)
     with pytest.raises((AssertionError, ArithmeticError, TypeError, AttributeError, ValueError)):
@@ -429,4 +429,4 @@ def test_a_fault_in_the_chain_rule_is_found(old, new, monkeypatch, size):
 @pytest.mark.parametrize("old, new", HARMLESS)
 def test_what_only_widens_intervals_is_still_true(old, new, monkeypatch):
     monkeypatch.setitem(globals(), "Windows", sabotaged(old, new, BOX).Windows)
-    runs_hold(reference.enclosure.derivatives, ("lean", "angles", "damped"), ("box",))
+    runs_hold(reference.enclosure.derivatives, IN_EVERY_RUN, ("box",))

@@ -45,8 +45,8 @@ POSSIBLE = {
     ("own plane", "gate 30@0"),
     ("pole", "turn 120"),
 }  # what vanishes at the release, so that nothing is decided
-# with the checks by made-up motions these find every fault below
-IN_EVERY_RUN = ("paris", "plane", "pole")
+# with the checks by made-up motions these find every fault that is tried in every run
+IN_EVERY_RUN = ("paris", "pole")
 TRUTHS = {}
 
 
@@ -421,7 +421,7 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new"), one_in(8, FAULTS))
+@pytest.mark.parametrize(("old", "new"), one_in(16, FAULTS))
 def test_each_fault_is_found(old, new, papers, size):
     module = sabotaged(old, new)
     with pytest.raises(

@@ -73,7 +73,8 @@ def lagrangian_rates(state, k):
     return [ctx.mpf(whole) / ctx.mpf(2) ** 1000 for whole in numbers.fixed(values, 1000)]
 
 
-@pytest.mark.parametrize("seed", one_in(11, range(20)))  # by the gravity of either kind
+# in every run with effective gravity; above the horizontal with the ellipsoid's
+@pytest.mark.parametrize("seed", one_in(20, reversed(range(20))))
 def test_all_formulations_agree_to_sixty_digits_where_all_terms_are_large(seed):
     ctx, k, n, v = model_at(random_scene(seed), PREC)
     expected = acceleration(n, v, k)
@@ -108,7 +109,7 @@ def test_above_the_horizontal_all_but_the_plane_form_agree(seed):
         assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < ctx.mpf(10) ** -60, name
 
 
-@pytest.mark.parametrize("name", ["momentum", "space", "spin", "plane", "angles"])
+@pytest.mark.parametrize("name", one_in(4, ["momentum", "space", "spin", "plane", "angles"]))
 def test_the_heyoka_expression_and_the_mpmath_evaluation_are_the_same_code(name):
     ctx, k, n, v = model_at(random_scene(3), PREC)
     numbers, model = Numbers(real(PREC)), FORMULATIONS[name]

@@ -148,7 +148,7 @@ def test_the_cheapest_type_that_serves_is_taken(prec, name):
     assert cheapest_type(prec).name == name
 
 
-@pytest.mark.parametrize("number", [DOUBLE, LONG_DOUBLE, real(113), real(300)], ids=str)
+@pytest.mark.parametrize("number", [DOUBLE, LONG_DOUBLE, real(300)], ids=str)
 @given(value=fractions)
 def test_constants_enter_every_type_rounded_once(number, value):
     numbers = Numbers(number)

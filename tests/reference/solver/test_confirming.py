@@ -31,10 +31,16 @@ WORDS = {
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """One dataset for each choice, by its word."""
+def solved():
+    """One solution for each choice, by its word."""
+    return {word: reference.solve(PARIS, **SHORT, confirm=word) for word in CONFIRMATIONS}
+
+
+@pytest.fixture(scope="module")
+def made(solved, tmp_path_factory):
+    """Their datasets."""
     folder = tmp_path_factory.mktemp("made")
-    return {word: write(reference.solve(PARIS, **SHORT, confirm=word), folder / word) for word in CONFIRMATIONS}
+    return {word: write(solution, folder / word) for word, solution in solved.items()}
 
 
 @pytest.mark.parametrize("word", CONFIRMATIONS)
@@ -51,10 +57,10 @@ def test_each_choice_is_named_by_manifest_page_and_verify_and_made_again_byte_fo
     assert recompute(made[word]) == ([], [])
 
 
-def test_a_whole_confirmation_compares_transits_and_the_others_have_a_run_in_hardware_beside_them(made):
+def test_a_whole_confirmation_compares_transits_and_the_others_have_a_run_in_hardware_beside_them(solved, made):
     check, bounds = read_files(made["whole"]).manifest.cross_checks[-1], read_files(made["whole"]).manifest.bounds
     assert Fraction(check.transit_s) < Fraction(bounds.transit_s)
-    guards = {word: reference.solve(PARIS, **SHORT, confirm=word).guard for word in CONFIRMATIONS}
+    guards = {word: solution.guard for word, solution in solved.items()}
     assert guards["whole"] is None
     assert {guards["sampled"].number, guards["none"].number} <= {"double", "long_double"}
 

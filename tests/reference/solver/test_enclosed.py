@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
 import pytest
-from places import ROOT
 from sampled import one_in
 from small_scenes import make_scene
 
@@ -32,7 +29,7 @@ SHORT = {"t_end": "120", "digits": 30, "level": "enclosed"}
 
 @pytest.fixture(scope="module")
 def enclosed():
-    return reference.solve(reference.load_scene("paris"), t_end="240", level="enclosed", engine="limbs")
+    return reference.solve(reference.load_scene("paris"), t_end="120", level="enclosed", engine="limbs")
 
 
 def finer(scene, prec=300):
@@ -41,7 +38,7 @@ def finer(scene, prec=300):
 
 
 def test_an_enclosed_file_is_digit_for_digit_the_confirmed_one(enclosed):
-    confirmed = reference.solve(reference.load_scene("paris"), t_end="240", level="confirmed")
+    confirmed = reference.solve(reference.load_scene("paris"), t_end="120", level="confirmed")
     assert grid_sheet(enclosed) == grid_sheet(confirmed)
     ours, theirs = transits_sheet(enclosed), transits_sheet(confirmed)
     assert [row[:-1] for row in ours.rows] == [row[:-1] for row in theirs.rows]
@@ -86,7 +83,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("sections", one_in(4, SCENES.values()), ids=SCENES.keys())
+@pytest.mark.parametrize("sections", one_in(8, SCENES.values()), ids=SCENES.keys())
 def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections, size):
     scene = make_scene(**sections, run={**SHORT, "t_end": size("5", "60")})
     solution = reference.solve(scene)
@@ -109,8 +106,9 @@ HARD = {
 
 
 @pytest.mark.parametrize(("name", "engine"), one_in(4, HARD.values()), ids=HARD.keys())
-def test_scenes_that_bounds_find_hard_are_proved(name, engine):
-    solution = reference.solve(reference.load_scene(name), level="enclosed", engine=engine)
+def test_scenes_that_bounds_find_hard_are_proved(name, engine, size):
+    scene = reference.load_scene(name)
+    solution = reference.solve(scene, t_end=size("20", scene.run.t_end), level="enclosed", engine=engine)
     assert solution.level == "enclosed"
     assert solution.possible == ()
 
@@ -121,7 +119,7 @@ def test_xdot_identically_zero_has_no_transits_to_enclose():
 
 
 def test_transits_can_be_left_out():
-    assert reference.solve(make_scene(run=SHORT), transits=False).zeros is None
+    assert reference.solve(make_scene(run=SHORT), transits=False, engine="limbs").zeros is None
 
 
 def doctored(monkeypatch, change):
@@ -141,7 +139,7 @@ def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_pa
         return replace(proved, transits=[*proved.transits[:3], unsure, *proved.transits[4:]])
 
     doctored(monkeypatch, doubt)
-    path = write(reference.solve(make_scene(run=SHORT)), tmp_path / "doubt")
+    path = write(reference.solve(make_scene(run=SHORT), engine="limbs"), tmp_path / "doubt")
     manifest = load(path).manifest
     assert manifest.transits == "undecided intervals"
     (possible,) = manifest.possible
@@ -156,7 +154,7 @@ def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_pa
 
 def at_a_transit(places=60):
     """A scene that ends less than 10^-places s after its second transit, of fewer digits than would show it."""
-    far = reference.solve(make_scene(run=SHORT | {"t_end": "20", "digits": places + 2}))
+    far = reference.solve(make_scene(run=SHORT | {"t_end": "20", "digits": places + 2}), engine="limbs")
     late = -(-far.transits.exact("t")[1] * 10**places // 1)
     return make_scene(run=SHORT | {"t_end": fixed_decimal(Fraction(late, 10**places), places), "digits": 24})
 
@@ -164,7 +162,7 @@ def at_a_transit(places=60):
 def test_a_run_that_ends_at_a_transit_is_written_with_what_is_possible_up_to_its_end(tmp_path):
     """F7 of the audit: the interval's end was rounded up beyond that of the run, and the proof lost."""
     scene = at_a_transit()
-    manifest = load(write(reference.solve(scene), tmp_path / "end")).manifest
+    manifest = load(write(reference.solve(scene, engine="limbs"), tmp_path / "end")).manifest
     (possible,) = manifest.possible
     assert (manifest.transits, manifest.counts.transits) == ("undecided intervals", 1)
     assert Fraction(possible.to_s) == scene.exact.t_end
@@ -178,7 +176,7 @@ def test_a_possible_transit_is_reported_within_the_run(monkeypatch):
         return replace(proved, transits=[early, *proved.transits[1:-1], late])
 
     doctored(monkeypatch, doubt)
-    early, late = reference.solve(make_scene(run=SHORT)).possible
+    early, late = reference.solve(make_scene(run=SHORT), engine="limbs").possible
     assert (early[0], late[1]) == (0, 120)
 
 
@@ -197,7 +195,7 @@ def test_a_state_outside_its_ball_names_time_and_component(monkeypatch, engine, 
 def test_a_transit_that_heyoka_does_not_see_is_named(monkeypatch):
     doctored(monkeypatch, lambda proved: replace(proved, transits=proved.transits[:-1]))
     with pytest.raises(IntegrationError, match="heyoka finds 14 transits, the enclosure 13"):
-        reference.solve(make_scene(run=SHORT))
+        reference.solve(make_scene(run=SHORT), engine="limbs")
 
 
 def test_a_transit_that_heyoka_sees_elsewhere_is_named(monkeypatch):
@@ -208,7 +206,7 @@ def test_a_transit_that_heyoka_sees_elsewhere_is_named(monkeypatch):
 
     doctored(monkeypatch, shift)
     with pytest.raises(IntegrationError, match="does not find transit 5 of the enclosure, at t = "):
-        reference.solve(make_scene(run=SHORT))
+        reference.solve(make_scene(run=SHORT), engine="limbs")
 
 
 def test_a_number_exactly_between_two_decimals_is_refused_with_advice():
@@ -232,16 +230,6 @@ def test_without_flint_the_level_says_what_to_install(monkeypatch):
     monkeypatch.setattr("reference.system.imports.missing", list)  # none is installed
     with pytest.raises(InputError, match=r"foucault-reference\[enclose\]"):
         reference.solve(make_scene(run=SHORT))
-
-
-def test_nothing_of_the_proof_is_imported_at_a_lower_level():
-    code = (
-        "import sys, reference\n"
-        "reference.solve(reference.load_scene('paris'), t_end='60', digits=12, level='confirmed')\n"
-        "print([m for m in sys.modules if m == 'flint' or 'enclosure' in m or m == 'reference.solver.enclosed'])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stdout.strip() == "[]"
 
 
 def test_the_feed_joins_step_to_step_without_a_gap(paris):
@@ -308,7 +296,9 @@ def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(m
 
 @pytest.mark.parametrize("transits", [True, False])
 def test_an_audit_that_proves_other_digits_is_refused(transits):
-    solution = reference.solve(make_scene(run={**SHORT, "t_end": "30", "digits": 20, "transits": transits}))
+    solution = reference.solve(
+        make_scene(run={**SHORT, "t_end": "30", "digits": 20, "transits": transits}), engine="limbs"
+    )
     digits = proved_digits(solution)
     assert audited(solution, digits).proof.audited
     others = [replace(solution, directions=[*solution.directions, 1])]

@@ -81,7 +81,7 @@ def axis_distance(k: Inputs) -> Any:
     return (normal + number(k.altitude)) * MP.cos(phi)
 
 
-@pytest.mark.parametrize("name", one_in(5, UNDAMPED))
+@pytest.mark.parametrize("name", one_in(10, UNDAMPED))
 def test_it_keeps_to_the_sphere_and_keeps_its_energy(name: str) -> None:
     """h = v²/2 + g z - Ω²/2 (squared distance from the Earth's axis), to 17 digits of its terms."""
     k = load_scene(name).exact
@@ -129,7 +129,7 @@ def by_newton(k: Inputs, start: list[Any], t: Any) -> list[Any]:
 @pytest.mark.parametrize(
     ("name", "t"),
     one_in(
-        4,
+        8,
         [
             ("creeping_rotation", "0.005"),
             ("creeping_rotation", "0.02"),
@@ -209,7 +209,7 @@ def nanometre(t: Any) -> tuple[Any, ...]:
 @pytest.mark.parametrize(
     ("name", "path", "end", "error"),
     one_in(
-        2,
+        4,
         [
             ("conical_pole", exactly_conical(number("3.5") - number("7.292115e-5")), "60", 1e-38),
             ("conical", exactly_conical(number("3.5")), "60", 1e-38),
@@ -228,8 +228,8 @@ def test_it_follows_its_closed_solution(name: str, path: Path, end: str, error: 
         assert max(abs(a - b) for a, b in zip(row, path(number(t)), strict=False)) < error, float(t)
 
 
-def test_the_bob_at_rest_does_not_move() -> None:
-    solution = solve(changed("at_rest", t_end="600", level="confirmed"))
+def test_the_bob_at_rest_does_not_move(size: Callable[[str, str], str]) -> None:
+    solution = solve(changed("at_rest", t_end=size("120", "600"), level="confirmed"))
     first, *others = rows(solution)
     assert all(abs(a - b) < 1e-41 for row in others for a, b in zip(row, first, strict=True))
 
@@ -248,7 +248,8 @@ def test_creeping_follows_the_equation_without_inertia() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "least", "most"), [("vertical_micrometre", 1e-7, 1e-6), ("vertical_picometre", 9e-13, 1e-12)]
+    ("name", "least", "most"),
+    one_in(2, [("vertical_picometre", 9e-13, 1e-12), ("vertical_micrometre", 1e-7, 1e-6)]),
 )
 def test_it_passes_the_vertical_as_close_as_it_says(name: str, least: float, most: float) -> None:
     """Newton's method for r·v = 0 on the horizontal plane, from 4.1 s."""
@@ -300,7 +301,7 @@ def text(value: Fraction) -> str:
 
 
 @pytest.mark.parametrize(
-    "name", one_in(2, ["small_body", "microgravity", "creeping_rotation", "barely_over", "near_inverted"])
+    "name", one_in(4, ["small_body", "microgravity", "creeping_rotation", "barely_over", "near_inverted"])
 )
 def test_four_times_larger_and_twice_as_slow_is_the_same_motion(name: str) -> None:
     step = load_scene(name).run.grid_step

@@ -8,6 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 from boxes import azimuths, drawn, truth
+from sampled import one_in
 
 import reference
 from reference.enclosure.shapes import Box
@@ -75,7 +76,7 @@ def test_an_input_takes_its_short_name_or_a_long_one(paris):
     assert repr(paris).startswith("Ranges(paris: pendulum.length ±0.001, ")
 
 
-@pytest.mark.parametrize("name", UNCERTAIN)
+@pytest.mark.parametrize("name", one_in(2, UNCERTAIN))
 def test_every_input_may_be_uncertain(name):
     release = name.startswith("release.a")
     angles = {"release": {"angle": "3", "azimuth": "20", "angle_rate": "0.1", "azimuth_rate": "0.1"}}
@@ -210,7 +211,7 @@ def widths_over_hulls(end, derivatives, count):
 
 @pytest.mark.parametrize(("derivatives", "most"), [(False, 4), (True, 1.5)])
 def test_intervals_are_hardly_wider_than_the_pendulums_are_apart(derivatives, most, size):
-    assert widths_over_hulls(size("900", "1500"), derivatives, size(20, 1000)).max() <= most
+    assert widths_over_hulls(size("400", "1500"), derivatives, size(20, 1000)).max() <= most
 
 
 @pytest.mark.long
@@ -290,8 +291,9 @@ def swings_outside(name, count, derivatives):
 
 @pytest.mark.parametrize(
     ("name", "derivatives"),
-    [*((name, False) for name in SWINGS), ("from rest", True), ("lean", True)]
-    + [pytest.param(name, True, marks=pytest.mark.long) for name in SWINGS if name not in ("from rest", "lean")],
+    [*((name, False) for name in SWINGS if name != "damped"), ("from rest", True)]
+    + [pytest.param(name, True, marks=pytest.mark.long) for name in SWINGS if name != "from rest"]
+    + [pytest.param("damped", False, marks=pytest.mark.long)],
 )
 def test_period_precession_and_full_turn_of_every_pendulum_lie_inside(name, derivatives, size):
     assert swings_outside(name, size(DRAWN, 1000), derivatives) == []
@@ -299,15 +301,18 @@ def test_period_precession_and_full_turn_of_every_pendulum_lie_inside(name, deri
 
 @pytest.mark.parametrize(
     "old, new, name",
-    [
-        ("halves += round(turned)", "halves += 1", "across the cut"),
-        ("ctx.atan2(p, x)", "ctx.atan2(x, p)", "from rest"),
-        ("north * z - up * y", "north * z + up * y", "from rest"),
-        ("north * z - up * y", "-up * y", "lean"),
-        ("DEGREES * (errors[0] + errors[-1])", "0", "ellipse"),
-        ("ctx.hypot(dx, dp), ctx", "0 * dx, ctx", "ellipse"),
-        ("(half / spans[1], half / spans[0])", "(half / spans[0], half / spans[0])", "from rest"),
-    ],
+    one_in(
+        3,
+        [
+            ("halves += round(turned)", "halves += 1", "across the cut"),
+            ("ctx.atan2(p, x)", "ctx.atan2(x, p)", "from rest"),
+            ("north * z - up * y", "north * z + up * y", "from rest"),
+            ("north * z - up * y", "-up * y", "lean"),
+            ("DEGREES * (errors[0] + errors[-1])", "0", "ellipse"),
+            ("ctx.hypot(dx, dp), ctx", "0 * dx, ctx", "ellipse"),
+            ("(half / spans[1], half / spans[0])", "(half / spans[0], half / spans[0])", "from rest"),
+        ],
+    ),
 )
 def test_a_fault_in_the_swing_of_a_box_is_found(old, new, name, monkeypatch):
     text, fault = Path(swing.__file__).read_text(encoding="utf-8"), dict(vars(swing))

@@ -112,10 +112,10 @@ def test_of_a_grid_finer_than_the_steps_the_whole_is_confirmed_which_costs_less(
     assert check.steps < len(drawn_intervals(fine)) == 100
 
 
-KINDS = ("over_top", "pole", "damped", "equator", "at_rest", "conical_pole", "weightless", "inverted_rest")
+KINDS = ("damped", "pole", "over_top", "equator", "at_rest", "conical_pole", "weightless", "inverted_rest")
 
 
-@pytest.mark.parametrize("name", one_in(2, KINDS))
+@pytest.mark.parametrize("name", one_in(4, KINDS))
 def test_scenes_of_every_kind_are_confirmed_by_sample(name):
     rows = ["run.t_end=20", "run.grid_step=2", "run.digits=20", "run.level=enclosed", "run.transits=false"]
     solution = reference.solve(reference.load_scene(name, rows), confirm="sampled")
@@ -125,9 +125,10 @@ def test_scenes_of_every_kind_are_confirmed_by_sample(name):
     assert check.position_m <= max(last[column] for column in "xyz") / 4
 
 
-def test_an_interval_that_costs_more_digits_than_are_printed_is_confirmed_to_a_quarter_of_the_last():
+def test_an_interval_that_costs_more_digits_than_are_printed_is_confirmed_to_a_quarter_of_the_last(size):
     """From the digits printed of its first row this pendulum, released almost upside down, could be anywhere."""
-    run = ["run.t_end=7", "run.grid_step=7", "run.digits=3", "run.level=enclosed", "run.transits=false"]
+    end = size("5", "7")
+    run = [f"run.t_end={end}", f"run.grid_step={end}", "run.digits=3", "run.level=enclosed", "run.transits=false"]
     release = {"angle": "179.9999999", "azimuth": "10"}
     scene = reference.parse_scene({"id": "falling", "pendulum": {"length": "0.1"}, "release": release}).with_values(run)
     assert digits_lost(scene.exact, tuple(scene.exact.grid), constants=False) > scene.run.digits

@@ -61,9 +61,9 @@ def test_what_the_end_of_a_steps_polynomial_lacks_counts_in_the_bounds(monkeypat
     assert off() != []
 
 
-# in every run: a push with drag on the Earth, and a release at rest where it turns 1500 times as fast
+# in every run: a push with drag on the Earth
 @pytest.mark.parametrize(
-    "seed", [seed if seed in (8, 10) else pytest.param(seed, marks=pytest.mark.long) for seed in range(40)]
+    "seed", [seed if seed == 8 else pytest.param(seed, marks=pytest.mark.long) for seed in range(40)]
 )
 def test_sections_of_random_scenes_are_those_of_another_code(seed):
     scene, words, swing = drawn(seed)
@@ -95,7 +95,7 @@ def test_a_release_at_rest_in_the_gates_own_plane_is_possible_next_to_0_and_noth
     assert solution.sections["gate 30"].directions == [-1, 1, -1, 1, -1]
 
 
-@pytest.mark.parametrize("level", ["self_consistent", "confirmed", "enclosed"])
+@pytest.mark.parametrize("level", ["self_consistent", pytest.param("confirmed", marks=pytest.mark.long), "enclosed"])
 def test_the_highest_points_of_a_nanometres_swing_are_found_once_each(level):
     solution = reference.solve(TINY, level=level, sections=["highest", "lowest"])
     half = math.pi * math.sqrt(67 / 9.80665)
