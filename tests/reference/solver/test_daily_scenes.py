@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from reference import load
+from reference import load_scene, solve
 
 SCENES = ("laboratory", "museum")
 DAY = 86164.0905  # s, sidereal
@@ -20,8 +20,7 @@ def normal_gravity(latitude: float) -> float:
 
 @pytest.fixture(scope="module", params=SCENES)
 def solved(request):
-    """Its dataset, which `make golden` computes anew."""
-    return load(request.param)
+    return solve(load_scene(request.param), level="computed", digits=9)
 
 
 def test_its_g_is_the_measured_one_at_its_latitude(solved):
