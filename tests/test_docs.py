@@ -11,6 +11,7 @@ import math
 import re
 import shlex
 import shutil
+import ssl
 import sys
 import tomllib
 import warnings
@@ -80,12 +81,16 @@ def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them():
     assert {page: words for page, words in languages.items() if words} == LANGUAGES
 
 
-def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed):
+def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed, size):
+    """In every run but for the picture of the errors, which test_judge.py draws."""
     assert write_files(TUTORIAL, tmp_path) == ["pendulum.py", "sphere.py", "test_pendulum.py", "mine.toml"]
+    drawn = " --plot error.svg"
+    assert sum(drawn in command for command, _ in commands(TUTORIAL)) == 1
     for command, shown in commands(TUTORIAL):
-        got = typed(command, tmp_path)
+        got = typed(command.replace(drawn, size("", drawn)), tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
-    assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
+    assert (tmp_path / "error.svg").is_file() == size(False, True)
+    assert (tmp_path / "foucault.xml").is_file()
 
 
 def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, typed):
@@ -294,11 +299,26 @@ def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
-def test_a_cluster_under_tls_is_begun_as_the_page_on_sweeps_says(tmp_path, size):
+def test_what_the_page_on_sweeps_exports_is_all_that_dask_needs_for_tls(tmp_path):
+    """That such a configuration is that of a sweep's cluster, tests/reference/sweeps/test_cluster.py has."""
+    dask, security = pytest.importorskip("dask"), pytest.importorskip("distributed.security")
+    (block,) = of_language(SWEEPS, "bash")
+    exports, _, sweep = block.strip().rpartition("\n")
+    assert sweep.startswith("foucault sweep ") and sweep.endswith(" --cluster local:2")
+    pairs = [line.partition("=")[::2] for line in output(f"{exports}\nenv", tmp_path).splitlines()]
+    exported = dask.config.collect_env({name: value for name, value in pairs if name.startswith("DASK_")})
+    with dask.config.set(dask.config.merge(dask.config.config, exported)):
+        found = security.Security()
+    assert found.require_encryption
+    for who in ("client", "scheduler", "worker"):
+        assert isinstance(found.get_connection_args(who)["ssl_context"], ssl.SSLContext)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
+def test_a_cluster_under_tls_is_begun_as_the_page_on_sweeps_says(tmp_path):
     pytest.importorskip("distributed")
     (block,) = of_language(SWEEPS, "bash")
-    assert "--cluster local:2" in block
-    block = block.replace("--cluster local:2", size("--cluster local:1", "--cluster local:2"))
     assert re.search(r"^91 rows: 91 ok$", output(block, tmp_path), re.M)
 
 

@@ -94,10 +94,10 @@ def test_the_measure_of_the_structure_sees_a_circle_and_an_arrow_upwards(tmp_pat
 def imported(path: Path) -> set[str]:
     """Top-level packages that a file imports anywhere; relative imports count as their own package."""
     names = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in structure.imports(path):
         if isinstance(node, ast.Import):
             names |= {alias.name.split(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+        elif node.level == 0 and node.module:
             names.add(node.module.split(".")[0])
     return names
 
@@ -170,12 +170,10 @@ def test_compare_uses_the_public_names_of_reference_alone():
     used: dict[str, set[str]] = {}
     for path in SOURCES:
         if path.is_relative_to(ROOT / "compare"):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for node in structure.imports(path):
                 if isinstance(node, ast.Import):
                     assert not [one.name for one in node.names if one.name.startswith("reference")], path
-                elif (
-                    isinstance(node, ast.ImportFrom) and node.level == 0 and (node.module or "").startswith("reference")
-                ):
+                elif node.level == 0 and (node.module or "").startswith("reference"):
                     used.setdefault(str(node.module), set()).update(one.name for one in node.names)
     assert {module: " ".join(sorted(names)) for module, names in used.items()} == {
         module: " ".join(sorted(names.split())) for module, names in PUBLIC.items()
