@@ -18,7 +18,7 @@ import warnings
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import causes_page
@@ -103,18 +103,23 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, type
 
 
 def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed, size):
-    """Derivatives over eight minutes take long; over half a minute, times and shares are the same to the last digit."""
+    """Derivatives over eight minutes take long; over half a minute, times and shares are the same to the last digit.
+
+    In every run the passages are scored by the folder that was generated, else by the scene, proved once more.
+    """
     assert write_files(MEASURED, tmp_path) == ["hall.toml", "passages.csv"]
     (first, ranges), *others = commands(MEASURED)
     assert first == "foucault show hall.toml"
     got = typed(f"{first} {size('--set run.t_end=30', '')}", tmp_path)
     assert size(early(ranges) == early(got), shows(ranges, got)), got
+    scored, by = "foucault score hall.toml ", size("foucault score hall ", "foucault score hall.toml ")
+    assert sum(command.startswith(scored) for command, _ in others) == 1
     for command, shown in others:
-        got = typed(command, tmp_path)
+        got = typed(command.replace(scored, by), tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
     (tmp_path / "late.csv").write_text(late, encoding="utf-8")
-    assert "late.csv disagrees" in typed('foucault score hall --transits late.csv --section "gate 127"', tmp_path)
+    assert "late.csv disagrees" in typed(by + '--transits late.csv --section "gate 127"', tmp_path)
 
 
 def early(shown: str) -> list[str]:
@@ -414,12 +419,15 @@ def test_every_file_and_folder_that_a_page_names_exists():
     assert missing == []
 
 
+@cache
+def names_below(folder: str) -> set[str]:
+    """Return the names of all files below a folder of the project."""
+    return {path.name for path in (ROOT / folder).rglob("*.*")}
+
+
 @pytest.mark.parametrize("page", sorted({*PAGES} - {"CHANGELOG.md"}))  # which tells of what was
 def test_every_script_that_a_page_names_is_in_the_tree_or_written_by_the_page(page, tmp_path):
-    folders = [ROOT / folder for folder in BESIDE.get(page, EVERYWHERE)]
-    there = {path.name for folder in folders for path in folder.rglob("*.*")} | {
-        path.name for path in ROOT.glob("*.py")
-    }
-    there |= {*write_files(page, tmp_path)}
+    there = {name for folder in BESIDE.get(page, EVERYWHERE) for name in names_below(folder)}
+    there |= {path.name for path in ROOT.glob("*.py")} | {*write_files(page, tmp_path)}
     scripts = [word for span in code_spans(page) for word in span.split() if re.fullmatch(r"[\w./-]+\.(py|js)", word)]
     assert [word for word in scripts if not ((ROOT / word).is_file() if "/" in word else word in there)] == []

@@ -133,14 +133,6 @@ def with_function(request, tmp_path_factory):
     return reference.write(solution, tmp_path_factory.mktemp("function") / scene.id)
 
 
-@pytest.fixture(scope="module")
-def evaluated(with_function, pytestconfig):
-    """The dataset, random times and those about the ends of its pieces, and what Python evaluates there."""
-    golden = reference.load(with_function)
-    times = random_times(golden.function, 10_000 if pytestconfig.getoption("--long") else 1_000)
-    return golden, times, golden.at(times)
-
-
 FUSED = pytest.param("function.c", ("-O3", "-ffp-contract=fast", "-mfma"), id="function.c-fused")
 EVALUATING = [
     *(pytest.param(name, (), marks=[pytest.mark.long] if name in LONG else []) for name in EVALUATORS),
@@ -149,16 +141,18 @@ EVALUATING = [
 
 
 @pytest.mark.parametrize(("name", "flags"), EVALUATING)
-def test_it_evaluates_as_python_does(name, flags, with_function, evaluated, programs):
+def test_it_evaluates_as_python_does(name, flags, with_function, programs, size):
     """The same doubles; with fused operations as near to a run in limbs as the bounds say."""
     tool = (EVALUATORS[name][0] or EVALUATORS[name][1])[0]
     if not works(tool):
         pytest.skip(f"{tool} is not installed for this user")
     if flags and " fma " not in Path("/proc/cpuinfo").read_text():
         pytest.skip("this processor does not fuse operations")
-    golden, times, at = evaluated
+    golden = reference.load(with_function)
+    times = random_times(golden.function, size(1_000, 10_000))
     words = [t.hex() if name.endswith(".R") else repr(t) for t in times.tolist()]
     found = np.array(printed(name, with_function, programs, *words, flags=flags), dtype=np.float64)
+    at = golden.at(times)
     expected = np.column_stack([times, *(getattr(at, name) for name in STATE)])
     assert found.shape == expected.shape
     if not flags:
