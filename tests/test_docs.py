@@ -11,13 +11,14 @@ import math
 import re
 import shlex
 import shutil
+import ssl
 import sys
 import tomllib
 import warnings
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import causes_page
@@ -26,6 +27,7 @@ import functions_page
 import numpy as np
 import pytest
 import typer
+from notebooks import GALLERY, code_cells, text_of
 from pages import PAGES, blocks, code_spans, commands, of_language, output, output_here, shows, write_files
 from places import ROOT
 
@@ -70,7 +72,7 @@ LANGUAGES = {
 
 @pytest.fixture
 def typed(foucault, capfd):
-    """What a line prints in a folder; the README's are all typed in a shell, by a test of its own."""
+    """What a line prints in a folder."""
     return partial(output_here, foucault=foucault, capfd=capfd)
 
 
@@ -79,12 +81,16 @@ def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them():
     assert {page: words for page, words in languages.items() if words} == LANGUAGES
 
 
-def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed):
+def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed, size):
+    """In every run but for the picture of the errors, which test_judge.py draws."""
     assert write_files(TUTORIAL, tmp_path) == ["pendulum.py", "sphere.py", "test_pendulum.py", "mine.toml"]
+    drawn = " --plot error.svg"
+    assert sum(drawn in command for command, _ in commands(TUTORIAL)) == 1
     for command, shown in commands(TUTORIAL):
-        got = typed(command, tmp_path)
+        got = typed(command.replace(drawn, size("", drawn)), tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
-    assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
+    assert (tmp_path / "error.svg").is_file() == size(False, True)
+    assert (tmp_path / "foucault.xml").is_file()
 
 
 def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, typed):
@@ -96,16 +102,50 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, type
     assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
 
 
-def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
+def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed, size):
+    """Derivatives over eight minutes take long; over half a minute, times and shares are the same to the last digit.
+
+    In every run the passages are scored by the folder that was generated, else by the scene, proved once more.
+    """
     assert write_files(MEASURED, tmp_path) == ["hall.toml", "passages.csv"]
-    for command, shown in commands(MEASURED):
-        got = typed(command, tmp_path)
+    (first, ranges), *others = commands(MEASURED)
+    assert first == "foucault show hall.toml"
+    got = typed(f"{first} {size('--set run.t_end=30', '')}", tmp_path)
+    assert size(early(ranges) == early(got), shows(ranges, got)), got
+    scored, by = "foucault score hall.toml ", size("foucault score hall ", "foucault score hall.toml ")
+    assert sum(command.startswith(scored) for command, _ in others) == 1
+    for command, shown in others:
+        got = typed(command.replace(scored, by), tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
     (tmp_path / "late.csv").write_text(late, encoding="utf-8")
-    assert "late.csv disagrees" in typed('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
+    assert "late.csv disagrees" in typed(by + '--transits late.csv --section "gate 127"', tmp_path)
 
 
+def early(shown: str) -> list[str]:
+    """Return what `show` says of inputs, of the first transits and passages, and of what limits you, by one input each.
+
+    The last input's share is next to nothing, and has other digits over another span.
+    """
+    *_, line, heading, first, second, third, fourth, _ = shown.splitlines()
+    shares = [text.partition(" (the period")[0] for text in (first, second, third, fourth)]
+    assert "transit 1 = " in line and "passage 3 of gate 127 = " in line
+    return [line[line.index("proved for") : line.index("]")], line[line.index("transit 1") :], heading, *shares]
+
+
+def test_the_page_on_the_oracle_says_of_its_program_what_the_first_notebook_does(tmp_path, typed, monkeypatch):
+    """It is one program, and the notebook's test judges it."""
+    write_files(ORACLE, tmp_path)
+    printed = [[float(word) for word in row.split(",")] for row in typed("python swing.py", tmp_path).splitlines()[1:]]
+    cell, explained, *_ = code_cells(json.loads((GALLERY / "first_verdict.ipynb").read_text("utf-8")))
+    monkeypatch.setattr(compare, "judge", lambda columns, *_, **__: columns)
+    exec("".join(cell["source"]), names := {})
+    assert np.array(printed) == pytest.approx(np.column_stack([*names["first"].values()]), abs=1e-12)
+    (_, shown), *_ = commands(ORACLE)
+    assert shown.partition("\n…\n")[2] == text_of(explained)
+
+
+@pytest.mark.long
 def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path, typed):
     assert write_files(ORACLE, tmp_path) == ["swing.py"]
     (command, shown), *_ = commands(ORACLE)
@@ -185,10 +225,14 @@ def test_the_error_budget_is_that_of_the_dataset():
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-def test_the_experiments_of_the_oracle_measure_what_the_page_shows(tmp_path, typed):
+def test_the_experiments_of_the_oracle_measure_what_the_page_shows(tmp_path, typed, size):
+    """In every run those of the first ten minutes, whose errors alone are others than those of the page's hour."""
+    metres = re.compile(r"(?<= )[\d.e-]+(?= m\b)")
     for command, shown in list(commands(ORACLE))[1:]:
-        got = typed(command.replace("/tmp/", f"{tmp_path}/"), ROOT).replace(f"{tmp_path}/", "/tmp/")
-        assert shows(shown, got), f"{command}\n{got}"
+        asked = command.replace("/tmp/", f"{tmp_path}/").replace("--t-end 3600", size("--t-end 600", "--t-end 3600"))
+        got = typed(asked, ROOT).replace(f"{tmp_path}/", "/tmp/")
+        ours, theirs = size([metres.sub("0", text) for text in (shown, got)], [shown, got])
+        assert shows(ours, theirs), f"{asked}\n{got}"
     kept = {path.stem for path in (tmp_path / "runs").iterdir()}
     assert kept == {"as_given", "experiments", "no_rotation", "quarter_g"}
 
@@ -260,6 +304,23 @@ def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
+def test_what_the_page_on_sweeps_exports_is_all_that_dask_needs_for_tls(tmp_path):
+    """That such a configuration is that of a sweep's cluster, tests/reference/sweeps/test_cluster.py has."""
+    dask, security = pytest.importorskip("dask"), pytest.importorskip("distributed.security")
+    (block,) = of_language(SWEEPS, "bash")
+    exports, _, sweep = block.strip().rpartition("\n")
+    assert sweep.startswith("foucault sweep ") and sweep.endswith(" --cluster local:2")
+    pairs = [line.partition("=")[::2] for line in output(f"{exports}\nenv", tmp_path).splitlines()]
+    exported = dask.config.collect_env({name: value for name, value in pairs if name.startswith("DASK_")})
+    with dask.config.set(dask.config.merge(dask.config.config, exported)):
+        found = security.Security()
+    assert found.require_encryption
+    for who in ("client", "scheduler", "worker"):
+        assert isinstance(found.get_connection_args(who)["ssl_context"], ssl.SSLContext)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
 def test_a_cluster_under_tls_is_begun_as_the_page_on_sweeps_says(tmp_path):
     pytest.importorskip("distributed")
     (block,) = of_language(SWEEPS, "bash")
@@ -293,7 +354,7 @@ def test_every_command_and_option_in_the_text_of_a_page_is_there():
             assert set(re.findall(r"(?<!\S)--[\w-]+", words)) <= options[name], (page, name, words)
 
 
-def build(source: Path, site: Path) -> tuple[int, str]:
+def build(source: Path, site: Path, *more: str) -> tuple[int, str]:
     """Make a site as `make docs` does, in this process and without an index for the search; return status, stderr."""
     from sphinx.builders.html import StandaloneHTMLBuilder
     from sphinx.cmd.build import main
@@ -305,14 +366,15 @@ def build(source: Path, site: Path) -> tuple[int, str]:
         patch.setattr(StandaloneHTMLBuilder, "search", False)
         patch.setattr(sys, "path", [*sys.path])
         patch.setattr(locale, "setlocale", lambda *_: "C")  # it would choose one for all tests that follow
-        status = main([*line.split(), "-c", str(ROOT / "docs"), str(source), str(site)])
+        status = main([*line.split(), *more, "-c", str(ROOT / "docs"), str(source), str(site)])
     return status, err.getvalue()
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
-    status, err = build(ROOT, folder)
+    # the theme lists all pages on each page, a fifth of the work; the site with a broken link has it
+    status, err = build(ROOT, folder, "-D", "html_theme=basic")
     assert status == 0, err  # any warning is an error: broken links, unknown names, pages in no list
     return folder
 
@@ -357,12 +419,15 @@ def test_every_file_and_folder_that_a_page_names_exists():
     assert missing == []
 
 
+@cache
+def names_below(folder: str) -> set[str]:
+    """Return the names of all files below a folder of the project."""
+    return {path.name for path in (ROOT / folder).rglob("*.*")}
+
+
 @pytest.mark.parametrize("page", sorted({*PAGES} - {"CHANGELOG.md"}))  # which tells of what was
 def test_every_script_that_a_page_names_is_in_the_tree_or_written_by_the_page(page, tmp_path):
-    folders = [ROOT / folder for folder in BESIDE.get(page, EVERYWHERE)]
-    there = {path.name for folder in folders for path in folder.rglob("*.*")} | {
-        path.name for path in ROOT.glob("*.py")
-    }
-    there |= {*write_files(page, tmp_path)}
+    there = {name for folder in BESIDE.get(page, EVERYWHERE) for name in names_below(folder)}
+    there |= {path.name for path in ROOT.glob("*.py")} | {*write_files(page, tmp_path)}
     scripts = [word for span in code_spans(page) for word in span.split() if re.fullmatch(r"[\w./-]+\.(py|js)", word)]
     assert [word for word in scripts if not ((ROOT / word).is_file() if "/" in word else word in there)] == []

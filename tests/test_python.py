@@ -93,9 +93,10 @@ def test_solutions_and_their_tables_are_frames(minute, monkeypatch):
 def test_motions_and_errors_are_drawn(minute, tmp_path):
     pytest.importorskip("matplotlib")
     score = compare.judge(ROWS, "paris", tolerance=1e-8)
-    for source in (minute, score, score.candidate, "laboratory"):
+    for source in ("laboratory", minute, score, score.candidate):
         picture = compare.plot(source)
-        assert picture._repr_svg_().lstrip().startswith("<?xml") and "</svg>" in picture._repr_svg_()
+        drawn = picture._repr_svg_()  # at each call
+        assert drawn.lstrip().startswith("<?xml") and "</svg>" in drawn
     picture.save(tmp_path / "motion.png")
     assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")
     with pytest.raises(InputError, match=r"path: got"):

@@ -141,15 +141,15 @@ EVALUATING = [
 
 
 @pytest.mark.parametrize(("name", "flags"), EVALUATING)
-def test_it_evaluates_as_python_does(name, flags, with_function, programs):
-    """At 10,000 times: the same doubles; with fused operations as near to a run in limbs as the bounds say."""
+def test_it_evaluates_as_python_does(name, flags, with_function, programs, size):
+    """The same doubles; with fused operations as near to a run in limbs as the bounds say."""
     tool = (EVALUATORS[name][0] or EVALUATORS[name][1])[0]
     if not works(tool):
         pytest.skip(f"{tool} is not installed for this user")
     if flags and " fma " not in Path("/proc/cpuinfo").read_text():
         pytest.skip("this processor does not fuse operations")
     golden = reference.load(with_function)
-    times = random_times(golden.function, 10_000)
+    times = random_times(golden.function, size(1_000, 10_000))
     words = [t.hex() if name.endswith(".R") else repr(t) for t in times.tolist()]
     found = np.array(printed(name, with_function, programs, *words, flags=flags), dtype=np.float64)
     at = golden.at(times)

@@ -9,19 +9,20 @@ from importlib import import_module
 
 import pictures
 import pytest
-from pages import commands, of_language, output, shows
+from pages import commands, of_language, output_here, shows
 from places import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def test_every_command_in_its_turn_prints_what_the_readme_shows(tmp_path):
+def test_every_command_in_its_turn_prints_what_the_readme_shows(tmp_path, foucault, capfd):
     assert len(commands("README.md")) >= 5
     without_compiler = shutil.which("cc") is None  # a machine without a C compiler checks the rest
     for command, shown in commands("README.md"):
         if without_compiler and "/tmp/pendulum" in command:
             continue
-        got = output(command.replace("/tmp/", f"{tmp_path}/"), ROOT).replace(f"{tmp_path}/", "/tmp/")
+        got = output_here(command.replace("/tmp/", f"{tmp_path}/"), ROOT, foucault, capfd)
+        got = got.replace(f"{tmp_path}/", "/tmp/")
         assert shows(shown, got), f"{command}\n{got}"
 
 

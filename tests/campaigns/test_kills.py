@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from interruption import gone_within
+from interruption import gone_within, interrupted
 from moments import Ended, chosen, ended_after, ended_at, undisturbed
 from small_scenes import make_scene
 
@@ -22,7 +22,8 @@ from reference.system.workspace import workspace
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
 
-Size = Callable[[int, int], int]
+Size = Callable[[Any, Any], Any]
+Foucault = Callable[..., tuple[int, str, str]]  # in the process of the test; compiles what is compiled once
 Tally = Callable[[str], None]
 
 ORPHANS_END_S = 10.0
@@ -36,11 +37,18 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache"
 
 
-def killed(words: list[object], event: int) -> Ended:
-    """Run a command, killed at an event of its run; nothing that it started runs on."""
-    ended = ended_at(event, signal.SIGKILL, words)
+def killed(words: list[object], event: int, named: str = "") -> Ended:
+    """Run a command, killed at an event of its run, or of those of a name; nothing that it started runs on."""
+    ended = ended_at(event, signal.SIGKILL, words, named)
     assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
     return ended
+
+
+def killed_when(words: list[object], ready: Callable[[], object]) -> Ended:
+    """Run a command, killed once something is ready; nothing that it started runs on."""
+    status, err, group = interrupted([*map(str, words)], lambda *_: bool(ready()), signal.SIGKILL)
+    assert gone_within(group, ORPHANS_END_S), "processes run on"
+    return Ended(status, "", err.decode(), group)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -58,36 +66,42 @@ def litter(folder: Path) -> list[str]:
 
 
 def finished(words: list[object]) -> Ended:
-    """Run a command to its end; what is compiled once, also by Python, is compiled from then on."""
+    """Run a command to its end in a process of its own, which remembers nothing."""
     return ended_at(-1, signal.SIGKILL, words)
 
 
-def test_a_dataset_is_the_old_or_the_new_one_and_whole(tmp_path: Path, size: Size, tally: Tally) -> None:
-    """At moments of the whole run, and at the last events, which are those that touch the target."""
+def test_a_dataset_is_the_old_or_the_new_one_and_whole(
+    tmp_path: Path, size: Size, tally: Tally, foucault: Foucault
+) -> None:
+    """In every run once, when the old one is moved aside and the new one is not there yet.
+
+    Under --long at moments of the whole run, and at the last events, which are those that touch the target.
+    """
     place = tmp_path / "sets"
-    words: list[object] = [*GENERATE, 21, "--out", place / "p"]
+    words: list[object] = [*GENERATE, *size(["10", "--level", "computed"], ["21"]), "--out", place / "p"]
     before = reference.write(reference.solve(make_scene(run={"t_end": "60", "digits": 6})), tmp_path / "old")
-    assert finished(words).status == 0
+    assert foucault(*words)[0] == 0
     whole = [contents(before), contents(place / "p")]
     shutil.rmtree(place / "p")
     shutil.copytree(before, place / "p")  # what the killed runs replace: its files are events, too
-    _, times = undisturbed(tmp_path / "note", words)
-    # one event alone is not the very last, which a run with an event less does not reach
-    count, last = size(1, 50), [len(times) - 1 - 5 * i for i in range(*size((1, 2), (0, 60)))]
+    named = size("os.rename", "")
+    _, times = undisturbed(tmp_path / "note", words, named)
+    last = [len(times) - 1 - 5 * i for i in range(size(1, 60))]
+    events = [*chosen(times, size(0, 50), 1), *last]
     seen, hits, litters = [0, 0], 0, 0
-    for event in [*chosen(times, count, 1), *last]:
+    for event in events:
         shutil.rmtree(place / "p")
         shutil.copytree(before, place / "p")
-        hits += killed(words, event).status == -signal.SIGKILL
+        hits += killed(words, event, named).status == -signal.SIGKILL
         assert len(litter(place)) <= 1
         litters += len(litter(place))
         put_back(place / "p")
         seen[whole.index(contents(place / "p"))] += 1  # an error if it is neither
         reference.load(place / "p")
-    assert finished(words).status == 0
+    assert foucault(*words)[0] == 0
     assert contents(place / "p") == whole[1]
     assert [path.name for path in place.iterdir()] == ["p"]
-    assert hits >= count + 0.9 * len(last)  # the number of events varies by a few
+    assert hits >= len(events) - 0.1 * len(last)  # the number of all events varies by a few
     tally(f"generate: {hits} kills, dataset whole {seen[0]} old {seen[1]} new, {litters} left a folder, which went")
 
 
@@ -166,58 +180,70 @@ CAMPAIGNS = {
 
 
 @pytest.mark.parametrize("name", ["study", pytest.param("stability", marks=pytest.mark.long)])
-def test_a_campaign_goes_on_where_it_was_killed(name: str, tmp_path: Path, size: Size, tally: Tally) -> None:
+def test_a_campaign_goes_on_where_it_was_killed(
+    name: str, tmp_path: Path, size: Size, tally: Tally, foucault: Foucault
+) -> None:
+    """In every run a study alone is killed once, when its first row was stored; else at any moments."""
     pytest.importorskip("scipy")
     out = tmp_path / "out"
     words = [*CAMPAIGNS[name], ["heyoka_double", "heyoka_double,scipy_dop853"][size(0, 1)], "--json", "--out", out]
-    assert finished(words).status == 0
+    status, text, _ = foucault(*words)
+    assert status == 0
+    whole = rows(text)
     shutil.rmtree(out)
-    whole, times = undisturbed(tmp_path / "note", words)
+    stops = size(
+        lambda: [partial(killed_when, words, lambda: journal(out))],
+        lambda: [partial(killed, words, event) for event in chosen(undisturbed(tmp_path / "note", words)[1], 20, 6)],
+    )()
     hits = resumed = kept = 0
-    count = size(1, 20)
-    for event in chosen(times, count, 6):
-        shutil.rmtree(out)
-        hits += killed(words, event).status == -signal.SIGKILL
+    for stop in stops:
+        shutil.rmtree(out, ignore_errors=True)
+        hits += stop().status == -signal.SIGKILL
         stored = journal(out)
         kept += len(stored)
         assert len(litter(out)) <= 1
-        again = finished(words)
-        assert again.status == 0, again.err
-        assert rows(again) == rows(whole)
+        status, text, err = foucault(*words)
+        assert status == 0, err
+        assert rows(text) == whole
         assert journal(out)[: len(stored)] == stored  # nothing was measured twice
-        assert len(journal(out)) == len(rows(whole))
+        assert len(journal(out)) == len(whole)
         assert litter(out) == []
         resumed += 1
-    assert hits == resumed == count
-    tally(
-        f"{name}: {hits} kills at work, {kept} of {count * len(rows(whole))} rows were stored by then, same rows after"
-    )
+    assert hits == resumed == len(stops)
+    assert kept >= 1
+    tally(f"{name}: {hits} kills at work, {kept} of {hits * len(whole)} rows were stored by then, same rows after")
 
 
 def journal(out: Path) -> list[str]:
     return [line for path in out.glob("*.jsonl") for line in path.read_text().splitlines()] if out.exists() else []
 
 
-def rows(ended: Ended) -> list[dict[str, Any]]:
-    return [{key: row[key] for key in row if key not in TIMES} for row in json.loads(ended.out)["rows"]]
+def rows(text: str) -> list[dict[str, Any]]:
+    return [{key: row[key] for key in row if key not in TIMES} for row in json.loads(text)["rows"]]
 
 
-def test_a_score_after_a_kill_is_the_same(tmp_path: Path, own_cache: Path, size: Size, tally: Tally) -> None:
+def test_a_score_after_a_kill_is_the_same(
+    tmp_path: Path, own_cache: Path, size: Size, tally: Tally, foucault: Foucault
+) -> None:
+    """In every run it is killed once, when the scene is being stored; else at any moments, and explains the error."""
     candidate = tmp_path / "mine.csv"
     candidate.write_text("t,x,y\n0,0.3,0.4\n30,0.1,0.1\n60,0.2,-0.3\n")
     words: list[object] = ["score", "paris", candidate, "--set", "site.latitude=40", "--set", "run.t_end=60", "--json"]
-    count = size(1, 20)
-    finished(words)
-    whole, times = undisturbed(tmp_path / "note", words)
-    hits = solved = 0
-    for event in chosen(times, count, 13):
+    words += ["--tolerance", 1e-15, *size(["--no-diagnosis"], [])]  # cheap runs do not decide it, and store nothing
+    status, whole, _ = foucault(*words)
+    stops = size(
+        lambda: [partial(killed_when, words, lambda: list(own_cache.glob("golden/*")))],
+        lambda: [partial(killed, words, event) for event in chosen(undisturbed(tmp_path / "note", words)[1], 20, 13)],
+    )()
+    hits = begun = 0
+    for stop in stops:
         for kind in ("golden", "dense", "floor"):
             shutil.rmtree(own_cache / kind, ignore_errors=True)
-        hits += killed(words, event).status == -signal.SIGKILL
-        solved += bool(list(own_cache.glob("golden/paris*")))
+        hits += stop().status == -signal.SIGKILL
+        begun += bool(list(own_cache.glob("golden/*")))
         assert len(litter(own_cache)) <= 1
-        again = finished(words)
-        assert (again.status, json.loads(again.out)) == (whole.status, json.loads(whole.out))
+        again = finished(words)  # this process knows the truth, and reads no cache
+        assert (again.status, json.loads(again.out)) == (status, json.loads(whole))
         assert litter(own_cache) == []
-    assert hits == count
-    tally(f"score: {hits} kills at work, {solved} of them after the scene was solved, same document after")
+    assert hits == len(stops) and begun
+    tally(f"score: {hits} kills at work, {begun} of them once the solved scene was being stored, same document after")

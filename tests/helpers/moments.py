@@ -33,19 +33,22 @@ class Ended:
     group: int
 
 
-def ended_at(event: int, number: signal.Signals, words: Sequence[object]) -> Ended:
-    """Run `foucault words`; at an event, a signal goes to its group, or to it alone if that is SIGKILL."""
-    return _run([str(event), str(int(number)), "-"], words)
+def ended_at(event: int, number: signal.Signals, words: Sequence[object], named: str = "") -> Ended:
+    """Run `foucault words`; at an event, a signal goes to its group, or to it alone if that is SIGKILL.
+
+    Where a name is given, events of this name alone are counted.
+    """
+    return _run([str(event), str(int(number)), "-", named], words)
 
 
 def ended_after(wait_s: float, number: signal.Signals, words: Sequence[object]) -> Ended:
     """Run `foucault words`; after some seconds it gets a signal from outside, as `ended_at` sends it."""
-    return _run(["-1", "0", "-"], words, (wait_s, number))
+    return _run(["-1", "0", "-", ""], words, (wait_s, number))
 
 
-def undisturbed(note: Path, words: Sequence[object]) -> tuple[Ended, list[float]]:
-    """Run `foucault words` to its end; return it, and the time of each of its events in s."""
-    ended = _run(["-1", "0", str(note)], words)
+def undisturbed(note: Path, words: Sequence[object], named: str = "") -> tuple[Ended, list[float]]:
+    """Run `foucault words` to its end; return it, and the time of each of its events in s, or of those of a name."""
+    ended = _run(["-1", "0", str(note), named], words)
     assert ended.status in (0, 1), ended.err
     return ended, json.loads(note.read_text())
 
@@ -81,7 +84,7 @@ def _run(how: list[str], words: Sequence[object], stopped: tuple[float, signal.S
     return Ended(process.returncode, out, err, process.pid)
 
 
-def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
+def _foucault(event: int, number: int, note: str, named: str, words: list[str]) -> None:
     sys.path.insert(0, str(ROOT))
     from foucault import main
 
@@ -92,9 +95,9 @@ def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
     times: list[float] = []
     done = False
 
-    def hook(*_: object) -> None:
+    def hook(name: str, _: object) -> None:
         nonlocal done
-        if done:
+        if done or (named and name != named):
             return
         times.append(time.monotonic())
         if len(times) - 1 == event:
@@ -115,4 +118,4 @@ def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    _foucault(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4:])
+    _foucault(int(sys.argv[1]), int(sys.argv[2]), *sys.argv[3:5], sys.argv[5:])

@@ -106,7 +106,7 @@ def output_here(
     foucault: Callable[..., tuple[int, str, str]],
     capfd: pytest.CaptureFixture[str],
 ) -> str:
-    """Return the same; `foucault` and Python's programs run in this process where the line has nothing for a shell.
+    """Return the same; `foucault`, programs in Python and pytest run in this process, but for lines for a shell.
 
     Args:
         command: the line.
@@ -115,17 +115,29 @@ def output_here(
         capfd: pytest's.
     """
     plain = re.fullmatch(r'(foucault|python) ([^|<>;$]+)(; echo "exit status \$\?")?', command)
-    if plain is None or plain[2].startswith("-"):
+    tests = command.removeprefix("python -m pytest ") if command.startswith("python -m pytest ") else None
+    if plain is None or (plain[2].startswith("-") and tests is None):
         return output(command, folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setenv("PATH", _path())
         if plain[1] == "python":
             capfd.readouterr()
-            runpy.run_path(plain[2], run_name="__main__")
+            if tests is None:
+                runpy.run_path(plain[2], run_name="__main__")
+            else:
+                _pytest(shlex.split(tests), folder, patch)
             return _both(*capfd.readouterr())
         status, out, err = foucault(*shlex.split(plain[2]))
     return _both(out, err) + (f"exit status {status}\n" if plain[3] else "")
+
+
+def _pytest(words: list[str], folder: Path, patch: pytest.MonkeyPatch) -> None:
+    """Run the tests of a page in its folder; what they import from there is forgotten."""
+    patch.syspath_prepend(str(folder))
+    pytest.main([*words, "-p", "no:cacheprovider"])
+    for path in folder.glob("*.py"):
+        sys.modules.pop(path.stem, None)
 
 
 def shows(shown: str, got: str) -> bool:

@@ -29,10 +29,10 @@ def sources(root: Path) -> list[Path]:
 def imported(path: Path, root: Path) -> set[Path]:
     """The files and packages of the project that a file imports anywhere, as paths without a suffix."""
     inside, found = list(path.relative_to(root).parts[:-1]), set()
-    for node in ast.walk(tree(path)):
+    for node in imports(path):
         if isinstance(node, ast.Import):
             found |= {target for alias in node.names for target in _existing(root, *alias.name.split("."))}
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = inside[: len(inside) + 1 - node.level] if node.level else []
             words = [*base, *(node.module.split(".") if node.module else [])]
             found |= {target for alias in node.names for target in _existing(root, *words, alias.name)}
@@ -43,6 +43,12 @@ def imported(path: Path, root: Path) -> set[Path]:
 def tree(path: Path) -> ast.Module:
     """A source file as Python reads it."""
     return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def imports(path: Path) -> list[ast.Import | ast.ImportFrom]:
+    """What a source file imports, anywhere in it."""
+    return [node for node in ast.walk(tree(path)) if isinstance(node, ast.Import | ast.ImportFrom)]
 
 
 @cache
