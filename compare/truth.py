@@ -60,7 +60,7 @@ def golden_of(
     ships = shipping(scene)
     if ships is not None and ships.manifest.digits >= digits and not ships.manifest.alone:
         fits = {*(scene.run.sections or ())} <= ships.sections.keys()
-        if fits and not (grid and [t for t in ships.scene.exact.grid if t <= scene.exact.t_end] != scene.exact.grid):
+        if fits and not (grid and ships.scene.exact.grid[: len(own := scene.exact.grid)] != own):
             return ships
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     parts = problem.model_dump(mode="json", include={"inputs", "pendulum", "site", "release", "run"})
