@@ -81,16 +81,12 @@ def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them():
     assert {page: words for page, words in languages.items() if words} == LANGUAGES
 
 
-def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed, size):
-    """In every run but for the picture of the errors, which test_judge.py draws."""
+def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed):
     assert write_files(TUTORIAL, tmp_path) == ["pendulum.py", "sphere.py", "test_pendulum.py", "mine.toml"]
-    drawn = " --plot error.svg"
-    assert sum(drawn in command for command, _ in commands(TUTORIAL)) == 1
     for command, shown in commands(TUTORIAL):
-        got = typed(command.replace(drawn, size("", drawn)), tmp_path)
+        got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
-    assert (tmp_path / "error.svg").is_file() == size(False, True)
-    assert (tmp_path / "foucault.xml").is_file()
+    assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
 
 
 def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, typed):
@@ -102,35 +98,14 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, type
     assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
 
 
-def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed, size):
-    """Derivatives over eight minutes take long; over half a minute, times and shares are the same to the last digit.
-
-    In every run the passages are scored by the folder that was generated, else by the scene, proved once more.
-    """
+def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
     assert write_files(MEASURED, tmp_path) == ["hall.toml", "passages.csv"]
-    (first, ranges), *others = commands(MEASURED)
-    assert first == "foucault show hall.toml"
-    got = typed(f"{first} {size('--set run.t_end=30', '')}", tmp_path)
-    assert size(early(ranges) == early(got), shows(ranges, got)), got
-    scored, by = "foucault score hall.toml ", size("foucault score hall ", "foucault score hall.toml ")
-    assert sum(command.startswith(scored) for command, _ in others) == 1
-    for command, shown in others:
-        got = typed(command.replace(scored, by), tmp_path)
+    for command, shown in commands(MEASURED):
+        got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
     (tmp_path / "late.csv").write_text(late, encoding="utf-8")
-    assert "late.csv disagrees" in typed(by + '--transits late.csv --section "gate 127"', tmp_path)
-
-
-def early(shown: str) -> list[str]:
-    """Return what `show` says of inputs, of the first transits and passages, and of what limits you, by one input each.
-
-    The last input's share is next to nothing, and has other digits over another span.
-    """
-    *_, line, heading, first, second, third, fourth, _ = shown.splitlines()
-    shares = [text.partition(" (the period")[0] for text in (first, second, third, fourth)]
-    assert "transit 1 = " in line and "passage 3 of gate 127 = " in line
-    return [line[line.index("proved for") : line.index("]")], line[line.index("transit 1") :], heading, *shares]
+    assert "late.csv disagrees" in typed('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
 
 
 def test_the_page_on_the_oracle_says_of_its_program_what_the_first_notebook_does(tmp_path, typed, monkeypatch):
