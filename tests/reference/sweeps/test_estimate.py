@@ -30,6 +30,7 @@ def test_every_error_is_at_most_its_estimate(engine, kind, size, tally):
     found = compare(batches()[engine], many)
     tally(f"estimates, {engine}, {kind}: {found}")
     assert set(found.worst) >= {"position", "velocity", "transit", "frequency", "swing", "precession", "angle"}
+    assert found.miscounted == []
     assert found.underestimated == []
 
 
