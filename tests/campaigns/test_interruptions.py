@@ -46,7 +46,7 @@ def running(word: str) -> bool:
 
 @pytest.mark.parametrize(
     "name",
-    [name if name in ("scenes", "generate") else pytest.param(name, marks=pytest.mark.long) for name in COMMANDS],
+    [name if name == "generate" else pytest.param(name, marks=pytest.mark.long) for name in COMMANDS],
 )
 def test_a_command_ends_with_one_line_and_nothing_half(
     name: str,
