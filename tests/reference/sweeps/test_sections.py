@@ -28,8 +28,8 @@ NEAR = 1e-6  # s, of DOP853 in double
 @pytest.fixture(scope="module")
 def drawn(pytestconfig):
     """Random scenes of all kinds, words of sections, and of each its passages by limbs at 110 bits."""
-    count = 40 if pytestconfig.getoption("--long") else 10
-    many, generator = list(random_kinds("sections", count, SPAN)), random.Random("sections")
+    first, count = (0, 40) if pytestconfig.getoption("--long") else (len(KINDS), 2 * len(KINDS))
+    many, generator = list(random_kinds("sections", count, SPAN))[first:], random.Random("sections")
     words = [
         "highest",
         "lowest",

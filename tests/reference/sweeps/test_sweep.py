@@ -134,7 +134,8 @@ def test_a_tolerance_promotes_the_rows_above_it(paris):
     assert swept["position_error_m"][0] < 2e-14  # an ulp of 67 m
 
 
-def test_a_transit_at_the_end_is_left_to_more_digits(paris):
+def test_a_transit_at_the_end_is_left_to_more_digits(paris, monkeypatch):
+    monkeypatch.setattr(driver, "isolated", lambda _, *row, **options: promote.promoted(*row, **options))
     t = solve(paris, t_end="20", level="computed", digits=20).transits.exact("t")[0]
     swept = sweep(paris.with_values([f"run.t_end={float(t)!r}"]), ["site.latitude=48.846111"], engine="heyoka")
     assert swept["level"][0] == "self_consistent"

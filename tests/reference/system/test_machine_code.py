@@ -46,7 +46,7 @@ assert len(successor.signatures) == 1
 print(successor(41))
 assert len(successor.signatures) == 1
 """
-COLD, WARM = ["announced", "compiled", "42"], ["42"]
+COLD = ["announced", "compiled", "42"]
 
 
 @pytest.fixture
@@ -80,12 +80,10 @@ def test_of_the_processes_that_live_one_compiles_and_again_if_a_function_of_anot
     killed.kill()
     killed.communicate()
     words = [said(process) for process in others]
-    assert sum(one.count("compiled") for one in words) == 1
+    assert sorted(one.count("compiled") for one in words) == [0, 1]
     assert [one[-1] for one in words] == ["42"] * 2
     (folder / "callee.py").write_text(CALLEE.replace("x + 1", "x + 2"))
     assert said(begun(folder)) == [*COLD[:-1], "43"]
-    (folder / "callee.py").write_text(CALLEE)
-    assert said(begun(folder)) == WARM
     assert {path.is_relative_to(folder / "numba") for path in folder.rglob("*.nb?")} == {True}
 
 
