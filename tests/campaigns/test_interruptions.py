@@ -68,7 +68,7 @@ def test_a_command_ends_with_one_line_and_nothing_half(
         shutil.rmtree(place / "out", ignore_errors=True)
     _, times = undisturbed(tmp_path / "note", words)
     hits = said = 0
-    for i, event in enumerate(chosen(times, size(1, 12), 4)):
+    for i, event in enumerate(chosen(times, size(1, 12), 5)):
         numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
         for number in [*numbers[i % 3 :], *numbers][: size(1, 3)]:
             shutil.rmtree(place / "out", ignore_errors=True)
