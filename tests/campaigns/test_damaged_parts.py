@@ -73,9 +73,12 @@ REWRITES = {
 }  # fmt: skip
 
 
-def rewrite(chance, path, whole, other):
-    """Put another file in the place of a part; return what was done."""
-    kind = chance.choice([*REWRITES, "cut short", "of another plan", "another part", "of another kind", "empty"])
+KINDS_OF_REWRITE = (*REWRITES, "cut short", "of another plan", "another part", "of another kind", "empty")
+
+
+def rewrite(chance, path, whole, other, turn):
+    """Put another file in the place of a part, each kind in its turn; return what was done."""
+    kind = KINDS_OF_REWRITE[turn % len(KINDS_OF_REWRITE)]
     data = path.read_bytes()
     number = int(path.stem.removeprefix("part-"))
     if kind in REWRITES:
@@ -104,10 +107,10 @@ def flip(chance, path, *_):
 def test_every_damaged_part_is_found_and_computed_again(damage, folders, size, tally):
     whole, copy, other, asked = folders
     true, done = contents(whole), Counter()
-    for i in range(size(20, 1000) if damage is flip else size(30, 300)):
+    for i in range(size(10, 1000) if damage is flip else size(len(KINDS_OF_REWRITE), 300)):
         chance = Chance(f"3 {i}")
         part = chance.randrange(PARTS)
-        what = damage(chance, copy / chance.choice(KINDS) / f"part-{part:08d}.parquet", whole, other)
+        what = damage(chance, copy / chance.choice(KINDS) / f"part-{part:08d}.parquet", whole, other, i)
         if what is None:
             continue
         with pytest.raises(InputError, match=f"1 of {PARTS} are missing or damaged"):
@@ -123,7 +126,7 @@ def test_every_damaged_part_is_found_and_computed_again(damage, folders, size, t
 def test_what_is_damaged_after_the_load_is_not_taken_for_numbers(folders, size, tally):
     whole, copy, _, _ = folders
     true, found = load_sweep(whole), Counter()
-    for i in range(size(60, 1000)):
+    for i in range(size(30, 1000)):
         chance = Chance(f"4 {i}")
         swept, kind, part = load_sweep(copy), chance.choice(KINDS), chance.randrange(PARTS)
         path = copy / kind / f"part-{part:08d}.parquet"

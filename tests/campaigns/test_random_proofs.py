@@ -60,7 +60,7 @@ def test_random_scenes_are_proved_and_right(size, tally):
     proved = unchecked = possible = flat = 0
     wrong, refused, slow = [], [], []
     engine = ["limbs", "heyoka"][size(0, 1)]
-    for seed in range(100, 100 + size(1, 300)):
+    for seed in range(*size((101, 102), (100, 400))):
         begun = time.process_time()
         try:
             solution = reference.solve(parse_scene(random_scene(seed)))

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -19,7 +20,11 @@ from places import ROOT
 from random_rows import KINDS, random_kinds
 
 from reference.engines.registry import batches
+from reference.scenes.scene import load_scene
+from reference.sweeps.store import Store
+from reference.sweeps.sweep import asked_for, run
 
+GO_ON = [sys.executable, "foucault.py", "sweep", "--workers", "1", "--out"]
 WORDS = ["sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
 SMALL_PARTS = """import reference.sweeps.request as request
 from foucault import main
@@ -27,13 +32,11 @@ request.PART_S, request.LEAST_PART = 0.0, 2
 main()"""
 
 
+@pytest.mark.long  # shorter runs of every kind in every run: tests/reference/sweeps/test_estimate.py
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])
-def test_no_transit_is_lost_and_no_error_is_larger_than_estimated(size, tally, engine):
+def test_no_transit_is_lost_and_no_error_is_larger_than_estimated(tally, engine):
     *common, over = KINDS
-    many = [
-        *random_kinds(20261122, size(8, 3000), kinds=tuple(common)),
-        *random_kinds(20261123, size(2, 500), kinds=(over,)),
-    ]
+    many = [*random_kinds(20261122, 3000, kinds=tuple(common)), *random_kinds(20261123, 500, kinds=(over,))]
     found = compare(batches()[engine], many)
     tally(f"sweeps, {engine}: {found}")
     assert not found.miscounted
@@ -71,19 +74,26 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, tally):
 
 # rows side by side, in threads; rows that the solver solves, in processes
 WAYS = {
-    "threads": ["--over", "site.latitude=-90:90:1", "--engine", "heyoka"],
-    "processes": ["--over", "site.latitude=-78:78:26", "--digits", "16", "--want", "transits", "--workers", "2"],
+    "threads": ("-45:45:1", {"engine": "heyoka"}),
+    "processes": ("-78:78:26", {"digits": 16, "want": ("transits",)}),
 }
-MANY_DIGITS = {"many digits": ["--over", "site.latitude=-80:80:4", "--digits", "32", "--workers", "2"]}
+MANY_DIGITS = {"many digits": ("-80:80:4", {"digits": 32})}
 
 
 @pytest.fixture(scope="module")
 def way(request, tmp_path_factory):
-    """A sweep of many parts: its command, and the folder that it fills when nothing stops it."""
-    whole = tmp_path_factory.mktemp(request.param) / "whole"
-    command = [sys.executable, "-c", SMALL_PARTS, *WORDS, *(WAYS | MANY_DIGITS)[request.param]]
-    subprocess.run([*command, "--out", whole], check=True, cwd=ROOT, capture_output=True)
-    return command, whole
+    """A sweep of many parts: what begins it in a folder, and the folder that it fills when nothing stops it."""
+    latitudes, options = (WAYS | MANY_DIGITS)[request.param]
+    whole, scene = tmp_path_factory.mktemp(request.param) / "whole", load_scene("paris", ["run.t_end=60"])
+
+    def begun(folder):
+        asked = asked_for(scene, [f"site.latitude={latitudes}"], None, folder, audit=0, **options)
+        small = replace(asked, rows_per_part=2)
+        Store.begun(folder, small)
+        return small
+
+    run(begun(whole), whole, workers=1)
+    return begun, whole
 
 
 # each way and each kind of end in every run
@@ -98,15 +108,16 @@ ENDS = [
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
 @pytest.mark.parametrize(("way", "number"), ENDS, indirect=["way"])
-def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, number, tmp_path):
+def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, number, foucault, tmp_path):
     """The signal reaches the sweep alone, and its processes notice; to the whole group it goes in another test."""
-    command, whole = way
+    begun, whole = way
     folder = tmp_path / "stopped"
+    begun(folder)
     process = subprocess.Popen(
-        [*command, "--out", folder], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        [*GO_ON, folder], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True,
         env=os.environ | {"PYTHONFAULTHANDLER": "1"},
     )  # fmt: skip
-    while process.poll() is None and not (contents(folder) if folder.exists() else {}):
+    while process.poll() is None and not contents(folder):
         time.sleep(0.01)
     process.send_signal(getattr(signal, number))
     err = stderr_of(process)
@@ -119,7 +130,7 @@ def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, num
     done = contents(folder)
     assert done and done.items() <= contents(whole).items()
     assert not (folder / "summary.json").exists()
-    subprocess.run([*command[:4], "--out", folder], check=True, cwd=ROOT, capture_output=True)
+    assert foucault("sweep", "--workers", 1, "--out", folder)[0] == 0
     assert contents(folder) == contents(whole)
     assert (folder / "summary.json").read_bytes() == (whole / "summary.json").read_bytes()
 
@@ -133,13 +144,15 @@ def children(parent: int) -> list[int]:
 @pytest.mark.long
 @pytest.mark.parametrize("way", MANY_DIGITS, indirect=True)
 def test_a_worker_that_is_killed_at_work_costs_no_row_and_no_byte(way, tally, tmp_path):
-    command, whole = way
+    begun, whole = way
     source, count, killed = random.Random(8), 5, []
     for number in range(count):
         folder, at = tmp_path / str(number), source.randrange(4)
-        with subprocess.Popen([*command, "--out", folder], cwd=ROOT, stdout=subprocess.DEVNULL) as process:
+        begun(folder)
+        command = [*GO_ON[:3], "--workers", "2", "--out", folder]
+        with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL) as process:
             while process.poll() is None and len(killed) == number:
-                if folder.exists() and len(contents(folder)) >= at and (workers := children(process.pid)):
+                if len(contents(folder)) >= at and (workers := children(process.pid)):
                     time.sleep(source.uniform(0.0, 0.3))
                     os.kill(source.choice(workers), signal.SIGKILL)  # its parent still waits for it
                     killed.append(len(contents(folder)))

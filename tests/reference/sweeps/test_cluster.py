@@ -34,14 +34,18 @@ def libraries():
 
 
 @pytest.fixture(scope="module")
-def cluster():
+def cluster(pytestconfig):
+    """Workers in processes that are started again: one of them, as each costs seconds to start."""
     import dask
     import distributed
 
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 1, "distributed.deploy.lost-worker-timeout": 1e7}),
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
-    ):
+        distributed.LocalCluster(
+            n_workers=2 if pytestconfig.getoption("--long") else 1,
+            threads_per_worker=1, dashboard_address=None, silence_logs=50,
+        ) as cluster,
+    ):  # fmt: skip
         yield cluster
 
 
@@ -78,7 +82,9 @@ def test_if_the_scheduler_is_lost_what_is_done_stays_and_the_same_command_goes_o
     from reference.sweeps.cluster import ClusterError
 
     folder = tmp_path / "out"
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50) as lost:
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp://", dashboard_address=None, silence_logs=50
+    ) as lost:
 
         def report(rows: int) -> None:
             if rows:
@@ -156,17 +162,7 @@ def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
-def test_a_cluster_that_is_started_here_leaves_nothing_behind(tmp_path, monkeypatch):
-    from reference.sweeps.cluster import scheduler_at
-
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    with scheduler_at("local:1") as local:
-        assert local.submit(sum, [1, 2]).result() == 3
-        assert list(tmp_path.iterdir())
-    assert not list(tmp_path.iterdir())
-
-
-def test_tls_is_dasks_own_and_an_address_without_certificates_is_refused(tmp_path):
+def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_own(tmp_path, monkeypatch):
     import dask
 
     from reference.sweeps.cluster import scheduler_at
@@ -176,10 +172,13 @@ def test_tls_is_dasks_own_and_an_address_without_certificates_is_refused(tmp_pat
     subprocess.run([*command, "-subj", "/CN=sweep", "-days", "2"], check=True, capture_output=True)
     names = ["ca-file", *(f"{who}.{what}" for who in ("client", "scheduler", "worker") for what in ("cert", "key"))]
     given = {f"distributed.comm.tls.{name}": key if name.endswith("key") else certificate for name in names}
-    encrypted = {"distributed.comm.require-encryption": True}
+    encrypted, scratch = {"distributed.comm.require-encryption": True}, tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(scratch))
     with dask.config.set(encrypted | given), scheduler_at("local:1") as local:
         address = local.client.scheduler.address
         assert address.startswith("tls://127.0.0.1:")
+        assert list(scratch.iterdir())
         with scheduler_at(address) as remote:
             assert remote.submit(sum, [1, 2]).result() == 3
         with (
@@ -188,6 +187,7 @@ def test_tls_is_dasks_own_and_an_address_without_certificates_is_refused(tmp_pat
             scheduler_at(address),
         ):
             pass
+    assert not list(scratch.iterdir())
     with (
         dask.config.set(encrypted),
         pytest.raises(InputError, match="processes that dask can start here"),

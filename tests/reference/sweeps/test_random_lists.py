@@ -6,8 +6,6 @@ A row or two of each list are solved in every test run, and all under --long: th
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 from places import ROOT
@@ -15,7 +13,7 @@ from places import ROOT
 from reference.scenes.scene import load_scene
 from reference.sweeps import driver
 from reference.sweeps.parquet import COLUMNS
-from reference.sweeps.promote import Promoted
+from reference.sweeps.promote import Promoted, promoted
 from reference.sweeps.sweep import sweep
 
 SCENES = {"angles": "two_radians", "positions": "paris"}
@@ -28,19 +26,28 @@ ERRORS = {column.name: column.error for column in COLUMNS if column.error}
 LEFT = "left to the solver"
 
 
-@cache
-def solved(name, engine, every):
-    """Return the rows of a list; the solver solves what is left to it where `every` divides the row's number."""
-    isolated, scene = driver.isolated, load_scene(SCENES[name], ["run.t_end=60"])
+def solved(name, every):
+    """Return the rows of a list by both engines; where `every` divides a row's number, the solver solves what is left.
 
-    def some(pool, request, row, *, doubtful):
-        solve = row % every == 0
-        return isolated(pool, request, row, doubtful=doubtful) if solve else Promoted({}, ([], []), LEFT)
+    It solves such a row once, here, for both.
+    """
+    scene, rows = load_scene(SCENES[name], ["run.t_end=60"]), ROOT / f"tests/helpers/random_{name}.csv"
+    kept = {}
+
+    def some(_, request, row, *, doubtful):
+        assert doubtful
+        if row % every:
+            return Promoted({}, ([], []), LEFT)
+        if row not in kept:
+            kept[row] = promoted(request, row, doubtful=doubtful)
+        return kept[row]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(driver, "isolated", some)
-        rows = ROOT / f"tests/helpers/random_{name}.csv"
-        return list(sweep(scene, rows=rows, engine=engine, audit_rows=0).rows())
+        return [
+            list(sweep(scene, rows=rows, engine=engine, audit_rows=0, workers=1).rows())
+            for engine in ("heyoka", "octet")
+        ]
 
 
 def is_left(row):
@@ -63,7 +70,7 @@ def differences(one, other):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_engines_agree_over_a_list(name, size):
-    lists = [solved(name, engine, size(EVERY[name], 1)) for engine in ("heyoka", "octet")]
+    lists = solved(name, size(EVERY[name], 1))
     pairs = [pair for pair in zip(*lists, strict=True) if not any(map(is_left, pair))]
     wrong = {one["row"]: differences(one, other) for one, other in pairs}
     assert {row: columns for row, columns in wrong.items() if columns} == {}

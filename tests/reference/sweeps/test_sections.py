@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 from passages import found
 from random_rows import KINDS, random_kinds, rows_of
+from sampled import one_in
 
 from reference import load_scene, solve, sweep
 from reference.engines.batch_interface import Wanted
 from reference.engines.registry import batches, engines, run
+from reference.sweeps import promote
 from reference.sweeps.estimate import judged, passages
 from reference.sweeps.promote import audited, worst_ratio
 
@@ -26,8 +28,8 @@ NEAR = 1e-6  # s, of DOP853 in double
 @pytest.fixture(scope="module")
 def drawn(pytestconfig):
     """Random scenes of all kinds, words of sections, and of each its passages by limbs at 110 bits."""
-    count = 40 if pytestconfig.getoption("--long") else 10
-    many, generator = list(random_kinds("sections", count, SPAN)), random.Random("sections")
+    first, count = (0, 40) if pytestconfig.getoption("--long") else (len(KINDS), 2 * len(KINDS))
+    many, generator = list(random_kinds("sections", count, SPAN))[first:], random.Random("sections")
     words = [
         "highest",
         "lowest",
@@ -90,7 +92,7 @@ def test_passages_of_limbs_are_those_of_scipy(drawn):
 WORDS = ["gate 0@0", "gate 90", "highest", "turn 90"]
 
 
-@cache
+@cache  # heyoka compiles for each scene
 def solved(release, latitude):
     """Times and directions of each section of a scene, of which every engine is to give the same."""
     scene = at_paris(release).with_values([f"site.latitude={latitude}"])
@@ -104,8 +106,8 @@ def at_paris(release):
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("release", ["release.x=0.5 release.y=0", "release.x=0 release.y=0.5", "release.x=1e-9"])
-def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_solver_gives(engine, release):
-    latitudes = ["-30", "45", "90"]
+def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_solver_gives(engine, release, size):
+    latitudes = size(["45"], ["-30", "45", "90"])
     swept = sweep(at_paris(release), [f"site.latitude={','.join(latitudes)}"], engine=engine, workers=1)
     for latitude, row in zip(latitudes, swept.rows(), strict=True):
         assert row["status"] == "ok", row["reason"]
@@ -117,7 +119,7 @@ def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_so
                 assert abs(row[f"{word}: interval_s"] - interval) <= row[f"{word}: interval_error_s"], word
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", one_in(2, ENGINES))
 def test_a_motion_that_stays_in_the_gate_fails_alone_and_says_so(engine):
     scene = load_scene("paris", ["run.t_end=60", "release.x=0.5", "release.y=0", "run.sections=gate 0@0"])
     swept = sweep(scene, ["site.latitude=0,45"], engine=engine, workers=1)
@@ -128,18 +130,26 @@ def test_a_motion_that_stays_in_the_gate_fails_alone_and_says_so(engine):
     assert np.isnan(swept["frequency_hz"][0])
 
 
-def test_rows_of_the_solver_have_the_columns_too_and_an_audit_compares_them():
-    scene = load_scene("paris", ["run.t_end=60", "run.sections=gate 90; highest"])
+def test_rows_of_the_solver_have_the_columns_too_and_an_audit_compares_them(monkeypatch):
+    kept, promoted = {}, promote.promoted
+
+    def once(request, row, **options):  # rows are audited several times here
+        if row not in kept:
+            kept[row] = promoted(request, row, **options)
+        return kept[row]
+
+    monkeypatch.setattr(promote, "promoted", once)
+    scene = load_scene("paris", ["run.t_end=30", "run.sections=gate 90; highest"])
     many = sweep(scene, ["site.latitude=30,60"], engine="heyoka", workers=1, audit_rows=2)
     assert many.audit.wrong == ()
-    proved = sweep(scene, ["site.latitude=30,60"], level="enclosed", digits=12, want=["state"], workers=1)
-    assert proved["level"].tolist() == ["enclosed"] * 2
-    for word in ("gate 90", "highest"):
-        assert proved[f"{word}: passages"].tolist() == many[f"{word}: passages"].tolist()
-        for name, error in (("t_first_s", "t_error_s"), ("interval_s", "interval_error_s")):
-            gap = np.abs(proved[f"{word}: {name}"] - many[f"{word}: {name}"])
-            assert (gap <= proved[f"{word}: {error}"] + many[f"{word}: {error}"]).all()
     request, row = many.request, next(many.rows())
+    proved = promoted(request, 0, doubtful=False, level="enclosed", digits=12).values
+    assert proved["level"] == "enclosed"
+    for word in ("gate 90", "highest"):
+        assert proved[f"{word}: passages"] == row[f"{word}: passages"] > 1
+        for name, error in (("t_first_s", "t_error_s"), ("interval_s", "interval_error_s")):
+            gap = abs(proved[f"{word}: {name}"] - row[f"{word}: {name}"])
+            assert gap <= proved[f"{word}: {error}"] + row[f"{word}: {error}"]
     assert worst_ratio(request, 0, row) < 1
     assert worst_ratio(request, 0, row | {"gate 90: passages": row["gate 90: passages"] + 1}) == np.inf
     assert worst_ratio(request, 0, row | {"highest: interval_s": row["highest: interval_s"] + 1e-9}) > 1

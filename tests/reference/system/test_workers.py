@@ -51,8 +51,10 @@ def test_a_child_whose_parent_ends_before_it_sends_anything_ends_without_a_word(
     assert (child.returncode, child.stdout, child.stderr) == (1, b"", b"")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.parametrize("started", [False, True])
+@pytest.mark.parametrize(
+    ("number", "started"),
+    [(signal.SIGINT, False), (signal.SIGTERM, False), (signal.SIGHUP, False), (signal.SIGINT, True)],
+)
 def test_a_signal_to_the_whole_group_leaves_the_end_of_a_child_to_its_parent(number, started, capfd):
     """Ctrl-C reaches children too, also while they begin; a child that ended by itself would look like a crash."""
     worker = Worker(doubled, 3)
