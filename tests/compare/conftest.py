@@ -12,7 +12,10 @@ from compare.papers.checks import JudgedRow
 
 EACH = 9  # of so many rows the page shows one
 FEW = 1  # random points at which each row is judged; as many as the product takes under --long
-EVERY_TENTH, POLE_AND_EQUATOR = (-90, 91, 10), (-90, 1, 90)  # latitudes whose frequency figure 8 shows, beside that of Paris
+EVERY_TENTH, POLE_AND_EQUATOR = (
+    (-90, 91, 10),
+    (-90, 1, 90),
+)  # latitudes whose frequency figure 8 shows, beside that of Paris
 
 
 def fewer(patch: pytest.MonkeyPatch, config: pytest.Config) -> None:

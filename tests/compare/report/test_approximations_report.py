@@ -9,12 +9,14 @@ import pytest
 from typer.testing import CliRunner
 
 from compare.report import approximations as approximation_report
+from compare.studies import approximation_limits
 from foucault import commands
 from reference import InputError
 
 
 def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(approximation_report, "OVERS", ("time", "amplitude"))
+    monkeypatch.setattr(approximation_limits, "sweep_values", lambda *_: (1e-3, 1e-2, 1e-1))
     arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
     result = CliRunner().invoke(commands(), [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
