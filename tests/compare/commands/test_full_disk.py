@@ -17,7 +17,7 @@ from places import ROOT
 import reference
 
 SMALL = ["paris", "--t-end", "60", "--digits", "10", "--level", "computed"]
-STUDY = ["study", "paris", "--t-end", "60", "--methods", "heyoka_double", "--no-formulations"]
+STUDY = ["study", "paris", "--t-end", "60", "--methods", "rk4", "--no-formulations"]
 STABILITY = ["stability", "--scenes", "hard", "--methods", "heyoka_double"]
 
 
@@ -29,6 +29,7 @@ def disk(tmp_path):
 
 @pytest.fixture
 def here(monkeypatch):
+    pytest.importorskip("numba")
     measured_here(monkeypatch)
 
 
@@ -74,7 +75,7 @@ def test_generate_finds_out_at_any_file(disk, foucault):
 
 
 @pytest.mark.usefixtures("here")
-@pytest.mark.parametrize("words", [STUDY, STABILITY], ids=lambda words: words[0])
+@pytest.mark.parametrize("words", [STUDY, pytest.param(STABILITY, marks=pytest.mark.long)], ids=["study", "stability"])
 def test_a_campaign_ends_with_a_message(words, disk, foucault):
     fill(disk)
     assert refused(foucault(*words, "--out", disk / "report"), "--out")
@@ -104,14 +105,24 @@ def test_a_picture_stays_as_it_was(disk, foucault, candidate):
     pytest.importorskip("matplotlib")
     (disk / "picture.svg").write_text("years of work")
     fill(disk)
-    assert refused(foucault("score", "paris", candidate, "--plot", disk / "picture.svg"), "--plot")
+    assert refused(foucault("score", "paris", candidate, "--no-diagnosis", "--plot", disk / "picture.svg"), "--plot")
     assert (disk / "picture.svg").read_text() == "years of work"
     assert sorted(os.listdir(disk)) == ["filler", "picture.svg"]
 
 
 def test_a_score_stands_when_its_cache_is_full(disk, foucault, candidate, tmp_path, monkeypatch):
     disk.chmod(0o700)
-    words = ["score", "paris", candidate, "--json", "--set", "site.latitude=40", "--set", "run.t_end=60"]
+    words = [
+        "score",
+        "paris",
+        candidate,
+        "--json",
+        "--no-diagnosis",
+        "--set",
+        "site.latitude=40",
+        "--set",
+        "run.t_end=60",
+    ]
     monkeypatch.setenv("FOUCAULT_CACHE_SAID", "")
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
     good = foucault(*words)

@@ -20,14 +20,14 @@ def own_process(monkeypatch):
     monkeypatch.setattr(library, "own_process", True)
 
 
-def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch):
+def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch, size):
     redirected, golden = [], reference.load("paris")
     monkeypatch.setattr(os, "dup2", lambda *descriptors: redirected.append(descriptors))
-    for level in LEVELS:
+    for level in size(LEVELS[-1:], LEVELS):
         reference.solve("paris", t_end="5", digits=10, level=level)
     minute = reference.load_scene("paris", ["run.t_end=60"])
-    reference.sweep(minute, ["site.latitude=0,45"], level="confirmed", workers=1)
-    reference.sweep(minute, ["site.latitude=0,45"])
+    for how in size([{}], [{}, {"level": "confirmed", "workers": 1}]):
+        reference.sweep(minute, ["site.latitude=0,45"], **how)
     assert_agrees("paris", golden.t[:9], np.column_stack([golden.x, golden.y])[:9])
     assert study("paris", items=[("rk4", "plane", 0.1)], t_end=60).rows
     problem = Problem.of(reference.load_scene("paris"), "momentum", [0.0, 1.0, 2.0])

@@ -16,7 +16,7 @@ from compare.methods.rhs.problem import suited
 from reference import InputError
 
 # looser than the tight end of the ladder, which would take longer than a test may
-SETTINGS = {"heyoka_real": 160, "mpmath_odefun": 53}
+SETTINGS = {"heyoka_real": 160, "mpmath_odefun": 113}
 ROWS = {"mpmath_odefun": 2}
 ERROR = 1e-7  # of the cord length: every method gets there …
 ERRORS = {
@@ -27,10 +27,16 @@ ERRORS = {
 
 
 @cache
-def run(name, scene, setting=None):
+def prepared(name, scene, setting=None):
     method, example = METHODS[name], case(scene)
     problem = example.problem(name, rows=ROWS.get(name))
-    return problem, method.prepare(problem, setting or SETTINGS.get(name) or method.settings(example.scene)[-1])()
+    return problem, method.prepare(problem, setting or SETTINGS.get(name) or method.settings(example.scene)[-1])
+
+
+@cache
+def run(name, scene, setting=None):
+    problem, work = prepared(name, scene, setting)
+    return problem, work()
 
 
 @pytest.fixture(params=list(METHODS))
@@ -38,8 +44,14 @@ def name(request, installed):
     return installed(request.param).id
 
 
-@pytest.mark.parametrize("scene", ["paris", "steep"])
-def test_every_method_finds_the_reference(name, scene):
+STEEP = {"rk4", "rkmk4", "heyoka_real", "scipy_dop853", "cvode_adams"}  # in every run: one of each family
+CASES = [(name, "paris") for name in METHODS]
+CASES += [(name, "steep") if name in STEEP else pytest.param(name, "steep", marks=pytest.mark.long) for name in METHODS]
+
+
+@pytest.mark.parametrize(("name", "scene"), CASES)
+def test_every_method_finds_the_reference(name, scene, installed):
+    installed(name)
     problem, outcome = run(name, scene)
     truth, length = case(scene).truth[: len(problem.times)], float(case(scene).scene.exact.length)
     assert (outcome.status, outcome.reached_t) == ("ok", problem.times[-1])
@@ -49,9 +61,8 @@ def test_every_method_finds_the_reference(name, scene):
 
 
 def test_a_run_can_be_repeated_and_gives_the_same_bits(name):
-    method, paris = METHODS[name], case("paris")
-    work = method.prepare(paris.problem(name, rows=2), method.ladder[0])
-    first, second = work(), work()
+    coarse = METHODS[name].ladder[0]
+    first, second = run(name, "paris", coarse)[1], prepared(name, "paris", coarse)[1]()
     assert np.array_equal(first.states, second.states)
     assert (first.steps, first.rhs_evaluations) == (second.steps, second.rhs_evaluations)
 
@@ -83,8 +94,7 @@ def test_a_declaration_is_complete(name):
 @pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.number != "double"])
 def test_exact_states_show_errors_far_below_a_doubles(name, installed):
     installed(name)
-    setting = {"heyoka_real": 160, "mpmath_odefun": 113}.get(name)
-    problem, outcome = run(name, "paris", setting)
+    problem, outcome = run(name, "paris")
     grid = case("paris").solution.grid
     errors = [abs(x - truth) for x, truth in zip(outcome.exact.exact("x"), grid.exact("x"), strict=False)]
     assert len(outcome.exact) == len(problem.times)
@@ -111,7 +121,7 @@ def test_steps_end_on_output_times_that_they_do_not_divide(installed):
 @pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.family is Family.SCIPY])
 def test_scipy_reports_every_call_of_the_right_hand_side(name, installed):
     installed(name)
-    problem, calls = case("steep").problem(name), []
+    problem, calls = case("paris").problem(name), []
     inner = problem.rates
     problem.__dict__["rates"] = lambda *of: calls.append(1) or inner(*of)
     work = METHODS[name].prepare(problem, 1e-6)

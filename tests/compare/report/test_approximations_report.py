@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from compare.approximations import motions
 from compare.report import approximations as approximation_report
+from compare.studies import approximation_limits
 from foucault import commands
 from reference import InputError
 
 
-def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_study_of_approximations_writes_its_page_and_json(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: Callable[..., int]
+) -> None:
+    some = dict([*motions().items()][:: size(5, 1)])
+    monkeypatch.setattr(approximation_report, "motions", lambda: some)
     monkeypatch.setattr(approximation_report, "OVERS", ("time", "amplitude"))
+    monkeypatch.setattr(approximation_limits, "sweep_values", lambda *_: (1e-3, 1e-2, 1e-1))
     arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
     result = CliRunner().invoke(commands(), [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     document = json.loads(result.stdout)
     assert {row["t"] for row in document["rows"]} == {20.0, 60.0}
     assert {row["over"] for row in document["limits"]} == {"time", "amplitude"}
+    assert {row["approximation"] for row in document["rows"]} == {*some}
     page = (tmp_path / "index.html").read_text()
     assert all(row["approximation"] in page for row in document["rows"])
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from itertools import pairwise
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compare.report.pareto import (
@@ -68,6 +68,7 @@ ROWS = st.lists(
 )
 
 
+@settings(max_examples=25)
 @given(ROWS, st.sampled_from([0.0, 1e-40, 1e-9]))
 def test_no_row_of_the_front_is_beaten_and_every_other_measured_row_is(rows, bound_m):
     best = front(rows, bound_m)
@@ -77,6 +78,7 @@ def test_no_row_of_the_front_is_beaten_and_every_other_measured_row_is(rows, bou
         assert any(one is other or beats(other, one, bound_m) or same(other, one, bound_m) for other in best)
 
 
+@settings(max_examples=25)
 @given(ROWS)
 def test_along_the_front_cost_rises_and_error_falls(rows):
     for a, b in pairwise(front(rows)):

@@ -171,6 +171,13 @@ def test_the_page_says_where_and_how_it_was_measured(read):
     assert "At 1e-6 m the cheapest method is heyoka_double" in text
 
 
+@pytest.fixture
+def no_pictures(monkeypatch):
+    """Pages without their pictures, which cost most of what a page does."""
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+
+
+@pytest.mark.usefixtures("no_pictures")
 def test_title_and_limit_are_on_the_page():
     html = study_page.page_text(study_document(title="A & B"))
     assert "<title>Error against run time: A &amp; B</title>" in html
@@ -190,8 +197,8 @@ def test_a_study_in_which_everything_failed_still_has_a_page():
     Reader(html)
 
 
-def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
+@pytest.mark.usefixtures("no_pictures")
+def test_without_matplotlib_the_page_says_what_is_missing():
     html = study_page.page_text(study_document())
     assert "<svg" not in html
     assert "foucault-reference[plot]" in html
@@ -250,6 +257,7 @@ def test_neither_the_report_nor_its_parts_load_matplotlib():
     assert process.stdout.strip() == "False"
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_the_declared_order_stands_beside_the_observed_one():
     rows = [
         row("rk4", 0.1 / 2**i, 1e-3 / 16**i, 0.1, formulation="plane", kind="step", steps=100 * 2**i) for i in range(5)

@@ -173,21 +173,24 @@ def test_what_an_annotation_would_take_for_its_own_is_escaped(foucault, tmp_path
     assert "a%2Cb%3Ac%25.csv,title=foucault paris::" in line
 
 
-def test_documents_keep_their_schema(foucault, folder):
+def test_documents_keep_their_schema(foucault, folder, tmp_path):
     """A score with everything in it, one of transits alone, a suite; an extra key or a word for a number is refused."""
-    paris = folder / "paris.npz"
+    paris, exchanged = folder / "paris.npz", tmp_path / "exchanged.csv"
+    t, x, y = np.loadtxt(folder / "wrong.csv", delimiter=",").T
+    np.savetxt(exchanged, np.column_stack([t, y, x - 1e-3]), delimiter=",", header="t,x,y", fmt="%.17g")
     documents = [
         json.loads(foucault("score", *words, "--json")[1])
         for words in (
             ("paris", paris, "--transits", folder / "paris.transits.csv"),
             ("paris", "--transits", folder / "paris.transits.csv"),
-            (folder / "wrong.toml", folder / "wrong.csv"),  # explained, if it can be
+            (folder / "wrong.toml", exchanged),
             ("paris", "--run", f"cat {folder / 'wrong.csv'}", "--repeats", "0", "--no-diagnosis"),
             ("--suite", folder, "--no-diagnosis"),
         )
     ]
     for document in documents:
         jsonschema.validate(document, SCHEMA)
+    assert documents[2]["conventions"]  # so that what is explained is held too
     for change in ({"extra": 1}, {"max_error_m": "small"}, {"verdict": "maybe"}):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({**documents[0], **change}, SCHEMA)

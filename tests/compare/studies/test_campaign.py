@@ -50,6 +50,7 @@ def test_items_that_differ_in_their_last_part_share_a_process_with_one_thread(mo
     assert dict(os.environ) == before
 
 
+@pytest.mark.usefixtures("in_process")
 def test_results_of_the_same_recipe_and_machine_are_not_measured_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -58,13 +59,19 @@ def test_results_of_the_same_recipe_and_machine_are_not_measured_again(
     first = run(items[:1], journal_path=path)
     with path.open("a") as stream:
         stream.write('{"recipe": "cut off by an interr\n')
-    again = run(items, journal_path=path, report=lambda *now: reports.append(now))
+
+    def measured(**fields: Any) -> tuple[list[Answer], list[tuple[int, int, str]]]:
+        reports.clear()
+        return run(items, journal_path=path, report=lambda *now: reports.append(now), **fields), [*reports]
+
+    again, counted = measured()
     assert again[0] == first[0]
-    assert reports == [(1, 2, "m")]
-    assert run(items, journal_path=path) == again
-    assert run(items, journal_path=path, recipe="two")[0].process != first[0].process
+    assert counted == [(1, 2, "m")]
+    assert measured() == (again, [])
+    both = [(0, 2, "m"), (1, 2, "m")]
+    assert measured(recipe="two")[1] == both
     monkeypatch.setattr(module, "machine", lambda: {"processor": "another"})
-    assert run(items, journal_path=path)[0].process != first[0].process
+    assert measured()[1] == both
     assert len(path.read_text().splitlines()) == 7
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,8 +15,10 @@ ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4
 
 
 @pytest.mark.usefixtures("here")
-def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path: Path) -> None:
-    scene = load_scene("paris", ["inputs=binary64", "run.t_end=7200"])
+def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(
+    tmp_path: Path, size: Callable[..., int]
+) -> None:
+    scene = load_scene("paris", ["inputs=binary64", f"run.t_end={size(1800, 7200)}"])
     journal_path = tmp_path / "long.jsonl"
     rows = long_runs(ITEMS[:1], scene, journal_path=journal_path)
     assert rows[0].status == "ok"

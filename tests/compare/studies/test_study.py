@@ -144,15 +144,15 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path) -> None:
     short = load_scene("paris", ["run.t_end=20", "inputs=binary64"])
     planned = plan(short, ["rk4", "heyoka_double"], False)
-    items = [*planned[:3], *planned[-3:]]
+    items = [*planned[:2], planned[-1]]
     reports: list[str] = []
     journal_path = tmp_path / "rows.jsonl"
-    first = study(short, items=items[:4], journal_path=journal_path)
+    first = study(short, items=items[:2], journal_path=journal_path)
     again = study(
         short, items=items, journal_path=journal_path, report=lambda finished, total, now: reports.append(now)
     )
-    assert again.rows[:4] == first.rows
-    assert len(reports) == len(items) - 4
+    assert again.rows[:2] == first.rows
+    assert len(reports) == len(items) - 2
     other = study(short, items=items)
     measured = [[(*row.key, row.status, row.error_m, row.steps) for row in one.rows] for one in (again, other)]
     assert measured[0] == measured[1]  # all but what they cost
@@ -163,7 +163,7 @@ def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path
 
 @pytest.mark.usefixtures("here")
 def test_the_command_writes_a_report_and_one_json_document(foucault, tmp_path: Path) -> None:
-    words = ("study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json")
+    words = ("study", "paris", "--methods", "rk4", "--no-formulations", "--t-end", "60", "--json")
     status, out, _ = foucault(*words, "--out", tmp_path / "out")
     assert status == 0
     document = json.loads(out)
@@ -190,9 +190,9 @@ def test_somebody_elses_program_is_a_row_of_the_study(foucault, tmp_path: Path) 
         "for i in range(round(end / step) + 1):\n    print(f'{i * step!r},0.3,0.4')\n"
     )
     command = f"python3 {script} {{t_end}} {{grid_step}}"
-    status, out, _ = foucault("study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--json")
+    status, out, _ = foucault("study", "paris", "--methods", "rk4", "--t-end", "120", "--run", command, "--json")
     assert status == 0
-    (row,) = (row for row in json.loads(out)["rows"] if row["method"] != "rkmk4")  # it has no {setting}
+    (row,) = (row for row in json.loads(out)["rows"] if row["method"] != "rk4")  # it has no {setting}
     assert row["method"] == "still.py"
     assert row["error_m"] > 0.5
 
@@ -266,7 +266,7 @@ def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, m
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     times: list[float] = []
     elsewhere = load_scene("paris", ["site.latitude=12.5", "run.t_end=600"])
-    study(elsewhere, items=[("rkmk4", "momentum", 0.5)], digits=40, solving=times.append)
+    study(elsewhere, items=[("rk4", "plane", 0.5)], digits=40, solving=times.append)
     assert times == sorted(times) and 0 < times[0] <= times[-1] <= 600
 
 
@@ -280,7 +280,7 @@ def test_the_precision_ladder_gains_digits_with_bits() -> None:
     limbs = [("limbs", "inertial", 113), ("limbs", "inertial", 160)]
     assert precision_items(bits) == [*processor, *mpfr, *limbs]
     items = [item for item in precision_items(bits) if item[0] != "limbs"]
-    result = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
+    result = study(scene.with_values(["run.t_end=20"]), items=items, digits=digits)
     errors = [row.error_m for row in result.rows]
     assert all(
         later is not None and earlier is not None and later < earlier for earlier, later in itertools.pairwise(errors)

@@ -100,9 +100,20 @@ def reading(request):
     return golden
 
 
-def test_trajectories_are_judged_as_score_does(reading, tmp_path):
+WITH_ROWS = {
+    "right",
+    "wrong",
+    "minutes",
+    "late",
+    "clock_of_steps",
+}  # of the files that the function judges in every run
+
+
+def test_trajectories_are_judged_as_score_does(reading, tmp_path, size):
     golden = reading
     texts = trajectories(golden)
+    if golden.function is None:
+        texts = {name: texts[name] for name in size(WITH_ROWS, texts)}
     told = run(golden, [(text, None, None) for text in texts.values()])["told"]
     for (name, text), mine in zip(texts.items(), told, strict=True):
         path = tmp_path / f"{name}.csv"
@@ -121,8 +132,10 @@ def test_trajectories_are_judged_as_score_does(reading, tmp_path):
             assert (mine["path"]["worst"]["t"], mine["path"]["worst"]["component"]) == score.worst[:2], name
     verdicts = {name: mine["verdict"] for name, mine in zip(texts, told, strict=True)}
     found = {name: mine["notes"] for name, mine in zip(texts, told, strict=True)}
-    assert {name for name, word in verdicts.items() if word == "disagrees"} == {"wrong", *SAID}
+    assert {name for name, word in verdicts.items() if word == "disagrees"} == {"wrong", *SAID} & {*texts}
     for name, text in SAID.items():
+        if name not in texts:
+            continue
         *_, said = found[name]
         about, left = re.fullmatch(r"(.*): put right, (\S+) m are left\.", said).groups()
         assert about == text and float(left) <= most_left(golden, name), said

@@ -154,11 +154,16 @@ def test_the_command_to_score_says_what_differs_from_the_scene(readings):
     ("words", "said"),
     [
         (("--data", "nowhere"), "a folder of golden datasets"),
-        (("--studies", "."), "a study as `foucault study` writes it"),
+        (("--data", "SOME", "--studies", "."), "a study as `foucault study` writes it"),
         (("--out", "mine"), "a new folder, or one that an earlier run wrote"),
     ],
 )
-def test_wrong_folders_are_refused_and_nothing_is_written(foucault, tmp_path, monkeypatch, words, said):
+def test_wrong_folders_are_refused_and_nothing_is_written(
+    foucault, tmp_path, tmp_path_factory, monkeypatch, words, said
+):
+    some = tmp_path_factory.mktemp("data")
+    (some / "hard").symlink_to(golden_root() / "hard")
+    words = [some if word == "SOME" else word for word in words]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "index.html").write_text("my own page")
