@@ -53,10 +53,10 @@ def test_all_that_ships_is_asked_for(tmp_path):
     assert spans == sorted(spans, reverse=True)
 
 
-def test_what_ships_is_done_and_what_was_changed_is_not(tmp_path):
-    shipped = {job.name: job for job in jobs((), None)}
-    assert all(is_done(shipped[name]) for name in seals())
-    assert not any(is_done(job) for job in jobs(("run.t_end=7",), None))
+def test_what_ships_is_done_and_what_was_changed_is_not(size):
+    shipped, every = {job.name: job for job in jobs((), None)}, size(4, 1)
+    assert all(is_done(shipped[name]) for name in [*seals()][::every])
+    assert not any(is_done(job) for job in jobs(("run.t_end=7",), None)[::every])
     missing = [job for name, job in shipped.items() if name not in seals()]
     assert not any(is_done(job) for job in missing)
 

@@ -19,7 +19,7 @@ from sampled import one_in
 import reference
 from reference.commands.generate_all import jobs
 from reference.dataset.place import default_folder
-from reference.dataset.record import Making, command, making_of
+from reference.dataset.record import AUDIT, Making, command, making_of
 from reference.dataset.render import render
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
@@ -140,19 +140,24 @@ def test_no_number_type_of_the_hardware_stands_in_what_ships(name):
 
 
 def test_the_commands_of_what_ships_make_what_ships():
-    """Both `generate NAME` and `generate --all`, in place and elsewhere; of thirty days without a confirmation."""
+    """Both `generate NAME` and `generate --all`, in place and elsewhere: proofs, audited, and confirmed as a whole.
+
+    Of thirty days there is no confirmation.
+    """
     everything = {job.name: job for job in jobs((), None)}
     elsewhere = {job.name: job for job in jobs((), Path("elsewhere"))}
     assert set(everything) == set(elsewhere) == set(index()) == set(seals())
     for name, entry in index().items():
         manifest = manifest_of(name)
+        assert manifest.level == "enclosed" and AUDIT in manifest.command.split()
         for job in (everything[name], elsewhere[name]):
             scene = job.scene
             making = making_of(scene, name, job.folder)
             assert making.options_for(scene, name) == entry["options"]
             assert command(scene, name, entry["options"]) == manifest.command
         assert everything[name].folder == default_folder(scene, name) == golden_root() / name
-    assert [name for name, entry in index().items() if "--no-confirm" in entry["options"]] == ["paris_30d"]
+    confirmed = {name: Making.of(manifest_of(name).command).confirm for name in index()}
+    assert {name: how for name, how in confirmed.items() if how != "whole"} == {"paris_30d": "none"}
 
 
 def test_options_are_read_as_they_are_written():
