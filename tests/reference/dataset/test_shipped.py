@@ -27,7 +27,7 @@ def test_paris_is_among_them_with_its_whole_day():
     assert paris.manifest.counts.transits == len(paris.transits["t"]) == 10514
 
 
-@pytest.mark.parametrize("name", one_in(8, SHIPPED))  # `load` checks hash and seal of each below
+@pytest.mark.parametrize("name", one_in(8, SHIPPED))  # test_same_bytes loads each, which checks hash and seal
 def test_it_passes_every_check(name):
     assert problems_of(data_root() / "golden" / name) == []
 
