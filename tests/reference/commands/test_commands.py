@@ -254,7 +254,7 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
 
 
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
-    words = ["generate", "paris", "--engine", "heyoka", "--out", str(tmp_path / "p")]
+    words = ["generate", "paris", "--t-end", "14400", "--engine", "heyoka", "--out", str(tmp_path / "p")]
     status, err, group = interrupted(words, lambda group, _: members(group) > 1)  # the confirming run has begun
     assert status == 130
     assert b"Traceback" not in err

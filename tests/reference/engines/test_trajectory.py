@@ -67,7 +67,7 @@ def motion():
     return trajectory(load_scene("paris"), TIMES, number=LONG_DOUBLE)
 
 
-# that all of them run to the same place is held in test_heyoka
+# that the others run to the same place is held in test_heyoka
 @pytest.mark.parametrize("formulation", one_in(5, ["space", "spin", "plane", "angles", "lagrangian"]))
 def test_every_formulation_gives_the_same_motion(paris, motion, formulation):
     found = trajectory(paris, TIMES, formulation=formulation, number=LONG_DOUBLE)
