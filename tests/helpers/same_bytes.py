@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from ast import literal_eval
 from collections.abc import Iterable
 from hashlib import sha256
+from typing import Any
 
+# what leaves the order or the rounding of floating-point operations to the compiler, in LLVM's language
+FREEDOMS = re.compile(r"\b(fast|reassoc|nsz|arcp|contract|afn|fmuladd)\b")
 COUNTED = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "transits", "t_first_s", "t_last_s")
 
 
@@ -53,3 +58,34 @@ def differing(names: Iterable[str]) -> str:
     import numba
 
     return f"{numba.config.CPU_NAME}: {[name for name in names if made_again(name) != shipped(name)]}"
+
+
+def processor() -> str:
+    """Return what numba writes on the code that it keeps for the processor of this process."""
+    from numba.core.registry import cpu_target
+
+    return repr(cpu_target.target_context.codegen().magic_tuple())
+
+
+def translated(kept_for: str) -> list[str]:
+    """Have numba take code that it keeps for another processor, and make instructions for its own from it.
+
+    What numba keeps stands there in LLVM's language, too. Making that anew would take ten times as long, and it is the
+    same for every processor as far as it leaves nothing to the compiler. Returns a list that grows: each function that
+    was taken, and what it leaves.
+    """
+    from llvmlite import binding
+    from numba.core.codegen import CPUCodegen, CPUCodeLibrary
+
+    taken: list[str] = []
+    honest = CPUCodeLibrary._unserialize.__func__
+
+    def take(cls: Any, codegen: Any, kept: Any) -> Any:
+        name, _, (_, bitcode) = kept
+        freedoms = sorted({*FREEDOMS.findall(str(binding.parse_bitcode(bitcode)))})
+        taken.append(f"{name} {freedoms}")
+        return honest(cls, codegen, (name, "bitcode", bitcode))
+
+    CPUCodeLibrary._unserialize = classmethod(take)
+    CPUCodegen.magic_tuple = lambda _: literal_eval(kept_for)
+    return taken

@@ -68,9 +68,11 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
     _, out, _ = foucault("show", "equator", "--equations", "--set", "pendulum.drag=0.1", "--set", "site.gravity=0")
     assert "gamma" in out
     assert "gravity: it is 0" in out
-    document = json.loads(foucault("show", "paris", "--equations", "--json")[1])
+    minute = ("--set", "run.t_end=60")
+    document = json.loads(foucault("show", "paris", "--equations", "--json", *minute)[1])
     assert len(document["equations"]) == 6
-    text = foucault("show", "paris", "--equations", "--set", "run.transits=false", "--set", "run.level=enclosed")[1]
+    without = ("--set", "run.transits=false", "--set", "run.level=enclosed")
+    text = foucault("show", "paris", "--equations", *without, *minute)[1]
     assert "transits are off" in text
     assert "the enclosure" not in text
     planar = foucault("show", "spherical", "--equations", "--set", "release.x=0", "--set", "release.vx=0")[1]
@@ -252,7 +254,7 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
 
 
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
-    words = ["generate", "paris", "--engine", "heyoka", "--out", str(tmp_path / "p")]
+    words = ["generate", "paris", "--t-end", "14400", "--engine", "heyoka", "--out", str(tmp_path / "p")]
     status, err, group = interrupted(words, lambda group, _: members(group) > 1)  # the confirming run has begun
     assert status == 130
     assert b"Traceback" not in err

@@ -208,7 +208,7 @@ def test_generate_makes_it_by_default_and_not_with_no_function(foucault, tmp_pat
         "generate",
         tmp_path / "mine.toml",
         "--t-end",
-        "20",
+        "2",
         "--digits",
         "12",
         "--level",

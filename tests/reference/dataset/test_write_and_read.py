@@ -91,7 +91,7 @@ def test_doubles_are_given_with_seventeen_digits_and_as_hexfloats(dataset):
 def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_that_are_printed(tmp_path):
     """Fifteen digits are printed and some twenty are known; the truth here is a run of forty."""
     scene = reference.load_scene("paris", ["run.t_end=600", "run.digits=15"])
-    solution, truth = reference.solve(scene), reference.solve(scene, digits=40)
+    solution, truth = reference.solve(scene), reference.solve(scene, digits=40, level="computed", engine="limbs")
     dataset = write(solution, tmp_path / "few")
     for kind, known, table in (
         ("grid", solution.grid, truth.grid),
@@ -127,7 +127,7 @@ def test_the_documents_follow_their_published_schemas(dataset, name):
 
 
 def test_vectors_are_a_few_states_and_transits_with_bounds_taken_from_the_tables(tmp_path):
-    scene = reference.load_scene("paris", ["run.t_end=900", "run.grid_step=10", "run.digits=15"])
+    scene = reference.load_scene("paris", ["run.t_end=900", "run.grid_step=10", "run.digits=15", "run.level=computed"])
     dataset = write(reference.solve(scene), tmp_path / "vectors")
     found, tables = json.loads((dataset / "vectors.json").read_text()), read_files(dataset).tables
     assert len(found["states"]) == MOST == 16
