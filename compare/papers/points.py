@@ -199,11 +199,13 @@ def frequency(solution: Solution) -> Any:
     return mpf(halves) / 2 / mpf(last)
 
 
+LATITUDES = [*map(str, range(-90, 91, 10)), "48.846111"]  # in degrees, of figure 8: that of Paris is the last
+
+
 @cache
 def frequencies() -> dict[float, float]:
     """Return the frequency in Hz by latitude in degrees, from runs of ten minutes."""
-    latitudes = [*map(str, range(-90, 91, 10)), "48.846111"]
-    return {float(text): float(frequency(solved((f"site.latitude={text}",), "600", 12))) for text in latitudes}
+    return {float(text): float(frequency(solved((f"site.latitude={text}",), "600", 12))) for text in LATITUDES}
 
 
 def swing_plane(scene: Scene, states: Array) -> Array:

@@ -12,19 +12,21 @@ from compare.papers.checks import JudgedRow
 
 EACH = 9  # of so many rows the page shows one
 FEW = 1  # random points at which each row is judged; as many as the product takes under --long
-EVERY_TENTH, POLE_AND_EQUATOR = (
-    (-90, 91, 10),
-    (-90, 1, 90),
-)  # latitudes whose frequency figure 8 shows, beside that of Paris
+LATITUDES = ["-90", "0", points.LATITUDES[-1]]  # whose frequency figure 8 shows then
 
 
 def fewer(patch: pytest.MonkeyPatch, config: pytest.Config) -> None:
     """Have rows judged at fewer points, and figure 8 drawn of fewer runs, but under --long."""
     if not config.getoption("--long"):
         patch.setattr(points, "COUNT", FEW)
-        few = {EVERY_TENTH: POLE_AND_EQUATOR}
-        patch.setattr(points, "range", lambda *ends: range(*few.get(ends, ends)), raising=False)
+        patch.setattr(points, "LATITUDES", LATITUDES)
+    forget()
+
+
+def forget() -> None:
+    """Have the points drawn and the runs made again."""
     points.points.cache_clear()
+    points.frequencies.cache_clear()
 
 
 @pytest.fixture(scope="session")
@@ -33,7 +35,7 @@ def judged(pytestconfig: pytest.Config) -> dict[str, JudgedRow]:
     with pytest.MonkeyPatch.context() as patch:
         fewer(patch, pytestconfig)
         rows = {row.id: row for row in papers.rows()}
-    points.points.cache_clear()
+    forget()
     return rows
 
 
@@ -47,5 +49,5 @@ def built(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config)
         patch.setattr(papers, "declared", lambda: some)
         fewer(patch, pytestconfig)
         rows = papers.build(folder)
-    points.points.cache_clear()
+    forget()
     return folder, rows
