@@ -155,6 +155,7 @@ def test_a_program_that_fails_or_is_killed_draws_no_conclusion(foucault: Any, tm
     assert "nothing follows" in runs["no_rotation"]["conclusion"]
 
 
+@pytest.mark.long
 def test_a_mistake_that_nobody_knows_has_no_name(foucault: Any, tmp_path: Path) -> None:
     """A cord that pulls harder the farther the bob is out, which is no cause of the list."""
     source = tmp_path / "hard.py"
