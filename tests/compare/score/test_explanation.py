@@ -14,6 +14,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from compare.score.document import diagnosis
 from compare.score.explanation.case import Explanation, Rows
 from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.families import fits_of
-from compare.score.explanation.fitted import readers_of
+from compare.score.explanation.fitted import TIE, _is_tied, readers_of
 from compare.score.explanation.slips import falls, slip
 from compare.score.judge import judge
 from compare.score.verdict import Score
@@ -249,7 +250,7 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         # vertical alone, Ω of the other hemisphere is Ω of the other sign
         pytest.param(61126, 264, marks=LONG),
         (70007, 154),  # a clock and drag, which a step and three numbers that nobody types make as well
-        # no rotation, which is neither of its forces as well; a test of its own has it without its other mistake
+        # no rotation, which is neither of its forces as well; the next test has the two readings alone
         pytest.param(85005, 148, marks=LONG),
         # x and y in each other's place, which a swapped release and Ω's sign make as well, and leave less
         pytest.param(81001, 94, marks=LONG),
@@ -263,10 +264,21 @@ def test_what_was_once_told_wrongly(mistaken: Path, seed: int, number: int) -> N
     assert not made.wrong(told(made, *made.rows(mistaken)))
 
 
-def test_no_rotation_is_no_tie_with_neither_of_its_forces(mistaken: Path) -> None:
-    made = case(148, seed=85005).without({"y_south"})
-    assert made.true == {"no_coriolis", "no_centrifugal"}
-    assert words_of(told(made, *made.rows(mistaken))) == {"no_rotation"}
+def test_a_tie_is_of_another_motion_that_is_as_likely_and_has_nothing_in_common() -> None:
+    """No rotation and neither of its two forces are one motion, which leaves as much."""
+
+    def reading(score: float, rest: float, *groups: str) -> Any:
+        kind = SimpleNamespace(right=SimpleNamespace(kind="sphere"))
+        causes = [SimpleNamespace(group=group) for group in groups]
+        return SimpleNamespace(score=score, rest=rest, reader=kind, causes=causes)
+
+    best = reading(5.0, 1e-9, "rotation")
+    near = 5.0 + 0.9 * TIE
+    assert _is_tied([best, reading(near, 2e-9, "coriolis", "centrifugal")])
+    assert not _is_tied([best, reading(near, 1e-9, "coriolis", "centrifugal")])
+    assert not _is_tied([best, reading(5.0 + 1.1 * TIE, 2e-9, "coriolis")])
+    assert not _is_tied([best, reading(near, 2e-9, "rotation", "drag")])
+    assert not _is_tied([best, reading(near, 2e-9)])
 
 
 @pytest.mark.parametrize(
