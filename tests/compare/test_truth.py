@@ -106,7 +106,15 @@ def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched():
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("kind", ["file", "folder", "full folder", "link to nothing"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "full folder",
+        "link to nothing",
+        pytest.param("file", marks=pytest.mark.long),
+        pytest.param("folder", marks=pytest.mark.long),
+    ],
+)
 def test_whatever_is_in_the_way_of_an_entry_is_removed(kind, own_cache):
     scene, times = make_scene("mine", pendulum={"length": "5"}, run=RUN), np.array([0.0, 1.5])
     first, said = truth_at(golden_of(scene), times), list[str]()
@@ -224,9 +232,9 @@ def test_the_input_floor_of_what_ships_is_that_of_first_order(name):
 
 def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
     own = tmp_path / "long.toml"
-    own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "864000"\n')
+    own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "86400"\n')
     rows = tmp_path / "rows.csv"
-    rows.write_text("t,x,y\n0,0.3,0.4\n864000,0.3,0.4\n")
+    rows.write_text("t,x,y\n0,0.3,0.4\n86400,0.3,0.4\n")
     status, err, group = interrupted(
         ["score", str(own), str(rows), "--tolerance", "1e-20"], lambda _, err: b"solving it" in err
     )

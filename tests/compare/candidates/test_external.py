@@ -235,7 +235,7 @@ def test_repeats_are_timed_after_a_warm_up(tmp_path):
     assert (took.runs, took.warm, took.spread) == (1, False, 0.0)  # nothing warmed it up
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGHUP])
 def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     words, note = parent(tmp_path, "signal.pause()")
     command = ["score", "paris", "--run", shlex.join(words)]

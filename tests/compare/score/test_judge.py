@@ -78,14 +78,20 @@ def states(golden):
 
 
 @pytest.fixture(scope="module")
+def whole(tmp_path_factory, golden, states):
+    return write_csv(tmp_path_factory.mktemp("whole") / "whole.csv", golden.t, states)
+
+
+@pytest.fixture(scope="module")
 def good(tmp_path_factory, golden, states):
-    return write_csv(tmp_path_factory.mktemp("good") / "good.csv", golden.t, states)
+    """Every tenth row, to the end: enough where rows are not counted."""
+    return write_csv(tmp_path_factory.mktemp("good") / "good.csv", golden.t[::10], states[::10])
 
 
 def off_by(tmp_path, golden, states, column, error):
     wrong = states.copy()
     wrong[:, COLUMNS.index(column)] += error
-    return write_csv(tmp_path / "wrong.csv", golden.t, wrong)
+    return write_csv(tmp_path / "wrong.csv", golden.t[::10], wrong[::10])
 
 
 KEYS = {"scene", "verdict", "max_error_m", "rms_error_m", "end_error_m", "digits", "tolerance_m", "input_floor_m"}
@@ -93,9 +99,9 @@ WORST = {"t", "component", "expected", "got"}
 TRANSITS = {"matched", "missed", "extra", "max_error_s", "max_conditioned_error_m"}
 
 
-def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(foucault, good, golden):
+def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(foucault, whole, golden):
     zeros = golden.path / "transits.csv"
-    status, out, err = foucault("score", "paris", good, "--transits", zeros, "--json")
+    status, out, err = foucault("score", "paris", whole, "--transits", zeros, "--json")
     said = json.loads(out)
     assert (status, said["verdict"], err) == (0, "agrees", "")
     assert KEYS | {"worst", "transits"} <= set(said)
@@ -118,10 +124,10 @@ def test_what_is_allowed_is_allowed_to_the_last_bit(good, golden):
     assert not replace(score, tolerance_m=score.errors.max_m / 2 - score.errors.bound_m).agrees
 
 
-def test_people_are_told_in_words(foucault, good):
-    status, out, _ = foucault("score", "paris", good)
+def test_people_are_told_in_words(foucault, whole):
+    status, out, _ = foucault("score", "paris", whole)
     assert status == 0
-    assert "good.csv agrees with paris (1441 rows, t = 0 to 86400 of 86400 s: 100 %)" in out
+    assert "whole.csv agrees with paris (1441 rows, t = 0 to 86400 of 86400 s: 100 %)" in out
 
 
 def test_a_wrong_run_disagrees_with_exit_status_1(foucault, tmp_path, golden, states):
@@ -256,19 +262,18 @@ def test_a_moving_release_is_no_transit():
     assert list(judge(None, scene, transits=np.array([0.0, *zeros]), explain=False).transits.extra) == [0.0]
 
 
-@pytest.mark.parametrize(("suffix", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG")])
-def test_a_picture_is_drawn(foucault, tmp_path, golden, states, suffix, start):
+def test_a_picture_is_drawn_and_the_same_one_has_the_same_bytes(foucault, tmp_path, golden, states):
     pytest.importorskip("matplotlib")
-    path = off_by(tmp_path, golden, states, "x", 1e-9 * golden.t / 60)
-    drawn = tmp_path / f"error.{suffix}"
-    assert foucault("score", "paris", path, path, "--plot", drawn, "--no-diagnosis")[0] == 1
-    assert drawn.read_bytes().startswith(start)
-    if suffix == "svg":
-        text = drawn.read_text()
-        assert "bound of the reference" in text
-        first = text
-        foucault("score", "paris", path, path, "--plot", drawn, "--no-diagnosis")
-        assert drawn.read_text() == first  # the same picture has the same bytes
+    few, wrong = golden.t[:50], states[:50].copy()
+    wrong[:, 0] += 1e-6 * few / 60
+    path = write_csv(tmp_path / "wrong.csv", few, wrong)
+    drawn = tmp_path / "error.svg"
+    pictures = []
+    for _ in range(2):
+        assert foucault("score", "paris", path, path, "--plot", drawn, "--no-diagnosis")[0] == 1
+        pictures.append(drawn.read_text())
+    assert pictures[0].startswith("<?xml") and "bound of the reference" in pictures[0]
+    assert pictures[0] == pictures[1]
 
 
 @pytest.mark.parametrize(
@@ -276,7 +281,7 @@ def test_a_picture_is_drawn(foucault, tmp_path, golden, states, suffix, start):
     [
         ("svg", b"n\xff.csv"),
         ("svg", b"e\x1b[31m\n.csv"),
-        ("svg", rb"$x^$ $\frac.csv"),
+        pytest.param("svg", rb"$x^$ $\frac.csv", marks=pytest.mark.long),
         pytest.param("png", b"n\xff.csv", marks=pytest.mark.long),
         pytest.param("png", b"e\x1b[31m\n.csv", marks=pytest.mark.long),
         ("png", rb"$x^$ $\frac.csv"),
@@ -291,15 +296,17 @@ def test_a_picture_is_drawn_whatever_the_file_is_called(foucault, tmp_path, gold
     assert out.startswith(f"{tmp_path}/{plain(os.fsdecode(name))} agrees with paris (3 rows")
     if suffix == "svg":
         assert "n\\xff.csv" in drawn.read_text() or name[:1] != b"n"
+    else:
+        assert drawn.read_bytes().startswith(b"\x89PNG")
 
 
-def test_rows_and_transits_after_the_end_asked_for_are_ignored(good, golden):
+def test_rows_and_transits_after_the_end_asked_for_are_ignored(whole, golden):
     for end, note in ((86340, "1 row after t = 86340 s ignored"), (600, "1430 rows after t = 600 s ignored")):
-        score = judge(good, "paris", t_end=end, transits=golden.transits["t"])
+        score = judge(whole, "paris", t_end=end, transits=golden.transits["t"])
         assert (score.candidate.t[-1], score.notes, score.verdict) == (end, (note,), "agrees")
         assert score.transits.matched == int((golden.transits["t"] <= end).sum())
-    whole = judge(good, "paris", t_end=86400.0)
-    assert (len(whole.candidate.t), whole.notes) == (1441, ())
+    all_of_it = judge(whole, "paris", t_end=86400.0)
+    assert (len(all_of_it.candidate.t), all_of_it.notes) == (1441, ())
 
 
 @pytest.mark.parametrize(
@@ -338,11 +345,12 @@ def test_the_release_alone_does_not_agree(foucault):
     ("rows", "share", "status"), [(1441, 1, 0), (1440, 1, 1), (1440, 0.999, 0), (721, 0.5, 0), (720, 0.5, 1)]
 )
 def test_a_share_of_the_span_can_be_demanded(foucault, tmp_path, golden, states, rows, share, status):
-    score = judge({"t": golden.t[:rows], "x": states[:rows, 0], "y": states[:rows, 1]}, "paris", covers=share)
+    last = slice(max(0, rows - 20), rows)
+    score = judge({"t": golden.t[last], "x": states[last, 0], "y": states[last, 1]}, "paris", covers=share)
     assert (score.covered, score.passes) == (min(1, (rows - 1) / 1440), not status)
     assert ("covers too little" in str(score)) is bool(status)
     if (rows, share) in ((1440, 1), (721, 0.5)):  # and so the command, of which these two are enough
-        path = write_csv(tmp_path / "part.csv", golden.t[:rows], states[:rows])
+        path = write_csv(tmp_path / "part.csv", golden.t[last], states[last])
         done, out, _ = foucault("score", "paris", path, "--covers", share, "--json")
         assert (done, json.loads(out)["covered"]) == (status, score.covered)
 
@@ -387,10 +395,10 @@ def test_a_doubled_transit_is_an_extra_one(foucault, good, golden, tmp_path):
 
 
 def test_the_worst_of_each_column_is_told(foucault, tmp_path, golden, states):
-    wrong = states.copy()
+    wrong = states[:20].copy()
     for row, column, error in ((3, "x", 1e-6), (5, "y", -2e-6), (7, "vz", 3e-6)):
         wrong[row, COLUMNS.index(column)] += error
-    path = write_csv(tmp_path / "wrong.csv", golden.t, wrong)
+    path = write_csv(tmp_path / "wrong.csv", golden.t[:20], wrong)
     said = json.loads(foucault("score", "paris", path, "--json", "--no-diagnosis")[1])["worst_of_each"]
     assert list(said) == list(COLUMNS)
     assert (said["x"]["t"], said["y"]["t"], said["vz"]["t"]) == (180.0, 300.0, 420.0)
@@ -444,7 +452,7 @@ def own_scene(tmp_path, drag="0", latitude="48.846111", release='x = "0.1"\ny = 
     [
         {},
         {"drag": "0.05"},
-        {"latitude": "90"},
+        pytest.param({"latitude": "90"}, marks=pytest.mark.long),  # the last two are at the pole as well
         {"release": 'angle = "120"\nazimuth = "30"\nazimuth_rate = "20"', "t_end": "20"},
         {"release": 'angle = "0"\nazimuth = "0"', "latitude": "90", "transits": "false"},  # at rest
         {"release": 'angle = "180"\nazimuth = "0"', "latitude": "90", "transits": "false"},  # upside down
@@ -455,11 +463,12 @@ def test_a_scene_of_the_users_own_is_judged(foucault, tmp_path, changes):
     path = own_scene(tmp_path, **changes)
     scene = load_scene(path, ["inputs=binary64"])
     times = np.linspace(0, float(scene.run.t_end), 77)
-    rows = write_csv(tmp_path / "run.csv", times, trajectory(scene, times))
+    states = trajectory(scene, times)
+    rows = write_csv(tmp_path / "run.csv", times, states)
     status, out, _ = foucault("score", path, rows, "--json", "--tolerance", "1e-8")
     said = json.loads(out)
     assert (status, said["verdict"]) == (0, "agrees")
-    rows = write_csv(tmp_path / "run.csv", times, trajectory(scene, times) + 1e-3)
+    rows = write_csv(tmp_path / "run.csv", times, states + 1e-3)
     assert foucault("score", path, rows, "--no-diagnosis")[0] == 1
 
 
@@ -505,7 +514,7 @@ def test_errors_as_large_as_numbers_go_are_judged(foucault, tmp_path, golden, st
 def test_of_collinear_inputs_the_height_is_named(foucault, tmp_path):
     """The Earth's size and shape and the height enter by one number only, the distance from the axis."""
     scene = load_scene("paris", ["inputs=binary64"])
-    times = np.linspace(0, 86400, 400)
+    times = np.linspace(0, 7200, 200)
     higher = Variants().states(scene.with_values(["site.altitude=1000"]).exact, times)
     path = write_csv(tmp_path / "high.csv", times, higher)
     found = json.loads(foucault("score", "paris", path, "--json")[1])["diagnosis"]

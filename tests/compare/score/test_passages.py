@@ -1,5 +1,7 @@
 """Passages of sections: their errors are distances by which the motion is off, whatever the section."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ WORDS = ["gate 30", "gate 127@0", "turn 45", "highest", "lowest"]
 RELEASES = {"planar": {}, "ellipse": {"release.vx": "0.05", "release.vy": "-0.03"}, "wide": {"pendulum.length": "1"}}
 
 
+@cache
 def swung(name: str, gravity: str = "9.8"):
     """A scene of half a minute, and its solution."""
     changes = {"run.t_end": "30", "run.grid_step": "0.5", "site.gravity": gravity}
@@ -18,7 +21,9 @@ def swung(name: str, gravity: str = "9.8"):
     return scene, solve(scene, digits=18, sections=WORDS)
 
 
-@pytest.mark.parametrize("name", RELEASES)
+@pytest.mark.parametrize(
+    "name", ["planar", *(pytest.param(name, marks=pytest.mark.long) for name in ("ellipse", "wide"))]
+)
 def test_the_distance_of_a_passage_is_that_of_the_motion(name):
     scene, here = swung(name)
     _, there = swung(name, "9.8000001")
