@@ -20,7 +20,8 @@ from reference.scenes.scene import Scene, load_scene
 
 COSTLY = 15  # files named at the end of a test run, with the CPU seconds that they took
 # begun first, so that no worker is left with one of them at the end
-FIRST = {f"test_{name}.py" for name in ("explanation", "docs", "same_bytes", "sweeps", "judge", "kills", "experiments")}
+LONGEST = ("explanation", "docs", "same_bytes", "kills", "experiments", "judge", "contract", "papers_page")
+FIRST = {f"test_{name}.py" for name in LONGEST}
 
 settings.register_profile("here", deadline=None, derandomize=True)
 settings.load_profile("here")

@@ -105,7 +105,7 @@ def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
         assert shows(shown, got), f"{command}\n{got}"
     late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
     (tmp_path / "late.csv").write_text(late, encoding="utf-8")
-    assert "late.csv disagrees" in typed('foucault score hall.toml --transits late.csv --section "gate 127"', tmp_path)
+    assert "late.csv disagrees" in typed('foucault score hall --transits late.csv --section "gate 127"', tmp_path)
 
 
 def test_the_page_on_the_oracle_says_of_its_program_what_the_first_notebook_does(tmp_path, typed, monkeypatch):

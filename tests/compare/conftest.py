@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,14 @@ def forget() -> None:
     """Have the points drawn and the runs made again."""
     points.points.cache_clear()
     points.frequencies.cache_clear()
+
+
+@pytest.fixture
+def few_runs(pytestconfig: pytest.Config) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        fewer(patch, pytestconfig)
+        yield
+    forget()
 
 
 @pytest.fixture(scope="session")

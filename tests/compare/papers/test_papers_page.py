@@ -109,6 +109,7 @@ def test_a_window_shows_the_golden_states() -> None:
     assert states[0, :2] == pytest.approx([golden.x[row], golden.y[row]], abs=1e-13)
 
 
+@pytest.mark.usefixtures("few_runs")
 def test_frequencies_are_lowest_at_the_equator_and_follow_the_estimate_within_a_nanohertz() -> None:
     frequencies = points.frequencies()
     assert min(frequencies, key=lambda latitude: frequencies[latitude]) == 0

@@ -139,7 +139,7 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
         pytest.param("site.gravity", "9.80667", 4, 361, LONGER, marks=LONG),  # and here the first minutes
         pytest.param("site.latitude", "30", 17, 361, LONGER, marks=LONG),
         ("pendulum.length", "70", 17, 400, SPAN),
-        ("pendulum.drag", "1e-6", 17, 361, SPAN),
+        pytest.param("pendulum.drag", "1e-6", 17, 361, SPAN, marks=LONG),
         pytest.param("pendulum.length", "67.05", 17, 361, LONGER, marks=LONG),
     ],
 )
