@@ -43,7 +43,10 @@ def test_what_is_missed_extra_or_another_section_is_told():
     assert lost.verdict == "disagrees" and lost.errors.missed == [pytest.approx(times[1], abs=1e-12)]
     more = score_passages("more", np.sort([*times, times[0] + 1]), scene, "gate 30")
     assert more.verdict == "disagrees" and more.errors.extra == [times[0] + 1]
-    other = score_passages("other", here.sections["lowest"].table["t"], scene, "highest")
+    highest, lowest = (here.sections[word].table["t"] for word in ("highest", "lowest"))
+    both = score_passages("both", np.sort([*highest, lowest[0]]), scene, "highest")
+    assert both.verdict == "disagrees" and both.errors.extra == [lowest[0]]  # though the height's rate is zero there
+    other = score_passages("other", lowest, scene, "highest")
     assert other.verdict == "disagrees" and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
     with pytest.raises(InputError, match="no time in the scene's span"):
         score_passages("none", np.array([31.0]), scene, "gate 30")
