@@ -32,7 +32,7 @@ all-tests: .venv/testing
 SELDOM := $(patsubst %,tests/reference/solver/test_%.py,confirming extreme_scenes ranges sampled_confirmation sections sensitivity) \
   $(patsubst %,tests/compare/score/test_%.py,baseline experiments explanation passages wild)
 quick: .venv/testing
-	@echo "Running the tests of every day: one to two minutes on two cores, more the first time"
+	@echo "Running the tests of every day: one to two minutes on two cores"
 	$(PYTEST) tests/reference/numbers tests/reference/model tests/reference/solver tests/compare/score $(addprefix --ignore=,$(SELDOM))
 
 # Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was
