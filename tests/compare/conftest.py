@@ -32,6 +32,7 @@ def forget() -> None:
 
 @pytest.fixture
 def few_runs(pytestconfig: pytest.Config) -> Iterator[None]:
+    """What the rows are judged by, for a test that asks for the runs itself."""
     with pytest.MonkeyPatch.context() as patch:
         fewer(patch, pytestconfig)
         yield

@@ -36,7 +36,7 @@ hy.set_logger_level_critical()  # its log is the process's stdout; what it would
 # fewer radians than these is compiled quickly.
 SHORT_RUN = 2000  # in hardware numbers
 SHORT_WORK = 4e9  # beyond them: times the cube of the bits
-KEPT = 24  # integrators, of 2 to 5 MB each, that are kept for further runs of their equations
+KEPT = 24  # integrators, of 1 to 5 MB each, that are kept for further runs of their equations
 
 # type, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
