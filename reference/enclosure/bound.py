@@ -105,7 +105,7 @@ class Piece:
         """The defects and norms, from integers but for the radii of the constants (section 6)."""
         k = self.k
         with ctx.workprec(SHORT):
-            *d, t, x, m, w, t1 = self.defects()
+            *d, t, x, m, w, t1 = self.norms = self.defects()
             v1, size_p, n = size([x, m, w]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
             defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, (n - 1 + k.omega_size) * v1

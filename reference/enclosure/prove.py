@@ -17,12 +17,12 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
-from .bound import Piece, SceneBalls
+from .bound import SceneBalls
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, magnitude, plan_for, short
 from .shapes import Proved, ProvedFunction, ProvedSections, State
-from .sums_checked import check_sums
+from .sums_checked import SumsChecked
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision
@@ -153,6 +153,8 @@ class _Run:
         balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
         course = Course(balls, self.times, columns is not None, self.transits)
+        if self.flint_only:
+            course.followers.append(SumsChecked())
         fit, steps, count, known, sections = None, chain([first], steps), 0, 0, None
         if self.sections:
             from .sections import Sections  # nor one without sections on theirs
@@ -169,8 +171,6 @@ class _Run:
             if fit:
                 fit.add()
                 self.clock.lap("function")
-            if self.flint_only:
-                check_sums(Piece(balls, step))
             count += 1
             if len(course.states) > known:
                 known = len(course.states)

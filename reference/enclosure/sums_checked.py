@@ -8,22 +8,23 @@ from typing import Any
 from flint import arb
 
 from ..numbers.taylor_step import Digits
-from .balls import total
+from .shapes import Covered
 
 
-def check_sums(piece: Any) -> None:
-    """Raise ArithmeticError unless sums of a piece's digits are FLINT's; what did not come as digits needs no check."""
-    if isinstance(piece.rows, Digits):
-        from .digits import norms
+class SumsChecked:
+    """Follows a course that is proved by FLINT alone; what did not come as digits needs no check."""
 
-        compare(piece, norms)
+    def advance(self, covered: Covered) -> None:
+        """Raise ArithmeticError unless sums of a step's digits are FLINT's."""
+        if isinstance(covered.piece.rows, Digits):
+            from .digits import norms
+
+            compare(covered.piece, norms)
 
 
 def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
-    """Raise ArithmeticError unless a piece's exact sums are FLINT's integers and shortened ones bound them."""
+    """Raise ArithmeticError unless a piece's exact sums are those it was proved with, and shortened ones bound them."""
     table, whole = piece.rows.table, piece.k.whole
-    rows = zip(piece.measured(), norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True)
-    for f, exact, bound in rows:
-        own = total(f, 2 * piece.step.bits)
-        if not (exact == own and bound >= own):
-            raise ArithmeticError("audit: the sums of digits are not FLINT's")
+    sums = zip(piece.norms, norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True)
+    if not all(exact == own and bound >= own for own, exact, bound in sums):
+        raise ArithmeticError("audit: the sums of digits are not FLINT's")
