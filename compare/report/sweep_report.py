@@ -113,6 +113,7 @@ def text(swept: Swept, out: Path | None) -> str:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:
         found = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
+        found += f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
         lines.append(f"{swept.audit.rows} rows solved again in 28 digits: {found}, CPU {swept.audit_s:.2f} s")
     return "\n".join([*lines, total, cost])
 

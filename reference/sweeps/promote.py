@@ -175,12 +175,16 @@ def _values(request: Request, row: int, solution: Solution) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Audit:
-    """Findings of an audit: rows solved again, those that were wrong, the largest error over its estimate, where."""
+    """Findings of an audit: rows solved again, those that were wrong, the largest error over its estimate, where.
+
+    Rows that the solver refused in so many digits are neither right nor wrong.
+    """
 
     rows: int
     wrong: tuple[int, ...]
     worst_ratio: float
     worst_row: int | None
+    refused: tuple[int, ...] = ()
 
 
 def audited(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
@@ -190,16 +194,18 @@ def audited(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit
         request: the sweep.
         read: returns the columns of a part.
     """
-    ratios = {}
+    ratios: dict[int, float | None] = {}
     for part, numbers in groupby(sample(request), request.part_of):
         columns = read(part)
         for number in numbers:
             row = {name: values[number - part * request.rows_per_part] for name, values in columns.items()}
             if row["status"] == Status.OK.value and row["level"] == "computed":
                 ratios[number] = worst_ratio(request, number, row)
-    wrong = tuple(number for number, ratio in ratios.items() if not ratio <= 1)
-    worst = max(ratios, key=lambda number: ratios[number], default=None)
-    return Audit(len(ratios), wrong, ratios[worst] if worst is not None else 0.0, worst)
+    refused = tuple(number for number, ratio in ratios.items() if ratio is None)
+    solved = {number: ratio for number, ratio in ratios.items() if ratio is not None}
+    wrong = tuple(number for number, ratio in solved.items() if not ratio <= 1)
+    worst = max(solved, key=lambda number: solved[number], default=None)
+    return Audit(len(solved), wrong, solved[worst] if worst is not None else 0.0, worst, refused)
 
 
 def sample(request: Request) -> list[int]:
@@ -213,11 +219,14 @@ def sample(request: Request) -> list[int]:
     return sorted(chosen)
 
 
-def worst_ratio(request: Request, number: int, row: Mapping[str, Any]) -> float:
-    """Return the largest error of a row over its estimate; infinite where a count is wrong, or a number not there."""
+def worst_ratio(request: Request, number: int, row: Mapping[str, Any]) -> float | None:
+    """Return the largest error of a row over its estimate, or None where the solver refuses it.
+
+    It is infinite where a count is wrong, or a number not there.
+    """
     truth = promoted(request, number, doubtful=False, level="computed", digits=AUDIT_DIGITS)
     if truth.failure:
-        return np.inf
+        return None
     values, ratios = truth.values, [0.0]
     for column in request.columns:
         name, error = column.name, column.error

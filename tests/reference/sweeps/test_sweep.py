@@ -180,6 +180,13 @@ def test_an_audit_finds_what_is_wrong_in_any_column(solved_again, monkeypatch, n
     assert len(sweep(scene, ["site.latitude=5,10,20"], engine="heyoka", audit_rows=2).audit.wrong) == 2
 
 
+def test_a_row_that_the_solver_refuses_is_no_wrong_one():
+    """1e-170 m: its square, which event detection needs, is below what 28 digits hold."""
+    found = sweep(load_scene("paris", ["run.t_end=60"]), ["release.x=1e-170,0.1"], engine="heyoka", audit_rows=2).audit
+    assert (found.rows, found.wrong, found.refused) == (1, (), (0,))
+    assert 0 < found.worst_ratio < 1
+
+
 def test_highest_points_near_the_plumb_line_are_counted_by_the_solver(monkeypatch):
     """Released on the plumb line, off its rest position: 73 highest points by an independent solver in 160 bits."""
     scene, asked = load_scene("paris_measured", ["release.x=1e-12", "release.y=0", "run.t_end=600"]), []
