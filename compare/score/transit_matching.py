@@ -184,7 +184,7 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
         transits = golden.manifest.transits
     else:
         asked = golden.scene.run.transits
-        transits = "complete" if golden.zeros else "xdot is identically zero" if asked else "not asked for"
+        transits = "complete" if golden.zeros is not None else "xdot is identically zero" if asked else "not asked for"
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
     return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None

@@ -716,12 +716,26 @@ def test_without_gravity_the_rest_position_is_below_the_suspension():
 
 @pytest.mark.parametrize(
     ("zeros", "asked", "said"),
-    [([8.2], True, None), ([], True, "xdot is identically zero"), (None, False, "the scene asks for no transits")],
+    [
+        ([8.2], True, None),
+        ([], True, None),
+        (None, True, "xdot is identically zero"),
+        (None, False, "the scene asks for no transits"),
+    ],
 )
 def test_why_transits_of_a_scene_that_was_solved_are_not_judged(zeros, asked, said):
     solved = SimpleNamespace(zeros=zeros, scene=SimpleNamespace(run=SimpleNamespace(transits=asked)))
     reason = unjudged_transits(solved)
     assert reason is said is None or reason.startswith(said)
+
+
+def test_a_run_that_ends_before_the_first_transit_has_none_and_one_more_is_told(tmp_path):
+    scene = own_scene(tmp_path, t_end="1")
+    times = np.linspace(0, 1, 5)
+    rows = write_csv(tmp_path / "run.csv", times, trajectory(load_scene(scene), times))
+    score = judge(rows, scene, transits=np.array([]))
+    assert score.agrees and score.transits.matched == 0
+    assert list(judge(None, scene, transits=np.array([0.5]), explain=False).transits.extra) == [0.5]
 
 
 def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_in_doubt(tmp_path):
