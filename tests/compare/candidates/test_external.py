@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from interruption import PATIENCE_S, gone_within, interrupted
+from places import ROOT
 from small_scenes import make_scene
 
 from compare.candidates.external import MARK, arguments, placeholders, run_program, timed
@@ -244,3 +245,18 @@ def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     assert b"Traceback" not in err
     assert ends_within(int(note.read_text()), PATIENCE_S)
     assert gone_within(group, PATIENCE_S)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_script_of_ones_own_that_is_ended_ends_the_program_it_runs(tmp_path, number):
+    """As a method in C is run from Python, without the command line, which turns signals into exceptions itself."""
+    words, note = parent(tmp_path, "signal.pause()")
+    script = f"from compare.candidates.external import run_program; run_program({words!r})"
+    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, stderr=subprocess.DEVNULL) as process:
+        deadline = time.monotonic() + PATIENCE_S
+        while not (note.exists() and note.read_text()):
+            assert process.poll() is None and time.monotonic() < deadline
+            time.sleep(0.02)
+        process.send_signal(number)
+        assert process.wait(PATIENCE_S) == 128 + number
+    assert ends_within(int(note.read_text()), PATIENCE_S)
