@@ -5,7 +5,7 @@ Their causes were found by reading the programs. `wild/` holds what they wrote, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -125,6 +125,7 @@ UNTOLD = {
     # tolerances, where a third would tell them from a step's error
     "w22": {"frame_x_south", "rounded_rate"},
 }  # fmt: skip
+STEPS_S = {"w04": 0.3, "w06": 1.0, "w11": 1 / 60, "w25": 0.1}
 ENOUGH = 0.9
 # the others under --long: w13 alone, whose slip no cause explains, takes more than all of these
 ALWAYS = ("w01", "w04", "w06", "w18", "w24", "w25", "w27", "w30")
@@ -141,6 +142,7 @@ def read_in(name: str) -> tuple[Scene, np.ndarray, dict[str, np.ndarray]]:
     return scene, table[:, 0], columns
 
 
+@cache
 def explained(name: str) -> Explanation:
     """Return what is said of a trajectory."""
     scene, times, columns = read_in(name)
@@ -156,19 +158,19 @@ def said(found: Explanation) -> set[str]:
     return known - TWO.keys() | {word for one in known & TWO.keys() for word in TWO[one]}
 
 
-@pytest.fixture(scope="module")
-def explanations(pytestconfig: pytest.Config) -> dict[str, Explanation]:
-    return {name: explained(name) for name in (TRUE if pytestconfig.getoption("--long") else ALWAYS)}
+def marked(*names: str) -> list[Any]:
+    """Return names as parameters of a test, those that take long under --long."""
+    return [name if name in ALWAYS else pytest.param(name, marks=pytest.mark.long) for name in names]
 
 
-def test_nine_of_ten_true_causes_are_named_and_none_is_wrong(
-    explanations: dict[str, Explanation], tally: Callable[[str], None]
-) -> None:
-    named = {name: said(found) for name, found in explanations.items()}
-    true, told = sum(len(TRUE[name]) for name in named), sum(len(TRUE[name] & named[name]) for name in named)
-    tally(f"wild: {told} of {true} true causes of {len(named)} trajectories named")
-    assert named == {name: TRUE[name] - UNTOLD.get(name, set()) for name in named}
-    assert told >= ENOUGH * true
+@pytest.mark.parametrize("name", marked(*TRUE))
+def test_true_causes_are_named_and_none_is_wrong(name: str) -> None:
+    assert said(explained(name)) == TRUE[name] - UNTOLD.get(name, set())
+
+
+def test_nine_of_ten_true_causes_are_those_that_are_named() -> None:
+    assert all(UNTOLD[name] <= TRUE[name] for name in UNTOLD)
+    assert sum(map(len, UNTOLD.values())) <= (1 - ENOUGH) * sum(map(len, TRUE.values()))
 
 
 @pytest.mark.parametrize(
@@ -196,25 +198,29 @@ def test_a_cord_of_a_quarter_of_the_earth_is_judged_by_the_swing_of_the_program(
     assert score.tolerance_m == pytest.approx(1e-6, rel=0.02) and not score.agrees
 
 
-def test_the_sine_that_stands_for_a_cosine_is_shown(
-    pytestconfig: pytest.Config, request: pytest.FixtureRequest
-) -> None:
-    """x = x0 cos βt cos ωt + y0 cos βt sin ωt, where y0 sin βt cos ωt is meant."""
+def slip_of_w13() -> str:
+    """Return what is said of its formula, without a search for causes."""
     scene, times, columns = read_in("w13")
     problem = KnownScene.of(scene)
     formula = of_formula(problem.case(problem.rows(times, columns), 1e-6))
     assert formula is not None
-    said = formula.slip
+    return formula.slip
+
+
+def test_the_sine_that_stands_for_a_cosine_is_shown() -> None:
+    """x = x0 cos βt cos ωt + y0 cos βt sin ωt, where y0 sin βt cos ωt is meant."""
+    said = slip_of_w13()
     assert "in the formula of x, cos ωt sin βt has 0 m where the model has 0.5 m" in said
     assert "in the formula of x, sin ωt cos βt has 0.5 m where the model has 0 m" in said
     assert "formula of y" not in said
-    if pytestconfig.getoption("--long"):
-        assert request.getfixturevalue("explanations")["w13"].slip == said
 
 
-def test_steps_have_the_lengths_that_the_programs_take(explanations: dict[str, Explanation]) -> None:
-    steps = {name: one.value for name, found in explanations.items() for one in found.causes if "integrator" in one.id}
-    assert steps["w06"] == pytest.approx(1.0, rel=1e-9)
-    assert steps.get("w11", 1 / 60) == pytest.approx(1 / 60, rel=1e-9)  # under --long
-    assert steps["w04"] == pytest.approx(0.3, rel=1e-9)
-    assert steps["w25"] == pytest.approx(0.1, rel=1e-9)
+@pytest.mark.long
+def test_the_slip_of_a_formula_is_in_the_explanation() -> None:
+    assert explained("w13").slip == slip_of_w13()
+
+
+@pytest.mark.parametrize("name", marked(*STEPS_S))
+def test_steps_have_the_lengths_that_the_programs_take(name: str) -> None:
+    steps = [one.value for one in explained(name).causes if "integrator" in one.id]
+    assert steps == [pytest.approx(STEPS_S[name], rel=1e-9)]
