@@ -69,6 +69,7 @@ def _run(how: list[str], words: Sequence[object], stopped: tuple[float, signal.S
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},  # else the first run has events that no later one has
     ) as process:
         try:
             if stopped is not None:
