@@ -138,7 +138,8 @@ def test_each_of_many_is_the_old_or_the_new_one_and_the_same_command_goes_on(
     out.rename(old)
     assert finished(words).status == 0
     whole, earlier = units(out), units(old)
-    assert whole.keys() == earlier.keys() and all(whole[unit] != earlier[unit] for unit in whole)
+    changed = {unit for unit in whole if whole[unit] != earlier[unit]}
+    assert whole.keys() == earlier.keys() and len(changed) >= len(few)  # the atlas's first page names no file
     shutil.rmtree(out)
     shutil.copytree(old, out)
     _, times = undisturbed(tmp_path / "note", words)
@@ -160,7 +161,7 @@ def test_each_of_many_is_the_old_or_the_new_one_and_the_same_command_goes_on(
             put_back(seen / unit)
         for unit, content in units(seen).items():
             assert content in (earlier[unit], whole[unit])
-            news += content == whole[unit]
+            news += unit in changed and content == whole[unit]
         assert units(seen).keys() == earlier.keys()
         shutil.rmtree(seen)
         hits, left = hits + (ended.status != 0), left + len(litter(out))

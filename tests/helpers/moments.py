@@ -17,8 +17,12 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from places import ROOT
+
+if TYPE_CHECKING:
+    import typer
 
 PATIENCE_S = 300.0
 
@@ -87,12 +91,19 @@ def _run(how: list[str], words: Sequence[object], stopped: tuple[float, signal.S
 
 def _foucault(event: int, number: int, note: str, named: str, words: list[str]) -> None:
     sys.path.insert(0, str(ROOT))
-    from foucault import main
+    import foucault
 
-    if few := os.environ.get("SCENES_THAT_SHIP"):  # instead of all that do
-        from reference.commands import generate_all
+    commands = foucault.commands
 
-        generate_all.scene_ids, generate_all.seals = few.split, dict
+    def with_few() -> typer.Typer:
+        """Import what is patched where the command does, so that a signal finds `main` at work."""
+        if few := os.environ.get("SCENES_THAT_SHIP"):  # instead of all that do
+            from reference.commands import generate_all
+
+            generate_all.scene_ids, generate_all.seals = few.split, dict
+        return commands()
+
+    foucault.commands = with_few
     times: list[float] = []
     done = False
 
@@ -111,7 +122,7 @@ def _foucault(event: int, number: int, note: str, named: str, words: list[str]) 
     sys.argv = ["foucault", *words]
     sys.addaudithook(hook)
     try:
-        main()
+        foucault.main()
     finally:
         done = True
         if note != "-":
