@@ -33,6 +33,7 @@ SPARE_BITS = 64  # of forms, places and states beyond the run's own
 NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
 MOST_PIECES = 200  # that a step is cut into
 ROUNDING = 2.0**-46  # of Bernstein's form in double, against the sum of the coefficients' sizes
+BLURRED = 2.0**10  # times its rounding: a form below that is made again of a piece alone
 MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
 GRAZING = "Ask for more digits, or leave this section out (run.sections)."
 
@@ -105,14 +106,12 @@ class Places:
 
     def isolated(self, left: int, right: int) -> Iterator[tuple[int, int, int]]:
         """Yield, in order, intervals that hold one zero each, and the sign before it; given the signs at the ends."""
-        scale = max(map(abs, self.g))
-        series = np.array([c / scale for c in self.g])
-        sizes = np.abs(series)
-        series, noise = series[:MOST_TERMS], ROUNDING * sizes.sum() + sizes[MOST_TERMS:].sum()
-        to_form, to_half = bernstein(len(series))
-        pieces, cut = [(to_form @ series / noise, 0, 1 << self.bits, left, right)], 0
+        to_half = bernstein(min(len(self.g), MOST_TERMS))[1]
+        pieces, cut = [(self._form(0, 0), 0, 1 << self.bits, left, right)], 0
         while pieces:
             form, low, high, before, after = pieces.pop()
+            if cut and abs(form).max() < BLURRED:
+                form = self._form(low, (1 << self.bits) // (high - low))
             changes = np.count_nonzero(np.diff(signs_of(form, before, after)))
             bends = np.sign(np.trunc(np.diff(form, 2) / 4))
             convex = len(bends) and abs(bends.sum()) == len(bends)
@@ -129,6 +128,21 @@ class Places:
                 between = self.sign(middle)
                 pieces.append(((to_half @ form[::-1])[::-1], middle, high, between, after))
                 pieces.append((to_half @ form, low, middle, before, between))
+
+    def _form(self, low: int, parts: int) -> Array:
+        """Return Bernstein's form on one of 2**n equal `parts`, in units of what rounding and terms left out may be.
+
+        With 0 parts on the whole, where it is in doubles all along; else the series is moved there in integers.
+        """
+        g, shift = [*self.g], max(parts.bit_length() - 1, 0)
+        for i in range(len(g) if low else 0):
+            for j in range(len(g) - 2, i - 1, -1):
+                g[j] += g[j + 1] * low >> self.bits
+        g = [c >> shift * k for k, c in enumerate(g)]
+        scale = max(map(abs, g))
+        sizes = abs(series := np.array([c / scale for c in g]))
+        noise = ROUNDING * sizes.sum() + sizes[MOST_TERMS:].sum() + (self.least / scale if parts else 0)
+        return bernstein(min(len(g), MOST_TERMS))[0] @ series[:MOST_TERMS] / noise
 
     def _dip(self, low: int, high: int, side: int) -> int:
         """Return the place of a convex piece's extremum where it lies beyond zero, seen from its ends; else 0."""

@@ -42,7 +42,9 @@ def misses(solution, engine):
         return None
     found = []
     tables = [("state", solution.grid, truth.grid)]
-    if solution.transits is not None and not solution.possible:
+    if (solution.zeros is None) != (truth.transits is None):
+        return ["xdot is identically zero in one of the two alone"]
+    if truth.transits is not None and not solution.possible:
         if len(solution.transits) != len(truth.transits):
             return [f"{len(solution.transits)} transits, not {len(truth.transits)}"]
         tables.append(("transit", solution.transits, truth.transits))
