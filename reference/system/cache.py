@@ -73,10 +73,15 @@ def kept(kind: str, name: str, put: Callable[[Path], object]) -> Path:
 
 
 def check() -> None:
-    """Find out whether the cache can be used before child processes do, so that only one line says that it cannot."""
+    """Find out whether the cache can be used before child processes do; if it cannot, give them a temporary one.
+
+    So only one line says so, they compile once for all, and leave nothing where they are killed.
+    """
     path = store("generated", ".room", lambda path: replace_file(path, lambda stream: stream.write(_ROOM)))
     if path is not None:
         discard(path)
+    else:
+        os.environ["FOUCAULT_CACHE"] = str(temporary())
 
 
 def _folder(kind: str) -> Path | None:
