@@ -73,7 +73,9 @@ def enclose_box(
         windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits, sections)
         course, latest = windows.course, windows.course.times[-1]
         follower = source = None
-        if halves and (derivatives or _growth(balls) * float(latest) > GROWTH):
+        # the rate at which Theorem C's radius grows, in 1/s
+        growth = float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * float(balls.w0))
+        if halves and (derivatives or growth * float(latest) > GROWTH):
             from .derivatives import Derivatives
             from .tangents import TangentSource, scales_of
 
@@ -92,11 +94,6 @@ def enclose_box(
     radius = interval(course.bound.eta * balls.length).high
     lean = interval(sum((2 * x.rad() for x in balls.tilt), arb(0))).high  # these balls hold the scene's own
     return BoxEnclosure(proved, bits, count, radius, windows.pace, lean, process_time() - begun, found)
-
-
-def _growth(balls: BoxBalls) -> float:
-    """Return the rate at which Theorem C's radius grows, in 1/s."""
-    return float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * float(balls.w0))
 
 
 def _width(balls: BoxBalls) -> Fraction:

@@ -56,9 +56,8 @@ class SectionSearch:
         form = h * (a @ series[..., :-1]) + b @ (series[..., 1:] * k[:-1])
         form[:, :1] -= h * float(self.form.d)
         sizes = (h * abs(a).sum() + abs(b).sum()) * abs(series).sum(1) * k
-        noise = ROUNDING * sizes.sum(1) + sizes[:, MOST_TERMS:].sum(1)
-        bounds = form[:, :MOST_TERMS] @ bernstein(min(len(k) - 1, MOST_TERMS))[0].T
-        sides = (bounds.min(1) > noise).astype(int) - (bounds.max(1) < -noise)
+        bounds = forms(form, sizes)
+        sides = (bounds.min(1) > 1).astype(int) - (bounds.max(1) < -1)
         for step, row, side in zip(steps, rows, sides.tolist(), strict=True):
             if not self.left or side != self.left:
                 self._search(step, row)
@@ -107,7 +106,7 @@ class Places:
     def isolated(self, left: int, right: int) -> Iterator[tuple[int, int, int]]:
         """Yield, in order, intervals that hold one zero each, and the sign before it; given the signs at the ends."""
         to_half = bernstein(min(len(self.g), MOST_TERMS))[1]
-        pieces, cut = [(self._form(0, 0), 0, 1 << self.bits, left, right)], 0
+        pieces, cut = [(self._form(0, 1), 0, 1 << self.bits, left, right)], 0
         while pieces:
             form, low, high, before, after = pieces.pop()
             if cut and abs(form).max() < BLURRED:
@@ -130,19 +129,15 @@ class Places:
                 pieces.append((to_half @ form, low, middle, before, between))
 
     def _form(self, low: int, parts: int) -> Array:
-        """Return Bernstein's form on one of 2**n equal `parts`, in units of what rounding and terms left out may be.
-
-        With 0 parts on the whole, where it is in doubles all along; else the series is moved there in integers.
-        """
-        g, shift = [*self.g], max(parts.bit_length() - 1, 0)
+        """Return Bernstein's form on the one of 2**n equal parts that begins at `low`, from integers; see `forms`."""
+        g, shift = [*self.g], parts.bit_length() - 1
         for i in range(len(g) if low else 0):
             for j in range(len(g) - 2, i - 1, -1):
                 g[j] += g[j + 1] * low >> self.bits
         g = [c >> shift * k for k, c in enumerate(g)]
         scale = max(map(abs, g))
-        sizes = abs(series := np.array([c / scale for c in g]))
-        noise = ROUNDING * sizes.sum() + sizes[MOST_TERMS:].sum() + (self.least / scale if parts else 0)
-        return bernstein(min(len(g), MOST_TERMS))[0] @ series[:MOST_TERMS] / noise
+        series = np.array([c / scale for c in g])
+        return forms(series, abs(series), self.least / scale if shift else 0)
 
     def _dip(self, low: int, high: int, side: int) -> int:
         """Return the place of a convex piece's extremum where it lies beyond zero, seen from its ends; else 0."""
@@ -179,6 +174,17 @@ def horner(g: list[int], s: int, bits: int) -> tuple[int, int]:
         rate = value + (rate * s >> bits)
         value = c + (value * s >> bits)
     return value, rate
+
+
+def forms(series: Array, sizes: Array, least: float = 0.0) -> Array:
+    """Return Bernstein's forms of series up to 1, in units of what rounding, terms left out and `least` amount to.
+
+    `sizes` are those of what the coefficients are sums of; both have shape (..., orders), the forms up to MOST_TERMS.
+    """
+    noise = ROUNDING * sizes.sum(-1) + sizes[..., MOST_TERMS:].sum(-1) + least
+    series = series[..., :MOST_TERMS]
+    found: Array = series @ bernstein(series.shape[-1])[0].T / noise[..., None]
+    return found
 
 
 def signs_of(form: Array, left: Any, right: Any) -> Array:

@@ -152,12 +152,7 @@ def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[s
         kind, name, lambda path: replace_file(path, lambda stream: np.savez(stream, allow_pickle=False, **made))
     )
     if path is not None:
-        _prune(path.parent)
+        with contextlib.suppress(OSError):  # another process may be deleting as well
+            for old in sorted(path.parent.glob("[!.]*"), key=lambda path: path.stat().st_mtime)[:-KEEP]:
+                old.unlink()
     return made
-
-
-def _prune(folder: Path) -> None:
-    """Delete the entries that were used least recently."""
-    with contextlib.suppress(OSError):  # another process may be deleting as well
-        for old in sorted(folder.glob("[!.]*"), key=lambda path: path.stat().st_mtime)[:-KEEP]:
-            old.unlink()

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from ...errors import IntegrationError
-from ..passages import MOST_TERMS, ROUNDING, SPARE_BITS, Places, bernstein, signs_of
+from ..passages import SPARE_BITS, Places, forms, signs_of
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
@@ -141,11 +141,8 @@ def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int,
     x *= np.cumprod(np.broadcast_to([[step.length] for step in steps], x.shape), axis=1)
     k = np.arange(1, x.shape[1] + 1)
     series = x.astype(float) * k
-    sizes = np.abs(series)
-    noise = ROUNDING * sizes.sum(axis=1) + sizes[:, MOST_TERMS:].sum(axis=1)
-    forms = (series[:, :MOST_TERMS] / noise[:, None]) @ bernstein(min(x.shape[1], MOST_TERMS))[0].T
     ends = np.sign([*series[:, 0], float(polyval(1, x[-1] * k))])
-    changes = np.count_nonzero(np.diff(signs_of(forms, ends[:-1], ends[1:])), axis=1)
+    changes = np.count_nonzero(np.diff(signs_of(forms(series, abs(series)), ends[:-1], ends[1:])), axis=1)
     found = np.array([len(step.directions) for step in steps])
     first = np.array([step.directions[0] if step.directions else 0 for step in steps])
     for i in map(int, np.flatnonzero((changes != found) | (found > 1) | (first + ends[:-1] * found != 0))):
