@@ -1,10 +1,9 @@
 """Passages of sections in a run: the zeros of affine forms on its Taylor steps, so that none is lost and none doubled.
 
 The zeros of a step's polynomial are counted by Descartes' rule: in Bernstein's form its coefficients change sign as
-often as it has zeros, or 2, 4, ... times oftener. One change at most is certain. A convex piece has one zero if its
-ends differ in sign; else two or none, and the form at its minimum says which. Any other piece is halved. Signs at
-places are those of integers, and that at a step's start is that at the end of the step before. All engines are served
-alike.
+often as it has zeros, or 2, 4, ... times oftener. One change at most is certain; any other piece is halved. This is
+done in doubles, until rounding shows: then a piece's own series is made from the integers. Signs at places are those of
+integers, and that at a step's start is that at the end of the step before. All engines are served alike.
 
 A zero at the release that no digit of the run tells from it, as that of every velocity at rest, does not count.
 """
@@ -31,7 +30,6 @@ from .plan import Plan
 BATCH = 64  # steps that are looked at together
 SPARE_BITS = 64  # of forms, places and states beyond the run's own
 NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
-MOST_PIECES = 200  # that a step is cut into
 ROUNDING = 2.0**-46  # of Bernstein's form in double, against the sum of the coefficients' sizes
 BLURRED = 2.0**10  # times its rounding: a form below that is made again of a piece alone
 MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
@@ -111,18 +109,13 @@ class Places:
             form, low, high, before, after = pieces.pop()
             if cut and abs(form).max() < BLURRED:
                 form = self._form(low, (1 << self.bits) // (high - low))
-            changes = np.count_nonzero(np.diff(signs_of(form, before, after)))
-            bends = np.sign(np.trunc(np.diff(form, 2) / 4))
-            convex = len(bends) and abs(bends.sum()) == len(bends)
-            if changes <= 1 or (convex and (before != after or before != bends[0])):
+            if np.count_nonzero(np.diff(signs_of(form, before, after))) <= 1:
                 yield from [(low, high, before)] * (before != after)
-            elif convex:
-                if flat := self._dip(low, high, before):
-                    yield from ((low, flat, before), (flat, high, -before))
             else:
                 cut += 1
-                if cut > MOST_PIECES:
-                    raise self._grazes()
+                if cut == self.bits:  # before a piece is shorter than the distance of two places
+                    told = f"{self.word}: the motion touches this section within the precision."
+                    raise IntegrationError(told, GRAZING)
                 middle = (low + high) // 2
                 between = self.sign(middle)
                 pieces.append(((to_half @ form[::-1])[::-1], middle, high, between, after))
@@ -135,21 +128,10 @@ class Places:
             for j in range(len(g) - 2, i - 1, -1):
                 g[j] += g[j + 1] * low >> self.bits
         g = [c >> shift * k for k, c in enumerate(g)]
-        scale = max(map(abs, g))
+        scale = max(map(abs, g)) or 1
         series = np.array([c / scale for c in g])
-        return forms(series, abs(series), self.least / scale if shift else 0)
-
-    def _dip(self, low: int, high: int, side: int) -> int:
-        """Return the place of a convex piece's extremum where it lies beyond zero, seen from its ends; else 0."""
-        rates = [k * c for k, c in enumerate(self.g)][1:]
-        falls = horner(rates, low, self.bits)[0] * side < 0
-        if not falls or horner(rates, high, self.bits)[0] * side < 0:
-            return 0
-        flat = Places(rates, self.least, self.bits, self.word).root(low, high, -side)
-        bottom = horner(self.g, flat, self.bits)[0]
-        if abs(bottom) <= self.least:
-            raise self._grazes()
-        return flat if bottom * side < 0 else 0
+        # a move rounds c_k by binom(orders, k + 1) at most
+        return forms(series, abs(series), (self.least + 2 * 1.5 ** len(g)) / scale)
 
     def root(self, low: int, high: int, before: int) -> int:
         """Return the zero between two places, by Newton's method, or by halving where that leaves them."""
@@ -162,9 +144,6 @@ class Places:
             if abs(s - last) <= 1:
                 break
         return s
-
-    def _grazes(self) -> IntegrationError:
-        return IntegrationError(f"{self.word}: the motion touches this section within the precision.", GRAZING)
 
 
 def horner(g: list[int], s: int, bits: int) -> tuple[int, int]:

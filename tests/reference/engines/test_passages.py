@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import floor, pi
 
 import mpmath
 import pytest
 
 from reference.engines.passages import Places
+from reference.errors import IntegrationError
 
 BITS, TERMS = 711, 260
+THIRD = Fraction(1, 3)
 
 
 def places(decay, turns, least=0):
@@ -30,3 +33,28 @@ def test_all_zeros_of_a_long_step_are_found_in_order(decay, turns):
     true = [(k + 0.5) * pi / turns for k in range(floor(turns / pi + 0.5))]
     assert [s / (1 << BITS) for s, _ in found] == pytest.approx(true, rel=1e-12)
     assert [before for _, before in found] == [(-1) ** k for k in range(len(true))]
+
+
+def parabola(depth, bits, least=0):
+    """(s - 1/3)**2 - depth."""
+    return Places([int(c * 2**bits) for c in (THIRD**2 - depth, -2 * THIRD, Fraction(1))], least, bits, "gate 0")
+
+
+@pytest.mark.parametrize("bits", [117, 711])
+@pytest.mark.parametrize("power", [4, 40, 90])
+def test_two_zeros_that_almost_meet_are_told_from_none(power, bits):
+    """By the depth of the dip, down to about what the integers hold; between two signs that agree."""
+    dip = parabola(Fraction(1, 1 << power), bits)
+    pieces = list(dip.isolated(1, 1))
+    assert [before for _, _, before in pieces] == [1, -1]
+    roots = [Fraction(dip.root(*piece), 1 << bits) for piece in pieces]
+    assert [abs(root - THIRD) for root in roots] == pytest.approx([Fraction(1, 1 << power // 2)] * 2, rel=1e-6)
+    assert list(parabola(-Fraction(1, 1 << power), bits).isolated(1, 1)) == []
+
+
+@pytest.mark.parametrize("least", [0, 1 << 700])
+@pytest.mark.parametrize("side", [-1, 0, 1])
+def test_what_touches_zero_as_far_as_the_integers_tell_is_refused(side, least):
+    for depth in (Fraction(side, 1 << 710), Fraction(side, 1 << 20) if least else Fraction(0)):
+        with pytest.raises(IntegrationError, match="gate 0: the motion touches this section"):
+            list(parabola(depth, 711, least).isolated(1, 1))
