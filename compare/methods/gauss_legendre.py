@@ -34,7 +34,8 @@ def march(y, k, times, counts, states, a, b, ahead, sizes):
     slopes, guess, z, f = np.zeros((${stages}, ${size})), np.zeros((${stages}, ${size})), y.copy(), np.zeros(${size})
     ${f}= traced(${y}${c})
     for i in range(${stages}):
-        slopes[i] = f
+        for d in range(${size}):  # not as slices, for which numba compiles twice as long
+            slopes[i, d] = f[d]
     steps, calls = 0, 1
     for row in range(1, len(times)):
         h = (times[row] - times[row - 1]) / counts[row]
@@ -77,7 +78,8 @@ def march(y, k, times, counts, states, a, b, ahead, sizes):
                 lost[d] = add - (moved - x[d])
                 x[d] = moved
             steps += 1
-        states[row] = x
+        for d in range(${size}):
+            states[row, d] = x[d]
     return len(times), steps, calls
 """
 
