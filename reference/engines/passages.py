@@ -130,8 +130,8 @@ class Places:
         g = [c >> shift * k for k, c in enumerate(g)]
         scale = max(map(abs, g)) or 1
         series = np.array([c / scale for c in g])
-        # a move rounds c_k by binom(orders, k + 1) at most
-        return forms(series, abs(series), (self.least + 2 * 1.5 ** len(g)) / scale)
+        # a move rounds c_k by binom(orders, k + 1) at most: 2 1.5**orders in all
+        return forms(series, abs(series), (self.least + (2 * 3 ** len(g) >> len(g))) / scale)
 
     def root(self, low: int, high: int, before: int) -> int:
         """Return the zero between two places, by Newton's method, or by halving where that leaves them."""
