@@ -36,6 +36,7 @@ LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tes
 NUMBERS, FUNCTION = "tests/reference/numbers/test_", f"{DATASET}function.py"
 VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
 TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
+PASSAGES = "tests/reference/engines/test_passages.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
     "reference/dataset/checks: scene_check": f"{LIMITS} {TIGHT} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
@@ -48,6 +49,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: document input_floor": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py",
     "compare/score: since": f"{SCORE}verdict.py {SCORE}baseline.py",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
+    "reference/engines: passages": f"{PASSAGES} {SOLVER}sections.py",
     "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}sections.py {SOLVER}solve.py",
     "reference/solver: solve": f"{BITS} {SOLVER}solve.py {SOLVER}pilot.py",
