@@ -75,7 +75,7 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, tally):
 # rows side by side, in threads; rows that the solver solves, in processes
 WAYS = {
     "threads": ("-45:45:1", {"engine": "heyoka"}),
-    "processes": ("-78:78:26", {"digits": 16, "want": ("transits",)}),
+    "processes": ("-52:52:26", {"digits": 16, "want": ("transits",)}),
 }
 MANY_DIGITS = {"many digits": ("-80:80:4", {"digits": 32})}
 
