@@ -27,7 +27,7 @@ def places(decay, turns, least=0):
 @pytest.mark.parametrize("decay", [0, 1, 20])
 @pytest.mark.parametrize("turns", [1, 2, 5, 9, 20, 30])
 def test_all_zeros_of_a_long_step_are_found_in_order(decay, turns):
-    """A step of a small swing holds several swings; double, which is looked at first, shows noise alone from 20 on."""
+    """As steps have it where drag has all but ended a swing; double, which is tried first, shows noise from 20 on."""
     xdot = places(decay, turns)
     found = [(xdot.root(*piece), piece[2]) for piece in xdot.isolated(1, xdot.sign(1 << BITS))]
     true = [(k + 0.5) * pi / turns for k in range(floor(turns / pi + 0.5))]
