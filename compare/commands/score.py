@@ -57,11 +57,7 @@ SCENE = scene_argument("A scene's id, or the path of a TOML file; with --suite n
 CANDIDATES = typer.Argument(metavar="CANDIDATE", help="Files: text with named columns, .npy, .npz; - is stdin.")
 SUITE = option("--suite", "Score a folder of files named after scenes: paris.csv.", "DIR")
 HOW = option(
-    "--how",
-    "Print how to write such a file in c, fortran, python …",
-    "LANGUAGE",
-    callback=_how,
-    is_eager=True,
+    "--how", "Print how to write such a file in c, fortran, python …", "LANGUAGE", callback=_how, is_eager=True
 )
 COLUMNS = option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…")
 UNITS = option("--units", "Units of times and lengths: ms,cm (default: s,m).", "A,B")
@@ -70,10 +66,7 @@ SECTION = option("--section", "--transits are passages of this section: 'gate 30
 RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
 NAME = option("--name", "Name of the program of --run (default: the program).", "WORD", hidden=True)
 SETTING = option("--setting", "{setting} in --run, in s (default: 200 a period).", "S")
-EXPERIMENTS = option(
-    "--experiments",
-    "Run it up to eight times more, to measure why it is off.",
-)
+EXPERIMENTS = option("--experiments", "Run it up to eight times more, to measure why it is off.")
 APPROXIMATION = option(
     "--approximation",
     "Score one of the source papers' approximations, which `foucault methods` lists.",

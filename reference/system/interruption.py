@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 import threading
@@ -13,14 +12,15 @@ from typing import Any
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 ENDS = (KeyboardInterrupt, SystemExit)
-AGAIN_S = 0.05  # seconds after which a signal is sent again whose exception was lost
+AGAIN_S = 0.25  # seconds between two looks whether the exception of a signal was lost
 
 
 @contextmanager
 def _replaced(handler: Callable[..., object], chosen: Callable[[Any], bool]) -> Iterator[dict[int, Any]]:
     """Replace those handlers that are chosen meanwhile, in the main thread; yield them by their signals' numbers."""
     main = threading.current_thread() is threading.main_thread()
-    before: dict[int, Any] = {number: usual for number in SIGNALS if main and chosen(usual := signal.getsignal(number))}
+    numbers = [*SIGNALS, signal.SIGALRM] if main else []
+    before: dict[int, Any] = {number: usual for number in numbers if chosen(usual := signal.getsignal(number))}
     try:
         for number in before:
             signal.signal(number, handler)
@@ -53,31 +53,36 @@ def terminable() -> Iterator[list[int]]:
     """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away; note SIGINT as well.
 
     Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
-    thread. A signal whose exception is lost, as Python ignores those in a finaliser, is sent again a moment later; one
-    that comes while that of another is handled changes nothing.
+    thread. The exception of a signal can be lost: Python ignores those in a finaliser, and code in C drops one that it
+    meets as it looks for an attribute. Hence it is raised again every `AGAIN_S`, by an alarm, until this is left; while
+    it is handled, neither the alarm nor a further signal changes anything.
 
     Yields:
-        The numbers of the signals that have come. The exception that arrives does not always tell: code in C that is
-        interrupted while it is imported raises an ImportError instead.
+        The numbers of the signals that have come, then those of alarms. The exception that arrives does not always
+        tell: code in C that is interrupted while it is imported raises an ImportError instead.
     """
     came: list[int] = []
 
     def stop(number: int, _: FrameType | None) -> None:
         came.append(number)
-        if not isinstance(sys.exc_info()[1], ENDS):  # else what was begun is being cleared away
-            raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
+        if not _ends(sys.exc_info()[1]):  # else what was begun is being cleared away
+            if signal.getsignal(signal.SIGALRM) is stop:
+                signal.setitimer(signal.ITIMER_REAL, AGAIN_S, AGAIN_S)
+            raise KeyboardInterrupt if came[0] == signal.SIGINT else SystemExit(128 + came[0])
 
-    def again(lost: sys.UnraisableHookArgs) -> None:
-        if came and isinstance(lost.exc_value, ENDS):
-            timer = threading.Timer(AGAIN_S, os.kill, (os.getpid(), came[-1]))
-            timer.daemon = True
-            timer.start()
-        else:
-            usual_hook(lost)
-
-    usual_hook, sys.unraisablehook = sys.unraisablehook, again
+    usual_hook = sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if came and _ends(lost.exc_value) else usual_hook(lost)
     with _replaced(stop, (signal.SIG_DFL, signal.default_int_handler).__contains__):
         try:
             yield came
         finally:
+            if came:
+                signal.setitimer(signal.ITIMER_REAL, 0)
             sys.unraisablehook = usual_hook
+
+
+def _ends(error: BaseException | None) -> bool:
+    """Return whether an exception ends the run, or came while such a one was handled."""
+    while error is not None and not isinstance(error, ENDS):
+        error = error.__context__
+    return error is not None

@@ -103,12 +103,29 @@ LOST = """
     time.sleep(20)
     print("went on")
 """
+DROPPED = """
+    import ctypes
+
+    class Last:
+        @property
+        def asked(self):
+            INTERRUPT
+            time.sleep(0)
+
+    ctypes.pythonapi.PyObject_HasAttrString(ctypes.py_object(Last()), b"asked")
+    time.sleep(20)
+    print("went on")
+"""
 ENGINE = 'InputError("--engine", "heyoka", "an installed engine")'
 AGAIN = """
     try:
         INTERRUPT
     finally:
         INTERRUPT
+        try:
+            {}["a key"]
+        except KeyError:
+            time.sleep(0.6)
         print("cleared away")
 """
 AT_WORK = """
@@ -120,7 +137,15 @@ AT_WORK = """
 EXECUTED = """
     exec("INTERRUPT")
 """
-BODIES = [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST, AGAIN, EXECUTED, AT_WORK]
+BODIES = [
+    HIDDEN.format('ImportError("initialization failed")'),
+    HIDDEN.format(ENGINE),
+    LOST,
+    DROPPED,
+    AGAIN,
+    EXECUTED,
+    AT_WORK,
+]
 
 
 @pytest.mark.parametrize("body", BODIES)
@@ -128,7 +153,7 @@ BODIES = [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(E
 def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(
     number: signal.Signals, body: str, tmp_path: Path
 ) -> None:
-    """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser.
+    """Code in C that is interrupted while it is imported raises an error; it drops one that it meets in `hasattr`.
 
     It ends by SIGINT itself after an exec that Ctrl-C has ended, waits for threads, and would interrupt clearing away.
     """
