@@ -100,8 +100,9 @@ class Joint(Program):
     runs: tuple[Trial, ...] = field(default=(), compare=False, repr=False)
     parts: tuple[Part, ...] = ()
 
+    @cached_property
     def programs(self) -> list[Program]:
-        """Return the program of each run."""
+        """The program of each run."""
         made = []
         for trial in self.runs:
             program = trial.case.right.changed(kind=self.kind)
@@ -114,11 +115,11 @@ class Joint(Program):
     @property
     def sensible(self) -> bool:
         """False if no program can have its inputs in one of the runs."""
-        return all(program.sensible for program in self.programs())
+        return all(program.sensible for program in self.programs)
 
     def theta(self) -> Array:
         """Return the numbers of all runs, those of the first before."""
-        return np.concatenate([program.theta() for program in self.programs()])
+        return np.concatenate([program.theta() for program in self.programs])
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ class JointCase(Case):
     def positions(self, program: Program) -> Array:
         """Return what a program writes in all runs."""
         assert isinstance(program, Joint)
-        made = zip(self.runs, program.programs(), strict=True)
+        made = zip(self.runs, program.programs, strict=True)
         return self.side_by_side([run.case.positions(one) for run, one in made])
 
     def _fit(self, kind: str, fits: Sequence[Fit]) -> Fit:
@@ -183,7 +184,7 @@ class JointCase(Case):
         """Return the most that a reading leaves of a run, over what may be left."""
         assert isinstance(reading.program, Joint)
         most = 0.0
-        for run, program in zip(self.runs, reading.program.programs(), strict=True):
+        for run, program in zip(self.runs, reading.program.programs, strict=True):
             made, allowed = run.case.positions(program), run.case.enough
             if program.method is not None:
                 effect = largest(made - run.case.positions(replace(program, method=None, step=0.0)))
@@ -195,7 +196,7 @@ class JointCase(Case):
         """Return the case with what steps do to the programs of a reading taken from the rows, and that cause."""
         program, seen, causes = self.right if reading is None else reading.program, [], []
         assert isinstance(program, Joint)
-        for run, one in zip(self.runs, program.programs(), strict=True):
+        for run, one in zip(self.runs, program.programs, strict=True):
             taken = replace(steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0)))
             case = run.case.part(int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum()))
             pendulum, theta = case.pendulum_of(one)
@@ -209,7 +210,7 @@ class JointCase(Case):
     def told(self, reading: Reading, *besides: Deviation) -> Explanation:
         """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
         assert isinstance(reading.program, Joint)
-        case, program = self.runs[0].case, reading.program.programs()[0]
+        case, program = self.runs[0].case, reading.program.programs[0]
         read, left_m, times = [*sized(case, reading), *besides], largest(case.left(program)), case.rows.times
         known, clean = tuple(cause.id for cause in read), clean_share(case, program.kind)
         spacing = float(times[1] - times[0])

@@ -240,20 +240,24 @@ class Method:
         start, speed = phasors.start - phasors.centre, phasors.speed
         if self.late:  # v + h/2 w'' = 0
             speed = q * start * step / 2 / (1 - d * step / 2)
-        if self.kick is None:  # leapfrog: half a kick, a drift, half a kick; its Coriolis force is explicit
-            half = np.array([[1, 0], [-q * step / 2, 1 - d * step / 2]])
-            other = np.array([[1, 0], [-q * step / 2 / (1 + d * step / 2), 1 / (1 + d * step / 2)]])
-            matrix = other @ np.array([[1, step], [0, 1]]) @ half
-        else:
-            kick = np.array([[1, 0], [-q * step, 1 - d * step]])
-            drift = np.array([[1, step], [0, 1]])
-            matrix = drift @ kick if self.kick else kick @ drift
-        values, vectors = np.linalg.eig(matrix.astype(complex))
-        parts = np.linalg.solve(vectors, np.array([start, speed]))
-        rates = [cmath.log(value) / (1j * step) for value in values]
-        amplitudes = [complex(vectors[0, i] * parts[i]) for i in range(2)]
-        (first, a), (second, b) = sorted(zip(rates, amplitudes, strict=True), key=lambda mode: -mode[0].real)
-        return Phasors((first, second), (a, b), phasors.centre)
+
+        def stepped(w: complex, v: complex) -> tuple[complex, complex]:
+            if self.kick is None:  # leapfrog: half a kick, a drift, half a kick; its Coriolis force is explicit
+                v -= step / 2 * (q * w + d * v)
+                w += step * v
+                return w, (v - step / 2 * q * w) / (1 + d * step / 2)
+            w += 0 if self.kick else step * v
+            v -= step * (q * w + d * v)
+            return w + (step * v if self.kick else 0), v
+
+        (a, c), (b, e) = stepped(1, 0), stepped(0, 1)  # columns of a step's matrix
+        half = (e - a) / 2
+        root = cmath.sqrt(half * half + b * c)
+        speeds = (half + root) / b, (half - root) / b  # of w = 1 in each mode
+        share = (speed - speeds[1] * start) * b / (2 * root)
+        rates = [cmath.log(a + b * v) / (1j * step) for v in speeds]
+        modes = sorted(zip(rates, (share, start - share), strict=True), key=lambda mode: -mode[0].real)
+        return Phasors((modes[0][0], modes[1][0]), (modes[0][1], modes[1][1]), phasors.centre)
 
 
 def _taylor(order: int) -> tuple[float, ...]:

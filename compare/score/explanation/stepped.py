@@ -46,6 +46,7 @@ RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {  # place
 LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
 FEWEST = 30  # rows that tell a motion: to have as many, twice as many steps are run
 TRIED = 24  # numbers of steps that are run at a time
+LEAP, WORTH = 4, 4000  # steps that are compiled as one, and the steps from which that pays
 SEARCHED = 8_000  # steps that are run at most where nothing tells how many there are
 SWING = 1.5  # periods at the beginning that tell the step
 LIKELY = 3  # steps that are tried on all rows
@@ -97,11 +98,16 @@ class Steps(Pendulum):
         rows = np.full((count + 1, *state[:2].shape), np.nan)
         rows[0] = state[:2]
         # by row and column, the number of steps that reach it; those that the same number reaches, together
-        ends, step, done = np.arange(1, count + 1)[:, None] * every, _step(self.method), 0
+        ends, done = np.arange(1, count + 1)[:, None] * every, 0
         numbers_of_steps, first = np.unique(np.sort(ends, axis=None), return_index=True)
         reached = np.split(np.argsort(ends, axis=None), first[1:])
+        step, leap = _steps(self.method, 1), LEAP if numbers_of_steps[-1] >= WORTH else 1
+        leaping = _steps(self.method, leap)
         for steps, ended in zip(numbers_of_steps.tolist(), reached, strict=True):
-            for _ in range(steps - done):
+            leaps, more = divmod(steps - done, leap)
+            for _ in range(leaps):
+                state = leaping(state, pars=numbers)
+            for _ in range(more):
                 state = step(state, pars=numbers)
             row, column = np.divmod(ended, len(every))
             rows[row + 1, :, column], done = state[:2, column].T, steps
@@ -246,13 +252,15 @@ def _apart(swing: Case, steps: Steps, thetas: Array, slopes: Array, low: int, hi
 
 
 @cache
-def _step(method: str) -> Any:
-    """Return a step of a method as machine code: of a state over l, with h, pull, turn, centrifugal, drag as `pars`."""
+def _steps(method: str, many: int) -> Any:
+    """Return steps of a method as machine code: of a state over l, with h, pull, turn, centrifugal, drag as `pars`."""
 
     def change(state: State, numbers: State) -> State:
         pull, turn, centrifugal = tuple(numbers[1:4]), tuple(numbers[4:7]), tuple(numbers[7:11])
         k = Constants(pull=pull, turn=turn, centrifugal=centrifugal, drag=numbers[11])
-        return _taken(method, state, numbers[0], k)
+        for _ in range(many):
+            state = _taken(method, state, numbers[0], k)
+        return state
 
     return compiled(("x", "y", "z", "vx", "vy", "vz"), 12, change)
 
