@@ -27,8 +27,7 @@ def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbe
     """
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         raise np.linalg.LinAlgError("numbers that are not finite")
-    solution: Numbers = np.linalg.lstsq(matrix, right, rcond=rcond)[0]
-    return solution
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=rcond)[0])
 
 
 def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers:

@@ -21,7 +21,7 @@ from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
-from ..system.workers import Emit, usable_cores
+from ..system.workers import Emit, Parent
 from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .pilot import MAX_RAISES, check_reach, run_pilot
@@ -60,8 +60,8 @@ def solve_enclosed(
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
         whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
-        pays = problem.pilot.steps >= AUDIT_STEPS and usable_cores() >= 2
-        again = in_background(pays, _give_way if pays else _send_digits, replace(problem, function=False))
+        pays = problem.pilot.steps >= AUDIT_STEPS
+        again = in_background(pays, _send_digits, replace(problem, function=False))
         second_proof = meanwhile.enter_context(again) if audit else None
         report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
@@ -94,15 +94,12 @@ def proved_digits(solution: Solution) -> Any:
 
 
 def _send_digits(emit: Emit, problem: ProofTask) -> None:
+    """Prove the digits by FLINT alone; in a process of its own give way: heyoka's run, the longest, needs a core."""
     from ..enclosure import enclose
 
+    if isinstance(emit, Parent):
+        os.nice(LOWER)
     emit(proved_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
-
-
-def _give_way(emit: Emit, problem: ProofTask) -> None:
-    """Prove the digits in a process of lower priority: of two cores heyoka's run, the longest, keeps one."""
-    os.nice(LOWER)
-    _send_digits(emit, problem)
 
 
 def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:

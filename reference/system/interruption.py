@@ -83,6 +83,4 @@ def terminable() -> Iterator[list[int]]:
 
 def _ends(error: BaseException | None) -> bool:
     """Return whether an exception ends the run, or came while such a one was handled."""
-    while error is not None and not isinstance(error, ENDS):
-        error = error.__context__
-    return error is not None
+    return error is not None and (isinstance(error, ENDS) or _ends(error.__context__))

@@ -217,8 +217,7 @@ class Reader:
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
         change = self.fit.theta - program.theta()
-        off: Array = self._triangle @ change[list(self.fit.free)]
-        return off
+        return np.asarray(self._triangle @ change[list(self.fit.free)])
 
     @cached_property
     def _triangle(self) -> Array:

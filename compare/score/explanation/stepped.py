@@ -86,8 +86,7 @@ class Steps(Pendulum):
 
     def _at(self, times: Array, thetas: Array) -> Array:
         at = np.round(times / self.spacing).astype(int)
-        rows: Array = self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at]
-        return rows
+        return np.asarray(self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at])
 
     def all_rows(self, thetas: Array, every: npt.NDArray[np.int64], count: int) -> Array:
         """Return x and y of row 0, 1, … in m, shape (rows, 2, columns of theta), each in steps of its own."""
@@ -105,10 +104,8 @@ class Steps(Pendulum):
         leaping = _steps(self.method, leap)
         for steps, ended in zip(numbers_of_steps.tolist(), reached, strict=True):
             leaps, more = divmod(steps - done, leap)
-            for _ in range(leaps):
-                state = leaping(state, pars=numbers)
-            for _ in range(more):
-                state = step(state, pars=numbers)
+            for taken in [leaping] * leaps + [step] * more:
+                state = taken(state, pars=numbers)
             row, column = np.divmod(ended, len(every))
             rows[row + 1, :, column], done = state[:2, column].T, steps
         return np.asarray(rows * thetas[11])
