@@ -75,9 +75,7 @@ APPROXIMATION = option(
     hidden=True,
 )
 BASELINE = option(
-    "--baseline",
-    "Say what changed since a file, --json document, command or suite of an earlier version.",
-    "FILE",
+    "--baseline", "Say what changed since a file, --json document, command or suite of an earlier version.", "FILE"
 )
 TOLERANCE = option("--tolerance", "Allow errors up to this, in m (default: 1e-6 of the amplitude).", "M")
 COVERS = option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE")
@@ -95,11 +93,7 @@ TIMINGS = option(
 )
 AS_MODEL = option("--as-model", "Count agreement with a named simpler model.")
 NO_DIAGNOSIS = option("--no-diagnosis", "Do not look for the reasons of an error.")
-OUT = option(
-    "--out",
-    "With --suite: write a page and tables into this folder; with --experiments: the outputs.",
-    "DIR",
-)
+OUT = option("--out", "With --suite: write a page and tables into this folder; with --experiments: the outputs.", "DIR")
 JUNIT = option("--junit", "Write the outcome as JUnit XML, a test for each.", "FILE")
 GITHUB = option("--github", "Annotate for GitHub Actions; write the job's summary.")
 

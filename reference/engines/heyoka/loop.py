@@ -48,9 +48,9 @@ class Integrator:
         if form:
             numbers = [hy.par[len(names) + i] for i in range(len(XDOT))]
             rate[TRANSIT] = RowMotion(n, v, v).form(numbers)[0]
-        events = [hy.nt_event(rate[kind], _recorder(noted)) for kind, noted in self._events.items()]
+        events = tuple((rate[kind], _recorder(noted)) for kind, noted in self._events.items())
         system = as_pairs(state, rates(MODEL, k)(state, hy))
-        self._ta = Numbers(DOUBLE).integrator(system, [], tol=tolerance, nt_events=events)
+        self._ta = Numbers(DOUBLE).integrator(system, [], tol=tolerance, events=events)
         self._parameters = len(names)
 
     def begin(self, k: Constants, state: Any, form: Any) -> None:

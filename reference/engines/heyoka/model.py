@@ -74,7 +74,8 @@ class Numbers:
         sign, mantissa, shift, _ = from_rational(exact.numerator, exact.denominator, self.number.prec, "n")
         rounded = -int(mantissa) if sign else int(mantissa)
         if not self.number.hardware:
-            return hy.real(rounded, self.number.prec) * hy.real(2, self.number.prec) ** shift
+            prec = self.number.prec  # of a product with a power, whose exponent has 64 bits, it would be 64 at least
+            return hy.real(hy.real(rounded, prec) * hy.real(2, prec) ** shift, prec)
         high = rounded >> 32 << 32
         return np.ldexp(np.longdouble(high) + np.longdouble(rounded - high), shift)
 
@@ -95,14 +96,13 @@ class Numbers:
     def integrator(self, system: Any, state: Sequence[Any], *, radians: float = math.inf, **options: Any) -> Any:
         """Return heyoka's integrator of a system of pairs (variable, rate), compiled unless it was so before.
 
-        `radians` is how far the run goes, by which compiling is thorough or quick.
+        `radians` is how far the run goes, by which compiling is thorough or quick; `events` are expressions, each with
+        the function that is called where it is zero, which all that share the code have in common.
         """
         if radians < (SHORT_RUN if self.number.hardware else SHORT_WORK / self.number.prec**3):
             options["opt_level"] = 0
-        make = _compiled if "nt_events" in options else _kept  # a callback belongs to its own run
-        integrator = copy(make(self.number, tuple(system), **options))
-        exact = state if self.number.hardware else [hy.real(x, self.number.prec) for x in state]
-        integrator.state[: len(state)] = np.array(exact, self.dtype)
+        integrator = copy(_compiled(self.number, tuple(system), **options))
+        integrator.state[: len(state)] = np.array(state, self.dtype)
         return integrator
 
     def propagated(self, integrator: Any, times: Sequence[Any], **options: Any) -> tuple[Any, int]:
@@ -123,18 +123,17 @@ class Numbers:
         return states, int(steps)
 
 
-def _compiled(number: NumberType, system: Any, varied: bool = False, **options: Any) -> Any:
+@lru_cache(maxsize=KEPT)
+def _compiled(number: NumberType, system: Any, varied: bool = False, events: Any = (), **options: Any) -> Any:
     """Return an integrator that begins at zero; a copy of it shares its code, and takes a millisecond."""
     keep_on_disk(number)
     numbers, pairs = Numbers(number), list(system)
     if "tol" in options:
         options["tol"] = numbers.of(options["tol"])
+    options["nt_events"] = [hy.nt_event(zero, callback=call, fp_type=numbers.type) for zero, call in events]
     equations = hy.var_ode_sys(pairs, [hy.par[0]], order=1) if varied else pairs
     zero = np.array([numbers.of(0)] * len(pairs), numbers.dtype)
     return hy.taylor_adaptive(equations, zero, fp_type=numbers.type, **numbers.keywords, **options)
-
-
-_kept = lru_cache(maxsize=KEPT)(_compiled)
 
 
 class Propagator:
@@ -173,6 +172,7 @@ class Propagator:
                 raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
             options["tol"] = Fraction(tolerance)
         self._ta = self.numbers.integrator(system, [], **options)
+        self.parameters: Sequence[Any] = ()  # where none are given
         self.steps = 0
 
     def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:
@@ -188,7 +188,7 @@ class Propagator:
         ta = self._ta
         ta.time = self.numbers.of(0)
         ta.state[:] = start
-        ta.pars[:] = parameters
+        ta.pars[:] = parameters or self.parameters[: len(ta.pars)]
         states, steps = self.numbers.propagated(ta, times, max_steps=max_steps)
         self.steps += steps
         return states
@@ -201,11 +201,19 @@ class RoundedModel:
         formulation: the formulation.
         k: the constants, finer than the number type.
         number: type to compute in.
+
+    Attributes:
+        k: the constants in that type.
+        symbols: heyoka's parameters in their place: scenes with the same exact zeros share the code of their equations.
+        parameters: the values of these parameters, and then of constants that the equations do not have.
     """
 
     def __init__(self, formulation: Formulation, k: Constants, number: NumberType) -> None:
         self.formulation, self.numbers = formulation, Numbers(number)
         self.k = k.converted(self.numbers.of)
+        entries = self.k.entries()
+        self.symbols = Constants.of({name: hy.par[i] for i, name in enumerate(entries)})
+        self.parameters = [*entries.values()]
 
     def release(self, start: Start) -> list[Any]:
         """Return the state at t = 0, in numbers of the type."""
@@ -213,8 +221,10 @@ class RoundedModel:
 
     def propagator(self, tolerance: float | None = None, radians: float = math.inf) -> Propagator:
         """Compile the equations, without events; the tolerance is the type's epsilon if None."""
-        variables, equations = self.formulation.variables, rates(self.formulation, self.k)
-        return Propagator(variables, equations, self.numbers.number, tolerance=tolerance, radians=radians)
+        variables, equations = self.formulation.variables, rates(self.formulation, self.symbols)
+        made = Propagator(variables, equations, self.numbers.number, tolerance=tolerance, radians=radians)
+        made.parameters = self.parameters
+        return made
 
     def doubles(self, states: Any) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, nearest doubles, from states of shape (rows, variables)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 from collections.abc import Sequence
 from fractions import Fraction
@@ -29,6 +30,14 @@ class Zero(NamedTuple):
     t: Any
     direction: int
     state: Any
+
+
+_at_work = threading.local()  # `zeros` of the stepper that takes a step: integrators of one system share a callback
+
+
+def _record(integrator: Any, t: Any, direction: int) -> None:
+    integrator.update_d_output(t)
+    _at_work.zeros.append(Zero(t, int(direction), integrator.d_output.copy()))
 
 
 class Stepper:
@@ -58,18 +67,11 @@ class Stepper:
         self.zeros: list[Zero] = []
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
-        equations, xdot = system_of(formulation, self.model.k)
-        options: dict[str, Any] = {"radians": float(span) * start.rate}
-        if events:
-            zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
-
-            def record(integrator: Any, t: Any, direction: int) -> None:
-                integrator.update_d_output(t)
-                zeros.append(Zero(t, int(direction), integrator.d_output.copy()))
-
-            options["nt_events"] = [hy.nt_event(xdot, callback=record, fp_type=self.numbers.type)]
+        equations, xdot = system_of(formulation, self.model.symbols)
+        sought, radians = ((xdot, _record),) if events else (), float(span) * start.rate
         started = time.process_time()
-        self._ta = self.numbers.integrator(equations, self.model.release(start), **options)
+        self._ta = self.numbers.integrator(equations, self.model.release(start), radians=radians, events=sought)
+        self._ta.pars[:] = self.model.parameters[: len(self._ta.pars)]
         self.compile_s = time.process_time() - started
         self.order = int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
@@ -91,6 +93,7 @@ class Stepper:
             IntegrationError: heyoka reports a failure, or the state is not finite.
         """
         self.zeros.clear()
+        _at_work.zeros = self.zeros
         self._count_step(self._ta.step(limit if self._longest is None else min(limit, self._longest))[0])
 
     def _count_step(self, outcome: Any) -> None:
@@ -125,7 +128,7 @@ class Stepper:
 
         The stepper goes back to where it was.
         """
-        start = self.mark()
+        start, _at_work.zeros = self.mark(), self.zeros
         _, h = self._ta.step(write_tc=True)
         coefficients = np.array(self._ta.tc)
         self.back(start)

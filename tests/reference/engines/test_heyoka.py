@@ -75,11 +75,50 @@ def test_events_are_compiled_only_when_asked_for(paris):
     assert stepper_of(paris, DOUBLE, events=True)._ta.with_events
 
 
+@pytest.mark.parametrize("number", [DOUBLE, LONG_DOUBLE, real(48), real(168)], ids=str)
+@pytest.mark.parametrize("name", ["momentum", "inertial", "space", "spin"])
+def test_other_numbers_in_the_same_terms_share_the_code_and_it_rounds_as_their_own(paris, number, name):
+    """What ships was made by code in which each constant stood as a number: real numbers come out bit by bit."""
+    model_module._compiled.cache_clear()
+    other = make_scene(pendulum={"length": "1.7"}, release={"x": "0.01", "y": "0.2"})
+    for scene in (paris, other):
+        stepper = stepper_of(scene, number, name)
+        equations, _ = system_of(FORMULATIONS[name], stepper.model.k)
+        own = hy.taylor_adaptive(equations, stepper.state, fp_type=stepper.numbers.type, **stepper.numbers.keywords)
+        for _ in range(9):
+            own.step()
+            stepper.advance(stepper.numbers.of(60))
+            if not number.hardware:
+                assert stepper.state.tolist() == own.state.tolist()
+            assert stepper.state.astype(float) == pytest.approx(own.state.astype(float), rel=1e-12, abs=1e-14)
+    kept = model_module._compiled.cache_info()
+    assert (kept.misses, kept.hits) == (1, 1)
+
+
+@pytest.mark.parametrize("number", [DOUBLE, real(90)], ids=str)
+def test_steppers_that_share_their_code_find_their_own_zeros_in_turn(paris, number):
+    model_module._compiled.cache_clear()
+    other = make_scene(pendulum={"length": "1.7"}, release={"x": "0.01", "y": "0.2"})
+
+    def zeros(*steppers):
+        found = [[] for _ in steppers]
+        for _ in range(12):
+            for stepper, of_one in zip(steppers, found, strict=True):
+                stepper.advance(stepper.numbers.of(60))
+                of_one += [(zero.t, zero.direction, *zero.state.tolist()) for zero in stepper.zeros]
+        return found
+
+    both = zeros(*(stepper_of(scene, number, events=True) for scene in (paris, other)))
+    assert model_module._compiled.cache_info().hits == 1
+    assert min(map(len, both)) > 1
+    assert both == [*zeros(stepper_of(paris, number, events=True)), *zeros(stepper_of(other, number, events=True))]
+
+
 @pytest.mark.parametrize("number", [DOUBLE, real(48), real(90)], ids=str)
 def test_runs_of_the_same_equations_share_their_code_and_nothing_else(paris, number):
-    model_module._kept.cache_clear()
+    model_module._compiled.cache_clear()
     first, second = stepper_of(paris, number), stepper_of(paris, number)
-    kept = model_module._kept.cache_info()
+    kept = model_module._compiled.cache_info()
     assert (kept.misses, kept.hits) == (1, 1)
     release = first.state.tolist()
     times = [first.numbers.of(t) for t in (0, 7, 20)]
@@ -87,18 +126,18 @@ def test_runs_of_the_same_equations_share_their_code_and_nothing_else(paris, num
     assert second.time == 0
     assert second.state.tolist() == release
     assert second.propagate(times).tolist() == states
-    model_module._kept.cache_clear()
+    model_module._compiled.cache_clear()
     assert stepper_of(paris, number).propagate(times).tolist() == states
 
 
-def test_other_constants_bits_or_tolerances_are_other_code(paris):
-    model_module._kept.cache_clear()
-    stepper_of(make_scene(pendulum={"length": "68"}), DOUBLE)
+def test_other_terms_bits_or_tolerances_are_other_code(paris):
+    model_module._compiled.cache_clear()
+    stepper_of(make_scene(pendulum={"drag": "1e-5"}), DOUBLE)
     for number in (LONG_DOUBLE, real(90), real(91), DOUBLE):
         model = stepper_of(paris, number).model
     for tolerance in (1e-9, 1e-8):
         model.propagator(tolerance)
-    assert model_module._kept.cache_info().hits == 0
+    assert model_module._compiled.cache_info().hits == 0
 
 
 def test_the_equations_shown_are_the_ones_compiled():
@@ -139,13 +178,14 @@ def test_drag_is_in_the_equations_when_the_scene_has_it():
 
 
 def test_no_python_float_stands_in_a_real_system(paris):
-    """A float is a double for ever; every constant of the compiled lines must carry the run's digits."""
+    """A float is a double for ever; every constant of the equations is a parameter, which carries the run's digits."""
     stepper = stepper_of(paris, real(200))
-    lines = system_of(FORMULATIONS["momentum"], stepper.model.k)[0]
-    numbers = [word.strip("()-") for _, rate in lines for word in str(rate).split()]
-    constants = [word for word in numbers if word[:1].isdigit()]
-    assert constants
-    assert all(len(word) > 55 for word in constants)
+    lines = system_of(FORMULATIONS["momentum"], stepper.model.symbols)[0]
+    words = {word.strip("()-") for _, rate in lines for word in str(rate).split()}
+    assert not [word for word in words if word[:1].isdigit()]
+    assert {word for word in words if word[:1] == "p"} == {f"p{i}" for i in (1, 2, 3, 4)}
+    assert all(value.prec == 200 for value in stepper._ta.pars)
+    assert stepper._ta.pars[1:].tolist() == [*stepper.model.k.entries("turn", "pull").values()]
 
 
 def test_a_run_that_blows_up_is_an_error_and_gives_no_numbers():
@@ -180,7 +220,7 @@ def test_one_time_is_the_release_itself(paris):
 @pytest.fixture
 def asked_anew():
     """Code is compiled, and the place of its cache looked for again where there was none: locked, or without a home."""
-    model_module._kept.cache_clear()
+    model_module._compiled.cache_clear()
     if not system._has_place():
         system._has_place.cache_clear()
 
@@ -205,7 +245,7 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path,
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(system.hy.llvm_state, "get_diskcache_path", lambda: place)
     system._has_place.cache_clear()
-    model_module._kept.cache_clear()
+    model_module._compiled.cache_clear()
     try:
         stepper_of(paris, DOUBLE)
         assert not hy.llvm_state.get_diskcache_enabled()
