@@ -81,10 +81,7 @@ TOLERANCE = option("--tolerance", "Allow errors up to this, in m (default: 1e-6 
 COVERS = option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE")
 T_END = option("--t-end", "Ignore rows after this time, in s (default: the scene's).", "S")
 INPUTS = option(
-    "--inputs",
-    "Read the scene as decimal or binary64; auto: by the file.",
-    "READING",
-    completion(lambda: READINGS),
+    "--inputs", "Read the scene as decimal or binary64; auto: by the file.", "READING", completion(lambda: READINGS)
 )
 PLOT = option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE")
 TIMEOUT = option("--timeout", f"Stop --run after this many seconds (default: {TIMEOUT_S:g}).", "S")

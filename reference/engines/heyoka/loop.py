@@ -70,6 +70,8 @@ class Integrator:
         short = any(release.zero[kind] for kind in self._events)
         if short:
             self._ta.step(min(release.quiet, release.end))
+            if not np.isfinite(self._ta.time):
+                return self._ta.state.copy(), 1, True
         outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=most)
         state = self._ta.state.copy()
         return state, int(steps) + short, outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all()

@@ -59,6 +59,11 @@ def test_show_begins_a_scene(foucault):
         assert (status, err.startswith(f"foucault: {field}: ")) == (2, True), err
 
 
+def test_a_motion_whose_first_step_is_too_short_for_doubles_has_no_period(foucault):
+    status, out, _ = foucault("show", "paris", "--set", "site.rotation_rate=1e15")
+    assert (status, "no period: The engine stopped" in out) == (0, True)
+
+
 def test_show_equations_says_what_was_left_out_and_why(foucault):
     _, out, _ = foucault("show", "pole", "--equations")
     assert "the latitude is a pole" in out
