@@ -118,7 +118,7 @@ def test_a_library_has_one_door():
 # the names of reference that compare uses: what changes here, changes for others too
 PUBLIC = {
     "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution Swept "
-    "UnreachableError integrate load load_ranges load_scene parse_scene scene_ids solve trajectory write",
+    "UnreachableError load load_ranges load_scene parse_scene scene_ids solve trajectory write",
     "reference.commands.progress": "progress",
     "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections Uncertain "
     "Workers check_workers chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
@@ -126,7 +126,7 @@ PUBLIC = {
     "reference.dataset.golden": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
     "reference.dataset.place": "RANGES changes golden_folder",
-    "reference.engines.heyoka.model": "Numbers RoundedModel compiled",
+    "reference.engines.heyoka.model": "Numbers Propagator RoundedModel compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "Variants",
     "reference.errors": "BeyondDoublesError Stopped did_you_mean finite in_words plain plain_json plain_lines "

@@ -1,7 +1,7 @@
 """A scene's numbers for closed forms in high precision, plumb-line axes, rows in binary64, and reasons to refuse.
 
-Truncated systems are integrated with the constants as extra variables whose derivative is zero. A sweep over latitudes
-then compiles one system instead of one for each latitude, and compiling costs thirty times as much as the integration.
+Truncated systems are integrated with the constants as parameters. A sweep over latitudes then compiles one system
+instead of one for each latitude, and compiling costs more than the integration.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from reference import Scene, UnreachableError, integrate
+from reference import Scene, UnreachableError
 from reference.model.algebra import Functions, State
 from reference.model.constants import Constants, Vector
 from reference.model.force import tension
 from reference.model.start import Start
-from reference.numbers.precision import Array
+from reference.numbers.precision import DOUBLE, Array
 
 PREC = 200  # bits, 60 digits: a series that cancels to Ω⁶, some 40 digits below its first term, keeps 20 digits
 MAX_STEPS = 3_000_000  # 30 days of Paris take 1.2 million; towards a singularity steps shrink without end
 
-_USED = ("turn", "pull", "centrifugal", "drag")  # another would only take part in the choice of steps
+_USED = ("turn", "pull", "centrifugal", "drag")
 Derivatives = Callable[[State, Constants, Functions], State]
 
 
@@ -118,16 +118,16 @@ class PlumbAxes:
 
 
 def integrated(
-    variables: Sequence[str], derivatives: Derivatives, start: Sequence[Any], k: Constants, times: Array
+    variables: Sequence[str], derivatives: Derivatives, start: Sequence[Any], case: Case, times: Array
 ) -> Array:
-    """Integrate a system and return its states at the times.
+    """Integrate a system with the constants of a case and return its states at the times.
 
     Args:
         variables: names of the state variables.
         derivatives: `derivatives(state, constants, functions)`; it may use the constants turn, pull, centrifugal and
             drag.
         start: the state at t = 0, mpf.
-        k: constants in any number type; those that are exactly zero are left out of the system.
+        case: its constants are used; those that are exactly zero are left out of the system.
         times: increasing, from 0, in s.
 
     Returns:
@@ -136,13 +136,17 @@ def integrated(
     Raises:
         IntegrationError: the motion comes to a singularity, or needs more than `MAX_STEPS` steps.
     """
-    carried, count = k.entries(*_USED), len(variables)
+    from reference.engines.heyoka.model import Propagator
 
-    def rates(state: State, functions: Functions) -> State:
-        constants = Constants.of(dict(zip(carried, state[count:], strict=True)))
-        return (*derivatives(state[:count], constants, functions), *(0 for _ in carried))
+    used = case.k.entries(*_USED)
 
-    return integrate([*variables, *carried], rates, [*start, *carried.values()], times, max_steps=MAX_STEPS)[:, :count]
+    def rates(state: State, functions: Functions, parameters: Sequence[Any] = ()) -> State:
+        return derivatives(state, Constants.of(dict(zip(used, parameters, strict=True))), functions)
+
+    radians = case.fastest_rate * float(times[-1])
+    propagator = Propagator(variables, rates, DOUBLE, parameters=len(used), radians=radians)
+    begin, constants = map(propagator.numbers.all_of, (start, [*used.values()]))
+    return np.asarray(propagator.from_zero(begin, times, constants, MAX_STEPS))
 
 
 def lowest_point(scene: Scene) -> Vector:

@@ -36,7 +36,7 @@ def hanging(scene: Scene) -> Any:
 def _any_amplitude(case: Case, times: Array) -> Array:
     """Return rows of 7.2: the model, with the apparent gravity at the suspension everywhere."""
     model, case = FORMULATIONS["spin"], replace(case, k=replace(case.k, centrifugal=(0, 0, 0, 0)))
-    states = integrated(model.variables, model.derivatives, case.state(model), case.k, times)
+    states = integrated(model.variables, model.derivatives, case.state(model), case, times)
     place, speed = model.cartesian(tuple(states.T), case.k, np)
     return np.column_stack((*place, *speed)) * float(case.length)
 

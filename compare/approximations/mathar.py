@@ -86,9 +86,9 @@ def truncated(k: Constants, items: frozenset[Item]) -> Constants:
 
 def _path(case: Case, times: Array, items: frozenset[Item]) -> Array:
     """Integrate (43) without the terms of `items`; return rows x, y, z, vx, vy, vz."""
-    start, k = (*case.n[:2], *case.v[:2]), truncated(case.k, items)
+    start, less = (*case.n[:2], *case.v[:2]), replace(case, k=truncated(case.k, items))
     try:
-        states = integrated(VARIABLES, partial(derivatives, items=items), start, k, times)
+        states = integrated(VARIABLES, partial(derivatives, items=items), start, less, times)
     except IntegrationError as error:
         raise IntegrationError(f"{error} (43) holds only until the bob comes to the horizontal.") from None
     x, y, vx, vy = (states * float(case.length)).T

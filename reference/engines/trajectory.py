@@ -170,7 +170,7 @@ def trajectory(
     except OverflowError:
         raise BeyondDoublesError from None
     radians = start.fastest_rate * float(moments[-1])
-    propagator = model.propagator(tolerance, math.inf if number.hardware else radians)
+    propagator = model.propagator(tolerance, radians)
     try:
         states = propagator.from_zero(state, moments, max_steps=LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians))
     except IntegrationError as error:

@@ -31,10 +31,10 @@ from .system import as_pairs, keep_on_disk, rates
 hy.install_custom_numpy_mem_handler()
 hy.set_logger_level_critical()  # its log is the process's stdout; what it would tell of lost roots is found otherwise
 
-# Optimised code takes 0.2 to 2 s longer to compile. A step in hardware numbers is then a third faster, with other last
-# bits; one beyond them a sixth, with the same bits, and steps take the longer the more bits they have. So a run of
-# fewer radians than these is compiled quickly.
-SHORT_RUN = 2000  # in hardware numbers
+# Optimised code takes 0.1 to 1 s longer to compile. A step in hardware numbers is then 1 to 10 µs faster, with other
+# last bits; one beyond them a sixth, with the same bits, and steps take the longer the more bits they have. So a run of
+# fewer radians than these is compiled quickly. Levels above 1 take longer, and give no faster step.
+SHORT_RUN = 20_000  # in hardware numbers
 SHORT_WORK = 4e9  # beyond them: times the cube of the bits
 KEPT = 24  # integrators, of 1 to 5 MB each, that are kept for further runs of their equations
 
@@ -99,8 +99,8 @@ class Numbers:
         `radians` is how far the run goes, by which compiling is thorough or quick; `events` are expressions, each with
         the function that is called where it is zero, which all that share the code have in common.
         """
-        if radians < (SHORT_RUN if self.number.hardware else SHORT_WORK / self.number.prec**3):
-            options["opt_level"] = 0
+        short = SHORT_RUN if self.number.hardware else SHORT_WORK / self.number.prec**3
+        options["opt_level"] = int(radians >= short)
         integrator = copy(_compiled(self.number, tuple(system), **options))
         integrator.state[: len(state)] = np.array(state, self.dtype)
         return integrator
