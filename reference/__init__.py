@@ -14,8 +14,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
-from .scenes.scene import Scene, load_scene, parse_scene
-from .scenes.shipped import scene_ids
 from .system.imports import lazy
 
 if TYPE_CHECKING:
@@ -25,6 +23,8 @@ if TYPE_CHECKING:
     from .engines.trajectory import integrate, trajectory
     from .numbers.function import GoldenFunction, States
     from .numbers.table import Table
+    from .scenes.scene import Scene, load_scene, parse_scene
+    from .scenes.shipped import scene_ids
     from .solver.ranges import Intervals, Ranges
     from .solver.solution import Solution
     from .solver.solve import solve
@@ -67,6 +67,8 @@ __getattr__, __dir__ = lazy(
         "engines.trajectory": "integrate trajectory",
         "numbers.function": "GoldenFunction States",
         "numbers.table": "Table",
+        "scenes.scene": "Scene load_scene parse_scene",
+        "scenes.shipped": "scene_ids",
         "solver.ranges": "Intervals Ranges",
         "solver.solution": "Solution",
         "solver.solve": "solve",

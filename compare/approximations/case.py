@@ -21,9 +21,6 @@ from reference.model.start import Start
 from reference.numbers.precision import DOUBLE, Array
 
 PREC = 200  # bits, 60 digits: a series that cancels to Ω⁶, some 40 digits below its first term, keeps 20 digits
-MAX_STEPS = 3_000_000  # 30 days of Paris take 1.2 million; towards a singularity steps shrink without end
-
-_USED = ("turn", "pull", "centrifugal", "drag")
 Derivatives = Callable[[State, Constants, Functions], State]
 
 
@@ -137,14 +134,14 @@ def integrated(
         IntegrationError: the motion comes to a singularity, or needs more than `MAX_STEPS` steps.
     """
     from reference.engines.heyoka.model import Propagator
+    from reference.engines.trajectory import MAX_STEPS
 
-    used = case.k.entries(*_USED)
+    used = case.k.entries("turn", "pull", "centrifugal", "drag")
 
     def rates(state: State, functions: Functions, parameters: Sequence[Any] = ()) -> State:
         return derivatives(state, Constants.of(dict(zip(used, parameters, strict=True))), functions)
 
-    radians = case.fastest_rate * float(times[-1])
-    propagator = Propagator(variables, rates, DOUBLE, parameters=len(used), radians=radians)
+    propagator = Propagator(variables, rates, DOUBLE, parameters=len(used), radians=case.fastest_rate * times[-1])
     begin, constants = map(propagator.numbers.all_of, (start, [*used.values()]))
     return np.asarray(propagator.from_zero(begin, times, constants, MAX_STEPS))
 

@@ -193,8 +193,7 @@ def solved(changes: tuple[str, ...], t_end: str, digits: int = 20) -> Solution:
 def frequency(solution: Solution) -> Any:
     """Return the swings a second, from the release to the last transit that ends a whole swing."""
     times = solution.transits.exact("t")
-    half = times[1] / 2
-    swings = [(round(t / half), t) for t in times]
+    swings = [(round(2 * t / times[1]), t) for t in times]
     halves, last = max((count, t) for count, t in swings if count % 2 == 0)
     return mpf(halves) / 2 / mpf(last)
 

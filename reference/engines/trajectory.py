@@ -21,7 +21,9 @@ from ..numbers.precision import DOUBLE, GUARD_BITS, Array, NumberType
 from ..scenes.inputs import Inputs
 from ..scenes.scene import AnyScene, as_scene
 
-MAX_STEPS = 3_000_000  # of one run, so that a variant much stiffer than the scene comes to an end
+# Of one run: 30 days of Paris take 1.2 million, but a variant may be much stiffer, and towards a singularity steps
+# shrink without end.
+MAX_STEPS = 3_000_000
 
 
 class Variants:

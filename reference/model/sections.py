@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from ..numbers.precision import to_mpf
-from ..scenes.fields import azimuth_of
+from ..scenes.inputs import azimuth_of
 from .algebra import cross, dot, scale
 from .constants import Vector
 from .start import Start

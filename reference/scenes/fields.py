@@ -6,12 +6,12 @@ The template, the schema and the tables of docs/scene.md are made from what stan
 from __future__ import annotations
 
 import re
-from fractions import Fraction
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from .inputs import OR_INF, GravityIs, NotNegative, Number, Positive, Refused, checked, within
+from .inputs import GravityIs, azimuth_of
+from .texts import OR_INF, NotNegative, Number, Positive, Refused, checked, within
 
 MAX_DIGITS = 1000
 
@@ -41,11 +41,6 @@ def _checked_sections(words: tuple[str, ...]) -> tuple[str, ...]:
     if len(set(words)) < len(words):
         raise Refused("each section once", "Leave out the second one.")
     return words
-
-
-def azimuth_of(word: str) -> Fraction:
-    """Return the azimuth that a section's word names, in degrees from east to north; 0 if it names none."""
-    return Fraction(word.partition(" ")[2].removesuffix("@0") or 0)
 
 
 _SCHEMA = {"type": "array", "items": {"type": "string", "pattern": f"^({SECTION_WORD})$"}}

@@ -19,8 +19,9 @@ from pydantic import TypeAdapter, ValidationError
 from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
-from .inputs import RELEASES, SITE, Inputs, Line, Widths, as_read, checked, explained
+from .inputs import RELEASES, SITE, Inputs, as_read
 from .shipped import data_root, scene_ids
+from .texts import Line, Widths, checked, explained
 
 MAX_ROWS = 2_000_000
 LEAST_T_END = Fraction(1, 10**300)
@@ -181,12 +182,12 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
         scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
     except ValidationError as error:
         raise all_of(explained(error, [*Scene.model_fields, *field_names()])) from None
-    if wrong := [*_wrong_in_release(scene), *_wrong_in_run(scene)]:
+    if wrong := [*_wrong_in_release(scene, scene.exact), *_wrong_in_run(scene, scene.exact)]:
         raise all_of(wrong)
     return scene
 
 
-def _wrong_in_release(scene: Scene) -> Iterator[InputError]:
+def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     release = scene.release
     fields = set(release.model_dump(exclude_none=True))
     kinds = [names for names in RELEASES.values() if fields & {*names}]
@@ -201,18 +202,18 @@ def _wrong_in_release(scene: Scene) -> Iterator[InputError]:
     missing = [name for name in needed if name not in fields]
     for name in missing:
         yield InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
-    position, length = scene.exact.position, scene.exact.length
+    position, length = exact.position, exact.length
     if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
         got = f"x = {release.x}, y = {release.y}"
         expected = f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²"
         yield InputError("release", got, expected, "For a release at or above the horizontal give angle and azimuth.")
 
 
-def _wrong_in_run(scene: Scene) -> Iterator[InputError]:
+def _wrong_in_run(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     run = scene.run
-    if scene.exact.t_end < LEAST_T_END:
+    if exact.t_end < LEAST_T_END:
         yield InputError("run.t_end", run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
-    elif scene.exact.t_end / scene.exact.grid_step > MAX_ROWS:
+    elif exact.t_end / exact.grid_step > MAX_ROWS:
         expected = f"at most {MAX_ROWS} grid times up to t_end"
         yield InputError("run.grid_step", run.grid_step, expected, "Take a longer step.")
 

@@ -19,8 +19,7 @@ from ..model.sections import form_along
 from ..model.start import at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..numbers.precision import Array
-from ..scenes.fields import azimuth_of
-from ..scenes.inputs import RELEASES, GravityIs, Inputs
+from ..scenes.inputs import RELEASES, GravityIs, Inputs, azimuth_of
 from ..scenes.scene import Scene
 from .axes import Table
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import heyoka as hy
 
@@ -19,7 +19,9 @@ from ...model.constants import Constants
 from ...model.formulations import FORMULATIONS, Formulation, Lagrangian
 from ...model.start import Start, xdot_vanishes
 from ...numbers.precision import DOUBLE, LONG_DOUBLE, NumberType
-from ...scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from ...scenes.scene import Scene
 
 FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
 MOST_BYTES = 1 << 25

@@ -10,7 +10,6 @@ from compare.approximations import (
     Approximation,
     Motion,
     Quantity,
-    case,
     mathar,
     motions,
     quantities,
@@ -48,7 +47,8 @@ def test_the_bits_of_the_papers_program_name_motions():
 
 
 def test_a_motion_that_comes_to_the_horizontal_comes_to_an_end(monkeypatch):
-    monkeypatch.setattr(case, "MAX_STEPS", 20_000)  # without a limit it takes smaller and smaller steps for ever
+    # without a limit it takes smaller and smaller steps for ever
+    monkeypatch.setattr("reference.engines.trajectory.MAX_STEPS", 20_000)
     scene = load_scene("weightless").with_values(["site.latitude=60"])
     with pytest.raises(IntegrationError, match="only until the bob comes to the horizontal"):
         APPROXIMATIONS["mathar_item_3"].trajectory(scene, [0.0, 60.0])

@@ -1,0 +1,165 @@
+"""Checked texts of a scene's fields, and what a user is told of a wrong one."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema, WrapValidator
+from pydantic_core import ErrorDetails
+
+from ..errors import InputError, did_you_mean, is_plain
+from .inputs import as_read
+
+MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
+MAX_LENGTH = 2000  # characters of a number
+_EXPONENT_DIGITS = 9  # a Decimal can hold these; far above what is allowed
+_LONGEST_KEY = 80  # characters of a wrong key that a message quotes
+
+_PRINTED = re.compile(r"(?:np|numpy)\.\w+\((.*)\)")
+_DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?0*(\d+))?", re.ASCII)
+
+
+class Refused(ValueError):
+    """Raised by a validator with its expectation and advice; becomes an `InputError` with the field's name."""
+
+    def __init__(self, expected: str, advice: str = "") -> None:
+        super().__init__(expected)
+        self.expected, self.advice = expected, advice
+
+
+def _reading(info: ValidationInfo) -> str:
+    """Return how the numbers of the scene are read that is being checked."""
+    return str((info.context or {}).get("inputs"))
+
+
+def _as_text(value: object) -> object:
+    if isinstance(value, float):
+        raise Refused("a decimal number in quotes", f'Write "{value}" as a string: a bare TOML float is rounded.')
+    if isinstance(value, int) and not isinstance(value, bool):
+        return str(value)
+    return value
+
+
+def _decimal(text: str, info: ValidationInfo) -> str:
+    match = _DECIMAL.fullmatch(text) if len(text) <= MAX_LENGTH else None
+    if match is None:
+        raise Refused("a decimal number such as 67 or 7.292115e-5", _how_to_write(text))
+    # zero as well: 0e999999999 is computed with a power of ten
+    if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
+        raise Refused(f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size")
+    try:
+        as_read(text, _reading(info))
+    except OverflowError:
+        raise Refused(f"a number that a double holds, at most {sys.float_info.max:.3g} in size", _DOUBLES) from None
+    return text
+
+
+def _how_to_write(text: str) -> str:
+    """Return advice on a text that is no decimal number."""
+    if printed := _PRINTED.fullmatch(text):
+        return f"NumPy's repr: write {printed[1]}, as str() does."
+    if text.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        return "NaN and inf are not numbers here."
+    if _DECIMAL.fullmatch(text.replace(",", ".")):
+        return "Write a decimal point, not a comma." if "," in text else f"Write at most {MAX_LENGTH} characters."
+    return "Write the number alone, in SI units or degrees: 1200 for 20 min." if _DECIMAL.match(text) else ""
+
+
+_DOUBLES = "The numbers are read as binary64 here."
+
+
+def checked(holds: Callable[[Any], bool], expected: str) -> AfterValidator:
+    """Return the check that something holds of a value, of which is said what was expected."""
+
+    def check(value: Any) -> Any:
+        if not holds(value):
+            raise Refused(expected)
+        return value
+
+    return AfterValidator(check)
+
+
+def within(low: str, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
+    """Return the check that a number lies in a range, with its ends or (`open_low`) without the lower one."""
+    least, most = Fraction(low), Fraction(high) if high else None
+    expected = f"a number {'above' if open_low else 'at least'} {low}" + (f" and at most {high}" if high else "")
+
+    def check(text: str, info: ValidationInfo) -> str:
+        value = as_read(text, _reading(info))
+        too_low = value <= least if open_low else value < least
+        if too_low or (most is not None and value > most):
+            raise Refused(expected, _DOUBLES if value != Fraction(text) else "")
+        return text
+
+    return AfterValidator(check)
+
+
+Line = Annotated[str, checked(is_plain, "one line of text without control characters")]
+_SCHEMA = {"type": ["string", "integer"], "pattern": f"^(inf|{_DECIMAL.pattern})$"}  # what an editor checks
+Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal), WithJsonSchema(_SCHEMA)]
+OR_INF = WrapValidator(lambda value, check: value if value == "inf" else check(value))
+Positive = Annotated[Number, within("0", open_low=True)]
+NotNegative = Annotated[Number, within("0")]
+
+
+def _by_full_name(widths: object) -> object:
+    """Return widths by names such as pendulum.length, which without quotes is a table in a table for TOML."""
+    if not isinstance(widths, Mapping):
+        return widths
+    full: dict[str, object] = {}
+    for top, inner in widths.items():
+        full |= {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
+    return full
+
+
+Width = Annotated[
+    Positive,
+    BeforeValidator(lambda width: width.strip().removeprefix("±") if isinstance(width, str) else width),
+    AfterValidator(lambda width: f"±{width}"),
+    WithJsonSchema({**_SCHEMA, "pattern": f"^±?{_DECIMAL.pattern}$"}),
+]
+Widths = Annotated[dict[str, Width], BeforeValidator(_by_full_name)]
+
+
+_TEXTS = ("id", "title", "source", "flags")
+
+
+def explained(error: ValidationError, known: Iterable[str]) -> list[InputError]:
+    """Return the errors that a user reads: each wrong field, what it got, what was expected.
+
+    Args:
+        error: as pydantic raised it.
+        known: names of the fields that there are.
+    """
+    return [_explained(details, known) for details in error.errors()]
+
+
+def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
+    field = ".".join(str(part)[:_LONGEST_KEY] for part in details["loc"])
+    kind, got = details["type"], details["input"]
+    cause = details.get("ctx", {}).get("error")
+    if isinstance(cause, Refused):
+        got = ", ".join(map(str, got)) if isinstance(got, tuple) else got
+        return InputError(field, got, cause.expected, cause.advice)
+    if kind == "extra_forbidden":
+        advice = did_you_mean(field, known, "`foucault show SCENE` lists them.")
+        return InputError(field, got, "a field that scenes have", advice)
+    if kind == "missing" and field == "release":
+        return InputError(field, "nothing", "a table with x and y, or with angle and azimuth")
+    if kind == "missing":
+        return InputError(field, "nothing", "a value", "Add this field to the scene.")
+    expected = {
+        "literal": "one of " + str(details.get("ctx", {}).get("expected", "")),
+        "int": "a whole number",
+        "bool": "true or false",
+        "string": "text in quotes" if field.partition(".")[0] in _TEXTS else "a number in quotes",
+        "tuple": "a list of words",
+        "model": f"a table, written [{field}]",
+        "dict": f"a table, written [{field}]",
+    }.get(kind.partition("_")[0], details["msg"])
+    return InputError(field, got, expected)
