@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from math import ceil
@@ -25,7 +26,10 @@ class ProofPlan(NamedTuple):
     bits: int
 
 
-def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -> ProofPlan:
+Lost = Callable[[int], int]  # bits that an approximant of so many loses, if one radius carries its error
+
+
+def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None, lost: Lost | None = None) -> ProofPlan:
     """Choose method and precision for balls of `radius` at `end`.
 
     Raises:
@@ -39,6 +43,7 @@ def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -
     method = method or ("radius" if cheap else "columns")
     extra = loss if method == "radius" else COLUMN_MARGIN_BITS + 2 * log2(2 + span * w) / 2
     bits = max(LEAST_BITS, 8 * ceil((target + MARGIN_BITS + extra) / 8))
+    bits += lost(bits) if lost and method == "radius" else 0
     if bits > MAX_BITS:
         reason = f"enclosure: {short(radius)} m would take more than {MAX_BITS} bits."
         raise UnreachableError(reason, "Ask for fewer digits.")

@@ -6,7 +6,7 @@ Untrusted: no bound is computed here. Every step goes to the trusted `Course`, w
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, pairwise
 from math import ceil
@@ -20,7 +20,7 @@ from ..numbers.taylor_step import TaylorStep
 from .bound import SceneBalls
 from .course import Course
 from .frames import ColumnSource
-from .plan import MAX_BITS, ProofPlan, magnitude, plan_for, short
+from .plan import MAX_BITS, Lost, ProofPlan, magnitude, plan_for, short
 from .shapes import Proved, ProvedFunction, ProvedSections, State
 from .sums_checked import SumsChecked
 
@@ -29,7 +29,6 @@ ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
 USELESS = 2**12  # a state known this many times less closely than requested ends an attempt at once
 TINY = -1e9  # stands for the logarithm of a width that is 0
-PARTS = ("approximant", "proof", "function")
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
 
@@ -45,7 +44,7 @@ class Enclosure:
     method: str  # "radius" (Theorem C) or "columns" (Theorem E)
     position_radius: Fraction  # the largest of all, in m
     velocity_radius: Fraction  # in m/s
-    cpu_s: dict[str, float]  # by part of the work
+    cpu_s: float  # CPU seconds, without those of the approximant
     function: ProvedFunction | None = None  # the golden function, if it was asked for
     sections: ProvedSections | None = None  # the same
 
@@ -70,6 +69,7 @@ def enclose(
     flint_only: bool = False,
     function: bool = False,
     sections: tuple[str, ...] = (),
+    lost: Lost | None = None,
 ) -> Enclosure:
     """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
 
@@ -85,6 +85,7 @@ def enclose(
         flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
         function: also make the golden function, and bound it.
         sections: words of sections, whose passages are enclosed as well.
+        lost: see `plan_for`.
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
@@ -92,7 +93,7 @@ def enclose(
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
         raise ValueError("times: got a sequence that is empty, negative or not increasing")
     try:
-        plan, reason = plan_for(inputs, times[-1], radius, method), "nothing tried"
+        plan, reason = plan_for(inputs, times[-1], radius, method, lost), "nothing tried"
     except (ArithmeticError, ValueError) as error:
         advice = "Its numbers are too far apart: check lengths, rates and angles."
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
@@ -115,19 +116,6 @@ def enclose(
 
 
 @dataclass
-class _Clock:
-    """CPU seconds since the last reading, by part."""
-
-    parts: dict[str, float] = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
-    last: float = field(default_factory=process_time)
-
-    def lap(self, part: str) -> None:
-        now = process_time()
-        self.parts[part] += now - self.last
-        self.last = now
-
-
-@dataclass
 class _Run:
     """One attempt at one precision."""
 
@@ -140,7 +128,6 @@ class _Run:
     flint_only: bool
     function: bool
     sections: tuple[str, ...]
-    clock: _Clock = field(default_factory=_Clock)
 
     def prove(self, approximant: Approximant) -> Enclosure:
         """Prove all steps; raise _TooWide if a state is known less closely than to the radius."""
@@ -149,13 +136,12 @@ class _Run:
         if first is None:
             raise UnreachableError("enclosure: the approximant is empty.")
         bits, order = first.bits, len(first.coefficients[0]) - 1
-        self.clock.lap("approximant")
         balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
         course = Course(balls, self.times, columns is not None, self.transits)
         if self.flint_only:
             course.followers.append(SumsChecked())
-        fit, steps, count, known, sections = None, chain([first], steps), 0, 0, None
+        fit, steps, count, known, sections, spent = None, chain([first], steps), 0, 0, None, 0.0
         if self.sections:
             from .sections import Sections  # nor one without sections on theirs
 
@@ -165,26 +151,23 @@ class _Run:
 
             fit, steps = Fit(course), on_doubles(steps)
         for step in until(steps, end):
-            self.clock.lap("approximant")
+            begun = process_time()
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
-            self.clock.lap("proof")
             if fit:
                 fit.add()
-                self.clock.lap("function")
+            spent += process_time() - begun
             count += 1
             if len(course.states) > known:
                 known = len(course.states)
                 self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
             if self.progress:
                 self.progress(float((step.centre + step.h * step.high) / end) if end else 1.0)
-        function = fit.finish() if fit else None
+        begun, function = process_time(), fit.finish() if fit else None
         proved = function.proved if function else course.finish()
-        self.clock.lap("function" if function else "proof")
         passages = sections.finish(proved) if sections else None
         position, velocity = self._check_widths(proved.states, end, 1, bits)
-        return Enclosure(
-            proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function, passages
-        )
+        spent += process_time() - begun
+        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, spent, function, passages)
 
     def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""

@@ -21,7 +21,7 @@ from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from ..system.imports import needed
 from .pilot import Pilot, run_pilot
-from .proof_steps import COEFFICIENT_BITS
+from .proof_steps import COEFFICIENT_BITS, Feed
 from .solution import SAMPLED
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
@@ -72,7 +72,8 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
         need_flint()
         from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
 
-        bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None).bits - COEFFICIENT_BITS
+        feed = Feed(scene.exact, times, AUTO, pilot.steps)
+        bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits - COEFFICIENT_BITS
         return fastest(bits, steps=pilot.steps).plan(scene.exact, bits, times, transits=False)
     return published_plan(scene, times, pilot, first_prec(scene, pilot, AUTO), AUTO)
 

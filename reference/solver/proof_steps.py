@@ -19,6 +19,9 @@ from ..system.workers import Emit, Worker
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 BATCH = 32  # steps sent at once
+# A step of heyoka is as long as its epsilon allows: one radius that encloses such a run is wider by 2 to 10 bits than
+# one about limbs, and a proof that begins with too few bits is made a second time.
+HEYOKA_BITS = 8
 
 
 class EngineChanged(Exception):
@@ -66,6 +69,10 @@ class Feed:
         else:
             self._steps = self._taken(_steps_and_run(*run))
         return self._steps
+
+    def lost(self, bits: int) -> int:
+        """Return how many bits a run of so many loses besides those that a proof counts on."""
+        return HEYOKA_BITS if fastest(bits - COEFFICIENT_BITS, self._wanted, self._count).name == "heyoka" else 0
 
     def finished(self) -> Run:
         """Exhaust the steps and return the run, with its states at `times`."""

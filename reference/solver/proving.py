@@ -80,6 +80,7 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
                 radius=radius,
                 transits=scene.run.transits,
                 approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
+                lost=feed.lost,
                 function=problem.function,
                 sections=scene.run.sections or (),
                 progress=report and (lambda part: report(part * span)),

@@ -40,18 +40,19 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
     times, start = plan.times, Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, span=times[-1])
     grid = [stepper.numbers.of(t) for t in times]
-    started = time.process_time()
+    spent = 0.0
     rate = max(float(start.ctx.sqrt(start.ctx.norm(start.k.pull))), float(start.k.drag) / DECAYS)
     turn = MOST_TURN * float(OTHER_STEPS) if plan.other_steps else MOST_TURN
     longest = _few_bits(turn / rate) if rate > 0 else max(times[-1], Fraction(1))
     states, limit, beyond = [stepper.state], stepper.numbers.of(longest), False
     while not beyond:
-        beyond = stepper.time > grid[-1]
+        beyond, started = stepper.time > grid[-1], time.process_time()
         t, h, series = stepper.expand(limit, coefficient_bits)
+        spent += time.process_time() - started
         yield TaylorStep(t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series[:3]), LOCAL)
         stepper.sample(grid, states)
         limit = stepper.numbers.of(min(_next_step(h, series, coefficient_bits), longest))
-    return result(plan, stepper, np.array(states, dtype=stepper.numbers.dtype), None, started)
+    return result(plan, stepper, np.array(states, dtype=stepper.numbers.dtype), None, time.process_time() - spent)
 
 
 def _integers(series: Any) -> tuple[list[int], ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from time import process_time
 
 import pytest
 from sampled import one_in
@@ -16,6 +17,7 @@ from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of
 from reference.dataset.write import write
 from reference.enclosure.course import FINISHED, Course
+from reference.enclosure.prove import _Run
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
@@ -111,6 +113,27 @@ def test_scenes_that_bounds_find_hard_are_proved(name, engine, size):
     solution = reference.solve(scene, t_end=size("20", scene.run.t_end), level="enclosed", engine=engine)
     assert solution.level == "enclosed"
     assert solution.possible == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "t_end", "digits"), [("paris", "60", 15), ("pantheon", "60", 40), ("damped", "600", 20)]
+)
+def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(monkeypatch, name, t_end, digits):
+    attempts, honest = [], _Run.prove
+
+    def timed(attempt, approximant):
+        begun = process_time()
+        try:
+            return honest(attempt, approximant)
+        finally:
+            attempts.append(process_time() - begun)
+
+    monkeypatch.setattr(_Run, "prove", timed)
+    monkeypatch.setattr(proof_steps, "WORTH_A_PROCESS", 1e9)
+    solution = reference.solve(name, t_end=t_end, digits=digits, level="enclosed", engine="heyoka")
+    assert len(attempts) == 1
+    run_s, proof_s = solution.run.cpu_s, solution.proof.enclosure.cpu_s
+    assert run_s > 0 and proof_s > 0 and run_s + proof_s < attempts[0]
 
 
 def test_xdot_identically_zero_has_no_transits_to_enclose():
