@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import signal
@@ -16,6 +17,7 @@ from checker import check
 from hypothesis import settings
 from small_scenes import make_scene
 
+from foucault import SELDOM
 from reference.scenes.scene import Scene, load_scene
 
 COSTLY = 15  # files named at the end of a test run, with the CPU seconds that they took
@@ -24,6 +26,9 @@ FIRST = {f"test_{name}.py" for name in ("explanation", "docs", "same_bytes", "ki
 
 settings.register_profile("here", deadline=None, derandomize=True)
 settings.load_profile("here")
+
+# a command looks for garbage as seldom
+gc.set_threshold(SELDOM)
 
 # tests interrupt what they start; a shell's background job would have it ignore that
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -46,6 +51,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker("campaign")
         if long and not config.getoption("--long"):
             item.add_marker(pytest.mark.skip(reason="under --long"))
+
+
+def pytest_collection_finish() -> None:
+    """Have no search for garbage go through what was collected, which stays to the end."""
+    gc.freeze()
 
 
 @pytest.fixture
