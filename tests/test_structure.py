@@ -198,7 +198,7 @@ def test_starting_loads_nothing_heavy():
 
 
 def test_an_engine_at_work_in_a_process_of_its_own_reads_no_scene():
-    """Without what checks scenes such a process starts in two thirds of the time."""
+    """Without what checks scenes such a process takes 0.6 to 0.8 of the CPU time to start."""
     code = "import sys, reference.engines.heyoka.run, reference.enclosure.prove; print('pydantic' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout == "False\n"

@@ -19,8 +19,9 @@ from ..system.workers import Emit, Worker
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 BATCH = 32  # steps sent at once
-# A step of heyoka is as long as its epsilon allows: one radius that encloses such a run is wider by 2 to 10 bits than
-# one about limbs, and a proof that begins with too few bits is made a second time.
+# A step of heyoka is as long as its epsilon allows: one radius that encloses such a run comes out up to 10 bits wider
+# than `MARGIN_BITS` counts on, and a proof that begins with too few bits is made a second time. Columns begin too low
+# as well, but `inverted_rest` ships with the bits that they take so.
 HEYOKA_BITS = 8
 
 
