@@ -65,7 +65,7 @@ TRANSITS = option("--transits", "Score times of xdot = 0 too, or alone: in its c
 SECTION = option("--section", "--transits are passages of this section: 'gate 30'.", "WORD")
 RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
 NAME = option("--name", "Name of the program of --run (default: the program).", "WORD", hidden=True)
-SETTING = option("--setting", "{setting} in --run, in s (default: 200 a period).", "S")
+SETTING = option("--setting", "{setting} in --run, in s (default: 200 a period, or more).", "S")
 EXPERIMENTS = option("--experiments", "Run it up to eight times more, to measure why it is off.")
 APPROXIMATION = option(
     "--approximation",

@@ -109,11 +109,12 @@ def evaluated(function: GoldenFunction, scene: Scene, manifest: Manifest) -> tup
     state = _states(function, zeros)
     of_zeros = rates(state, k)
     x, y, z, _, vy, _ = state
-    late = function.bound["vx"] / np.abs(of_zeros[3]) + np.spacing(zeros)
+    # to first order; a time is one of the two doubles about the zero, and its decimals are half an ulp from it
+    late = function.bound["vx"] / np.abs(of_zeros[3]) + 2 * np.spacing(zeros)
     numbers = map(str, range(1, len(zeros) + 1)), zeros, [f"{sign:+d}" for sign in signs.tolist()]
     transits = Sheet(TRANSITS_HEADER, _rows([*numbers, x, y, z, vy, of_zeros[3], late]), {})
-    rounding = [np.spacing(np.abs(column).max()) for column in moved]
-    wrong = [np.max(np.abs(rate) * late, initial=0.0) for rate in of_zeros]
+    rounding, of_rows = ([np.spacing(np.abs(c).max(initial=0.0)) for c in columns] for columns in (moved, state))
+    wrong = [ulp + np.max(np.abs(rate) * late, initial=0.0) for ulp, rate in zip(of_rows, of_zeros, strict=True)]
     return (grid, _bounds(function, rounding)), (transits, _bounds(function, wrong))
 
 

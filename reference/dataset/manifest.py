@@ -134,7 +134,7 @@ class SectionsRecord(Part):
 
 
 class EnclosureRecord(Part):
-    """The proof: its method, size and largest radii, and the bits to which heyoka's run agrees with it."""
+    """The proof: its method, size and largest radii, and the bits to which the run that was proved agrees with it."""
 
     method: Name
     prec: Count

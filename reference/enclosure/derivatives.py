@@ -43,7 +43,7 @@ def first(x: Any) -> arb:
 
 
 class Tangents(BoxRadius):
-    """Theorem V for all inputs of a box, and Theorem C for the scene's own: together they bound all motions."""
+    """Lemmas 12.2 and 12.4 for all inputs of a box, and Theorem C for the scene's own: they bound all motions."""
 
     def __init__(self, balls: BoxBalls, halves: dict[str, Fraction], scales: dict[str, int]) -> None:
         super().__init__(balls)

@@ -133,15 +133,21 @@ def zero_at_release(start: Start) -> int:
     """Return the multiplicity of xdot's zero at t = 0 by the exact inputs, 0 to 4.
 
     It is 1 where the bob is released with vx = 0, and more where the force has no x component either: 2 in the meridian
-    at rest, or along the Earth's axis. Released at rest with a horizontal cord, to the east or at a pole, the bob falls
-    straight down, and x shrinks like t⁴; at a pole in the meridian it is the Coriolis force of that which moves x.
+    at rest, or along the Earth's axis; 4 in the meridian at rest with the cord at right angles to the axis, as the bob
+    then starts along it. Released at rest with a horizontal cord, to the east or at a pole, the bob falls straight
+    down, and x shrinks like t⁴.
     """
     n, v, turn = start.n, start.v, start.k.turn
     at_pole = turn[1] == 0 and start.k.pull[1] == 0
     if v[0] != 0:
         return 0
     if any(v):
-        return 2 if n[0] == 0 and cross(turn, v)[0] == 0 else 1
-    if n[2] == 0 and (at_pole or n[1] == 0):
-        return 4 if n[0] == 0 else 3
-    return 2 if n[0] == 0 else 1
+        return 2 if n[0] == 0 and _cancel(start, turn[1] * v[2], -turn[2] * v[1]) else 1
+    if n[0] == 0:
+        return 4 if _cancel(start, turn[1] * n[1], turn[2] * n[2]) else 2
+    return 3 if n[2] == 0 and (at_pole or n[1] == 0) else 1
+
+
+def _cancel(start: Start, a: Any, b: Any) -> bool:
+    """Return whether two numbers of a start have no sum but their rounding."""
+    return bool(abs(a + b) * 2 ** (start.ctx.prec - 8) <= abs(a) + abs(b))

@@ -133,11 +133,17 @@ def _release(columns: Columns) -> tuple[Vector, Vector]:
 
 def _zeros_at_release(n: Vector, v: Vector, k: Constants) -> Any:
     """Return the multiplicities of xdot's zeros at t = 0: see `model.start.zero_at_release`."""
-    at_pole, in_meridian = k.turn[1].vanishes & k.pull[1].vanishes, n[0].vanishes
+    at_pole, in_meridian, (_, north, up) = k.turn[1].vanishes & k.pull[1].vanishes, n[0].vanishes, k.turn
     falls = n[2].vanishes & (at_pole | n[1].vanishes)
-    at_rest = np.where(falls, np.where(in_meridian, 4, 3), np.where(in_meridian, 2, 1))
-    moving = np.where(in_meridian & cross(k.turn, v)[0].vanishes, 2, 1)
+    square = np.where(_cancel(north * n[1], up * n[2]), 4, 2)
+    at_rest = np.where(in_meridian, square, np.where(falls, 3, 1))
+    moving = np.where(in_meridian & _cancel(north * v[2], -(up * v[1])), 2, 1)
     return np.where(v[0].vanishes, np.where(v[1].vanishes & v[2].vanishes, at_rest, moving), 0)
+
+
+def _cancel(a: DoubleDouble, b: DoubleDouble) -> Any:
+    """Return where two numbers have no sum but their rounding."""
+    return np.abs((a + b).high) <= _SAME * (np.abs(a.high) + np.abs(b.high))
 
 
 def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> tuple[list[DoubleDouble], Any, Any]:

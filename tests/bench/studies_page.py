@@ -103,7 +103,7 @@ def _choice(kept: Documents) -> Iterator[str]:
     best = {name: _best(_ladders(kept["paris"])[name]) for name in ("heyoka_long_double", "heyoka_real128")}
     yield (
         "Each entry is the cheapest setting that was measured and reached the error; in brackets are the equations "
-        "that were integrated. Double precision ends near "
+        "that were integrated, [by their variables](format.md#equations). Double precision ends near "
         f"1e-12 m. Beyond that `heyoka_long_double` reaches {best['heyoka_long_double']:.1e} m, and "
         f"`heyoka_real128` {best['heyoka_real128']:.1e} m; [more digits](#{DIGITS_ANCHOR}) are a matter of CPU time. "
         "The tables below have all methods, also those that fit no column here: numbalsoda, REBOUND, diffrax, the "

@@ -303,6 +303,9 @@ def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_ot
         ({"angle": "90", "azimuth": "180"}, "45", 3),
         pytest.param({"angle": "90", "azimuth": "33"}, "-90", 3, marks=pytest.mark.long),
         ({"angle": "90", "azimuth": "90"}, "90", 4),
+        ({"angle": "40.1", "azimuth": "90"}, "40.1", 4),
+        pytest.param({"x": "0", "y": "-33.5"}, "-30", 4, marks=pytest.mark.long),
+        ({"angle": "40.1", "azimuth": "90", "angle_rate": "5"}, "40.1", 2),
     ],
 )
 def test_the_order_of_the_zero_at_the_release_is_that_of_its_polynomial(release, latitude, multiplicity):
@@ -319,6 +322,7 @@ def test_the_order_of_the_zero_at_the_release_is_that_of_its_polynomial(release,
         ({"angle": "90", "azimuth": "180"}, "45"),
         pytest.param({"angle": "90", "azimuth": "33"}, "-90", marks=pytest.mark.long),
         ({"vy": "0.1"}, "0"),
+        ({"angle": "30", "azimuth": "90"}, "30"),
     ],
 )
 def test_a_zero_of_higher_order_at_the_release_is_left_out_and_no_other(release, latitude):

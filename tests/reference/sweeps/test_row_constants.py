@@ -63,7 +63,8 @@ RELEASES = [
     {"angles": (90, 180, 0, 0)},
     {"angles": (90, 33, 0, 0)},
     {"position": (0, 0, 0, 1)},
-    {"angles": (30, 90, 5, 0)},
+    {"angles": (30, -90, 0, 0)},
+    {"angles": (30, -90, 5, 0)},
     {"angles": (30, 0, 0, 5)},
 ]
 SPECIAL = [  # half of them are run always, so that any three of the four meet
