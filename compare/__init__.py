@@ -28,19 +28,17 @@ from typing import TYPE_CHECKING
 from reference.system.imports import lazy
 
 if TYPE_CHECKING:
-    from .approximations import APPROXIMATIONS
-    from .candidates.candidate import Candidate
-    from .candidates.read import read
-    from .methods import METHODS
-    from .report.plot import plot
-    from .score.judge import judge
-    from .score.verdict import Score
-    from .studies.study import study
-    from .testing import assert_agrees
+    from .approximations import APPROXIMATIONS as APPROXIMATIONS
+    from .candidates.candidate import Candidate as Candidate
+    from .candidates.read import read as read
+    from .methods import METHODS as METHODS
+    from .report.plot import plot as plot
+    from .score.judge import judge as judge
+    from .score.verdict import Score as Score
+    from .studies.study import study as study
+    from .testing import assert_agrees as assert_agrees
 
-__all__ = ["APPROXIMATIONS", "METHODS", "Candidate", "Score", "assert_agrees", "judge", "plot", "read", "study"]
-
-__getattr__, __dir__ = lazy(
+__getattr__, __dir__, __all__ = lazy(
     __name__,
     {
         "approximations": "APPROXIMATIONS",

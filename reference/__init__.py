@@ -13,58 +13,43 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
 from .system.imports import lazy
 
 if TYPE_CHECKING:
-    from .dataset.golden import Golden, load
-    from .dataset.ranges import load_ranges
-    from .dataset.write import write
-    from .engines.trajectory import integrate, trajectory
-    from .numbers.function import GoldenFunction, States
-    from .numbers.table import Table
-    from .scenes.scene import Scene, load_scene, parse_scene
-    from .scenes.shipped import scene_ids
-    from .solver.ranges import Intervals, Ranges
-    from .solver.solution import Solution
-    from .solver.solve import solve
-    from .sweeps.sweep import Swept, load_sweep, sweep
+    from .dataset.golden import Golden as Golden
+    from .dataset.golden import load as load
+    from .dataset.ranges import load_ranges as load_ranges
+    from .dataset.write import write as write
+    from .engines.trajectory import integrate as integrate
+    from .engines.trajectory import trajectory as trajectory
+    from .errors import DatasetError as DatasetError
+    from .errors import FoucaultError as FoucaultError
+    from .errors import InputError as InputError
+    from .errors import IntegrationError as IntegrationError
+    from .errors import UnreachableError as UnreachableError
+    from .numbers.function import GoldenFunction as GoldenFunction
+    from .numbers.function import States as States
+    from .numbers.table import Table as Table
+    from .scenes.scene import Scene as Scene
+    from .scenes.scene import load_scene as load_scene
+    from .scenes.scene import parse_scene as parse_scene
+    from .scenes.shipped import scene_ids as scene_ids
+    from .solver.ranges import Intervals as Intervals
+    from .solver.ranges import Ranges as Ranges
+    from .solver.solution import Solution as Solution
+    from .solver.solve import solve as solve
+    from .sweeps.sweep import Swept as Swept
+    from .sweeps.sweep import load_sweep as load_sweep
+    from .sweeps.sweep import sweep as sweep
 
-__all__ = [
-    "DatasetError",
-    "FoucaultError",
-    "Golden",
-    "GoldenFunction",
-    "InputError",
-    "IntegrationError",
-    "Intervals",
-    "Ranges",
-    "Scene",
-    "Solution",
-    "States",
-    "Swept",
-    "Table",
-    "UnreachableError",
-    "integrate",
-    "load",
-    "load_ranges",
-    "load_scene",
-    "load_sweep",
-    "parse_scene",
-    "scene_ids",
-    "solve",
-    "sweep",
-    "trajectory",
-    "write",
-]
-
-__getattr__, __dir__ = lazy(
+__getattr__, __dir__, __all__ = lazy(
     __name__,
     {
         "dataset.golden": "Golden load",
         "dataset.ranges": "load_ranges",
         "dataset.write": "write",
         "engines.trajectory": "integrate trajectory",
+        "errors": "DatasetError FoucaultError InputError IntegrationError UnreachableError",
         "numbers.function": "GoldenFunction States",
         "numbers.table": "Table",
         "scenes.scene": "Scene load_scene parse_scene",

@@ -67,8 +67,7 @@ class Rows:
     @cached_property
     def rate(self) -> Array:
         """Angular frequency √|c| of a small swing, in rad/s."""
-        rate: Array = np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1))
-        return rate
+        return np.asarray(np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1)))
 
     @classmethod
     def joined(cls, blocks: Sequence[Self]) -> Self:

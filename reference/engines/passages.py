@@ -162,8 +162,7 @@ def forms(series: Array, sizes: Array, least: float = 0.0) -> Array:
     """
     noise = ROUNDING * sizes.sum(-1) + sizes[..., MOST_TERMS:].sum(-1) + least
     series = series[..., :MOST_TERMS]
-    found: Array = series @ bernstein(series.shape[-1])[0].T / noise[..., None]
-    return found
+    return np.asarray(series @ bernstein(series.shape[-1])[0].T / noise[..., None])
 
 
 def signs_of(form: Array, left: Any, right: Any) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
@@ -30,38 +30,33 @@ if TYPE_CHECKING:
     from .ranges import Ranges
 
 
-@overload
-def solve(
-    scene: AnyScene,
-    *,
-    uncertain: Mapping[str, Any],
-    level: str | None = None,
-    t_end: str | float | None = None,
-    transits: bool | None = None,
-    sections: str | Sequence[str] | None = None,
-    engine: str | None = None,
-    report: Report | None = None,
-    derivatives: bool = False,
-) -> Ranges: ...
+class _Asked(TypedDict, total=False):
+    """What may be asked of a scene, whether its inputs are certain or not."""
+
+    level: str | None
+    t_end: str | float | None
+    transits: bool | None
+    sections: str | Sequence[str] | None
+    engine: str | None
+    report: Report | None
+    derivatives: bool
+
+
+class _Proved(_Asked, total=False):
+    """And of one whose inputs are certain."""
+
+    digits: int | None
+    audit: bool
+    confirm: Confirmation
+    function: bool
 
 
 @overload
-def solve(
-    scene: AnyScene,
-    *,
-    digits: int | None = None,
-    level: str | None = None,
-    t_end: str | float | None = None,
-    transits: bool | None = None,
-    sections: str | Sequence[str] | None = None,
-    engine: str | None = None,
-    audit: bool = False,
-    confirm: Confirmation = "none",
-    function: bool = False,
-    report: Report | None = None,
-    uncertain: None = None,
-    derivatives: bool = False,
-) -> Solution: ...
+def solve(scene: AnyScene, *, uncertain: Mapping[str, Any], **asked: Unpack[_Asked]) -> Ranges: ...
+
+
+@overload
+def solve(scene: AnyScene, *, uncertain: None = None, **asked: Unpack[_Proved]) -> Solution: ...
 
 
 def solve(

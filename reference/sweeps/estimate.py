@@ -125,8 +125,7 @@ def _fastest(rows: Rows) -> Array:
     """Return a speed over l, seen in axes that do not turn, that no row exceeds: all its energy at the lowest point."""
     n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
     above = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)  # of the release over the lowest point
-    fastest: Array = rate * np.sqrt(2 * above) + np.linalg.norm(V, axis=1)
-    return fastest
+    return np.asarray(rate * np.sqrt(2 * above) + np.linalg.norm(V, axis=1))
 
 
 def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tuple[Array, Array]:
@@ -252,8 +251,7 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
     upright = np.fmax(np.cos(run.largest_angle), np.fmin(GOLDEN, rows.rate**2 / (rows.rate**2 + spun**2)))
     near = np.where(some, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
     round_ = ~some & (4 * position >= LEAST_BEND * length * lean)  # of two squares, each twice its relative error
-    unsure: Array = some & at_end | near | round_
-    return unsure
+    return np.asarray(some & at_end | near | round_)
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from ..errors import InputError, no_attribute, unknown
 
 
-def lazy(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+def lazy(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return the functions `__getattr__` and `__dir__` of a package, which import its names at their first use.
 
     Args:
@@ -27,13 +27,12 @@ def lazy(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any]
     def attribute(name: str) -> Any:
         if name in homes:
             return getattr(import_module(f".{homes[name]}", package), name)
-        raise no_attribute(f"module {package!r}", name, {*homes, *getattr(sys.modules[package], "__all__", ())})
+        raise no_attribute(f"module {package!r}", name, homes)
 
     def names() -> list[str]:
-        inside = vars(sys.modules[package])
-        return sorted({*inside.get("__all__", ()), *homes, *(name for name in inside if name.startswith("__"))})
+        return sorted({*homes, *(name for name in vars(sys.modules[package]) if name.startswith("__"))})
 
-    return attribute, names
+    return attribute, names, sorted(homes)
 
 
 class Declaration(Protocol):

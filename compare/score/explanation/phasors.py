@@ -120,8 +120,7 @@ def as_angles(plane: ComplexArray, length: float) -> ComplexArray:
     """Return x + iy with the distance from the vertical replaced by the angle of the cord times l."""
     radius = np.abs(plane)
     safe = np.where(radius > 0, radius, 1.0)
-    turned: ComplexArray = plane * np.where(radius > 0, length * np.arcsin(np.clip(safe / length, 0, 1)) / safe, 1.0)
-    return turned
+    return np.asarray(plane * np.where(radius > 0, length * np.arcsin(np.clip(safe / length, 0, 1)) / safe, 1.0))
 
 
 def sinc(angle: Array) -> Array:
