@@ -25,7 +25,7 @@ test: .venv/testing
 	@$(MAKE) --no-print-directory --jobs=2 lint all-tests
 
 all-tests: .venv/testing
-	@echo "Running the tests: about ten minutes on two cores"
+	@echo "Running the tests: four to nine minutes on two cores"
 	$(PYTEST)
 
 # For every day: model, closed forms, solver with proofs, score; not what takes longest and is seldom touched

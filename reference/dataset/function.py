@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import decimal
 import json
 from collections.abc import Iterable
 from fractions import Fraction
@@ -84,17 +85,14 @@ Bounded = tuple[Sheet, dict[str, str]]  # a table, and the bounds of its columns
 def evaluated(function: GoldenFunction, scene: Scene, manifest: Manifest) -> tuple[Bounded, Bounded]:
     """Return the grid and the transits of a dataset without tables, in doubles, each with the bounds of its columns.
 
+    The grid's times are the doubles nearest to the scene's, in all their digits: the states are those at just these.
     The manifest says how many transits the proof found: as many changes of sign of xdot, beyond its bound, are all.
 
     Raises:
         ValueError: the function has others.
     """
-    exact, k = scene.exact.grid, constants_in_double(scene.exact)
-    times = np.minimum([float(t) for t in exact], function.times[-1])
-    state = _states(function, times)
-    later = np.array([float(t - Fraction(near)) for t, near in zip(exact, times.tolist(), strict=True)])
-    moved = [column + later * rate for column, rate in zip(state, rates(state, k), strict=True)]
-    grid = Sheet(GRID_HEADER, _rows([map(repr, map(float, exact)), *moved]), {})
+    times = np.minimum([float(t) for t in scene.exact.grid], function.times[-1])
+    grid, exactly = _states(function, times), [f"{decimal.Decimal(t):f}" for t in times.tolist()]
     count = manifest.counts.transits
     for inside in INSIDE:  # close pairs need more
         zeros, signs = _turns(function, inside)
@@ -107,21 +105,24 @@ def evaluated(function: GoldenFunction, scene: Scene, manifest: Manifest) -> tup
         raise ValueError(f"xdot has {len(zeros)} zeros, the manifest counts {count}")
     zeros, signs = zeros[:count], signs[:count]
     state = _states(function, zeros)
-    of_zeros = rates(state, k)
+    of_zeros = rates(state, constants_in_double(scene.exact))
     x, y, z, _, vy, _ = state
     # to first order; a time is one of the two doubles about the zero, and its decimals are half an ulp from it
     late = function.bound["vx"] / np.abs(of_zeros[3]) + 2 * np.spacing(zeros)
     numbers = map(str, range(1, len(zeros) + 1)), zeros, [f"{sign:+d}" for sign in signs.tolist()]
-    transits = Sheet(TRANSITS_HEADER, _rows([*numbers, x, y, z, vy, of_zeros[3], late]), {})
-    rounding, of_rows = ([np.spacing(np.abs(c).max(initial=0.0)) for c in columns] for columns in (moved, state))
-    wrong = [ulp + np.max(np.abs(rate) * late, initial=0.0) for ulp, rate in zip(of_rows, of_zeros, strict=True)]
-    return (grid, _bounds(function, rounding)), (transits, _bounds(function, wrong))
+    rows = _rows([*numbers, x, y, z, vy, of_zeros[3], late])
+    wrong = [np.max(np.abs(rate) * late, initial=0.0) for rate in of_zeros]
+    return (
+        (Sheet(GRID_HEADER, _rows([exactly, *grid]), {}), _bounds(function, grid)),
+        (Sheet(TRANSITS_HEADER, rows, {}), _bounds(function, state, wrong)),
+    )
 
 
-def _bounds(function: GoldenFunction, more: Iterable[Any]) -> dict[str, str]:
-    """Return the function's bounds with something added to each."""
-    sums = {name: function.bound[name] + float(extra) for name, extra in zip(STATE, more, strict=True)}
-    return {name: rounded_up(Fraction(bound)) for name, bound in sums.items()}
+def _bounds(function: GoldenFunction, columns: Iterable[Array], more: Iterable[float] = (0.0,) * 6) -> dict[str, str]:
+    """Return the function's bounds with the rounding of decimals, and with something added to each."""
+    rounding = [np.spacing(np.abs(column).max(initial=0.0)) for column in columns]
+    sums = [function.bound[name] + ulp + extra for name, ulp, extra in zip(STATE, rounding, more, strict=True)]
+    return {name: rounded_up(Fraction(float(bound))) for name, bound in zip(STATE, sums, strict=True)}
 
 
 def _states(function: GoldenFunction, times: Array) -> list[Array]:

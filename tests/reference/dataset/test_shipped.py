@@ -53,7 +53,7 @@ def test_its_first_hour_made_again_agrees_within_the_bounds(name, size):
 
 
 # those that always run are functions alone, whose transits are looked for in doubles as they are read
-ALWAYS = ("museum_gate.binary64", "straight_down.binary64")
+ALWAYS = ("conical.binary64", "museum_gate.binary64", "straight_down.binary64")
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ ALWAYS = ("museum_gate.binary64", "straight_down.binary64")
 )
 def test_a_run_of_60_bits_more_and_mostly_in_another_formulation_lies_within_every_bound(name, tally):
     golden = reference.load(name)
-    scene, times = golden.scene, tuple(golden.scene.exact.grid)
+    scene, times = golden.scene, golden.times
     pilot = run_pilot(scene.exact, times)
     prec = first_prec(scene, pilot, AUTO) + 60
     if name == THIRTY_DAYS:
