@@ -106,7 +106,7 @@ def arguments(command: str, scene: Scene) -> list[str]:
         if match[1]:
             return match[1]
         if match[2] not in values:
-            words = ", ".join(f"{{{word}}}" for word in values)
+            words = ", ".join(f"{{{word}}}" for word in (*values, "setting"))
             advice = f"{did_you_mean(match[2], values, '')} Write {{{match[0]}}} for {match[0]} itself."
             raise InputError("--run", match[0], f"one of {words}", advice.lstrip())
         return values[match[2]]

@@ -12,6 +12,7 @@ The number of bytes and rows and the length of a line are limited. Errors name t
 
 from __future__ import annotations
 
+import codecs
 import errno
 import math
 import os
@@ -183,7 +184,10 @@ class ColumnReader:
                 got, most = f"more than {MAX_LINES} lines", f"at most {MAX_LINES}, comments and empty ones included"
                 raise InputError(self.name, got, most, "Thin the output out.")
             if not self.fields and b"\0" in data:
-                raise InputError(self.name, "a zero byte", "text", "Binary data is read from .npz only.")
+                got, advice = "a zero byte", "Binary data is read from .npy and .npz only."
+                if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+                    got, advice = "UTF-16", "PowerShell writes UTF-8 by `| Out-File -Encoding utf8`."
+                raise InputError(self.name, got, "text in UTF-8", advice)
             text = data.decode("utf-8", "replace").strip()
             text = text if self.fields else text.removeprefix("\ufeff")
             if not text:
@@ -195,6 +199,8 @@ class ColumnReader:
                 if remark[1].split()[:1] == ["P"] and not self.alone:
                     self._take_transit(remark[1])
             elif self.fields or self._begins(text):
+                if "D" in text and not self.spelled.fortran:
+                    self.spelled, self.respelled = replace(self.spelled, fortran=True), True
                 row, separator = self.spelled.plain(text) if self.respelled else text, self.spelled.separator
                 count = row.count(separator) + 1 if separator else len(row.split())
                 if count != self.fields:

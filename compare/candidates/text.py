@@ -160,7 +160,8 @@ class Header:
                 later = [(number, line) for number, line, is_comment in self.lines[i + 1 :] if not is_comment]
                 if later:
                     return InputError(f"{self.name}: line {later[0][0]}", later[0][1][:80], "a row of numbers")
-                return InputError(self.name, "no rows", "at least one row", "Is the output empty?")
+                why = "All lines are comments." if self.lines[i + 1 :] else "Is the output empty?"
+                return InputError(self.name, "no rows", "at least one row", why)
         first = next((line for line in self.lines if not line[2]), None)
         if first is not None:
             return InputError(f"{self.name}: line {first[0]}", first[1][:80], expected, advice(self.needed))

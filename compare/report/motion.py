@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference import FoucaultError, Golden, Solution, UnreachableError, trajectory
+from reference import FoucaultError, Golden, Scene, Solution, UnreachableError, trajectory
 from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 
@@ -20,6 +20,7 @@ SWINGS = 9  # that are drawn, spread over the span, where the rows lie too far a
 POINTS = 40  # of one swing
 COARSE = 3  # rows farther apart than this many of these points are no line
 WIDE = -0.7  # height over the cord length, above which a swing is shown on its sphere
+AT_REST = 2.0**-128  # of the cord length: what moves less, by the rounding of its release, has no swing
 _WINDOW = 24  # rows of a candidate whose longest axis gives the swing plane's direction
 _BENT = 0.5  # a step differs from the one before by less than this part of it where rows are a line
 _FLAT = 0.5  # where the shorter axis is longer than this part of the longer one, an ellipse has no clear direction
@@ -59,18 +60,22 @@ class Motion:
         return bool(self.length) and bool((self.rows[:, 2] > WIDE * self.length).any())
 
     @classmethod
-    def of_golden(cls, golden: Golden | Solution) -> Motion:
-        """Take a motion from a golden dataset or a solution; one run in double fills the line in between far rows."""
+    def of_golden(cls, golden: Golden | Solution, until: float = np.inf) -> Motion:
+        """Take a motion from a golden dataset or a solution, up to a time in s.
+
+        One run in double fills the line in between far rows.
+        """
         name = golden.manifest.id if isinstance(golden, Golden) else golden.scene.id
-        states = np.column_stack([golden.grid[column] for column in STATE])
-        gauge = _gauge(golden)
-        line, swings = _line(golden, states, gauge)
+        t, transits = golden.t[golden.t <= until], golden.transits
+        states, seen = np.column_stack([golden.grid[column][: len(t)] for column in STATE]), transits["t"] <= until
+        length = float(golden.scene.exact.length)
+        gauge = _gauge(golden) if np.ptp(states[:, :3], axis=0).max() > AT_REST * length else None
+        line, swings = _line(golden.scene, t, states, gauge)
         plane = np.full(len(states), np.nan) if gauge is None else np.degrees(gauge.swing_plane(states))
         swinging = np.isfinite(plane)
-        transits = golden.transits
         return cls(
-            name, float(golden.scene.exact.length), golden.t, states[:, :3], line, swings,
-            golden.t[swinging], plane[swinging], transits["t"], transits["x"], np.array(golden.directions),
+            name, length, t, states[:, :3], line, swings, t[swinging], plane[swinging],
+            transits["t"][seen], transits["x"][seen], np.array(golden.directions, int)[seen],
         )  # fmt: skip
 
     @classmethod
@@ -97,9 +102,8 @@ def _gauge(golden: Golden | Solution) -> Gauge | None:
     return gauge if golden.scene.exact.drag < 2 * gauge.omega else None
 
 
-def _line(golden: Golden | Solution, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
+def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
     """Return the points of the line, shape (points, 3), and how many single swings they are."""
-    t = golden.t
     if gauge is None or t[1] * POINTS <= COARSE * gauge.period:
         return states[:, :3], 0
     swing = np.linspace(0.0, gauge.period, POINTS + 1)
@@ -107,7 +111,7 @@ def _line(golden: Golden | Solution, states: Array, gauge: Gauge | None) -> tupl
     starts = np.linspace(0.0, end, SWINGS) if end > SWINGS * gauge.period else np.arange(0.0, end, gauge.period)
     times = starts[:, None] + swing
     try:
-        points = trajectory(golden.scene, np.unique(times))
+        points = trajectory(scene, np.unique(times))
     except FoucaultError:
         return states[:, :3], 0
     of_each = points[np.searchsorted(np.unique(times), times), :3]

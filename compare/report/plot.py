@@ -87,7 +87,8 @@ def motion_of(
         return Motion.of_golden(load(source))
     if isinstance(source, Golden | Solution):
         return Motion.of_golden(source)
-    return Motion.of_golden(golden_of(as_scene(source), announce=announce, report=report))
+    scene = as_scene(source)
+    return Motion.of_golden(golden_of(scene, announce=announce, report=report, grid=True), float(scene.exact.t_end))
 
 
 def error_picture(scores: Sequence[Score], target: Path) -> bytes:

@@ -190,6 +190,9 @@ def _map(figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str,
     most = max(-low, high)
     style = {"vmin": -most, "vmax": most, "cmap": "RdBu_r"} if signed else {"cmap": "cividis"}
     mesh = panel.pcolormesh(np.sort(x), np.sort(y), grid, **style, rasterized=True)
+    for limit, of_axis in ((panel.set_xlim, x), (panel.set_ylim, y)):
+        if len(of_axis) > 1:  # cells reach half a step farther, which may be no latitude
+            limit(of_axis.min(), of_axis.max())
     panel.set_ylabel(_label(key))
     bar = figure.colorbar(mesh, ax=panel, label=label)
     bar.formatter.set_useOffset(False)

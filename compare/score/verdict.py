@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from reference import FoucaultError, Golden, Scene, Solution
+from reference.numbers.columns import VELOCITY
 from reference.status import Status
 
 from ..candidates.candidate import COLUMNS, Candidate
@@ -185,6 +186,10 @@ def lines(score: Score) -> Iterator[str]:
     of_each = score.worst_of_each.items()
     each = (f"{name} {abs(row.difference):.2g} m{'/s' if name.startswith('v') else ''}" for name, row in of_each)
     yield entry("worst of each", ", ".join(each))
+    limit = score.allowed_m * errors.speed_m_s / errors.amplitude_m
+    fast = [name for name, row in score.worst_of_each.items() if name in VELOCITY and abs(row.difference) > limit]
+    if fast and score.agrees:
+        yield entry("velocities", "not judged", f"{', '.join(fast)} off by more than {limit:.2g} m/s")
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
         yield entry("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")

@@ -163,6 +163,7 @@ def command(
         return
     confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
     rows = f"{len(solution.times)} grid times, {measured['transits']} transits"
+    rows += f", {measured['possible']} undecided" if measured["possible"] else ""
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}{confirmed}")
     if solution.not_checked:
         unseen = "The proof finds all transits; no run with event detection confirms them"

@@ -185,7 +185,7 @@ def _motion(scene: Scene) -> dict[str, Any]:
     from ..sweeps.request import request
 
     def left(*_: Any, **__: Any) -> Promoted:
-        return Promoted({}, ([], []), "`foucault sweep` solves it in more digits.")
+        return Promoted({}, ([], []), "It takes more digits, for which `show` does not wait.")
 
     try:
         longest = MOST_SWINGS * 2 * math.pi / Start.of(scene.exact, DERIVED_PREC).fastest_rate

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -15,7 +16,7 @@ from ..numbers.columns import POSITION
 from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
-from .manifest import FUNCTION, MANIFEST, Content
+from .manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL, Content
 from .place import RANGES, ships
 from .record import OPTIONS
 from .render import check_proved, render
@@ -33,8 +34,12 @@ def check_target(folder: Path, mark: str = MANIFEST) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / mark).is_file():
-        raise InputError("--out", str(folder), f"a new or empty folder, or {_OLDER[mark]}", "Nothing was changed.")
+    names = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    others = names - {mark, *ALWAYS, *OPTIONAL}
+    if others or (names and mark not in names):
+        expected = f"a new or empty folder, or {_OLDER[mark]} and nothing else"
+        advice = f"Nothing was changed{f': {min(others)!r} is there' if others else ''}."
+        raise InputError("--out", str(folder), expected, advice)
     with writable_place(folder):
         pass
 
@@ -120,6 +125,7 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
     """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
+    bound = max((bounds[column] for column in POSITION), key=Fraction)
     checks_s = sum(check.cpu_s for check in solution.checks)
     checks_s += solution.proof.enclosure.cpu_s if solution.proof else 0.0
     measured = vars(solution.guard).items() if solution.guard else ()
@@ -132,7 +138,8 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "engine": solution.run.engine,
         "confirmed": solution.proof.confirmed if solution.proof else None,
         "transits": len(solution.directions),
-        "bound_m": max(float(bounds[column]) for column in POSITION),
+        "possible": len(solution.possible),
+        "bound_m": float(bound) or math.ulp(0.0) * (bound != "0"),  # the least double, where it is less
         "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,
         "run_cpu_s": solution.run.cpu_s,
         "check_cpu_s": checks_s,

@@ -73,7 +73,8 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
         ctx: the context; θ is exact to its last few bits.
 
     Raises:
-        ValueError: no force acts at the pivot, so that none is singled out.
+        ValueError: none is singled out, as no force acts at the pivot, or as the rotation is so fast that the one next
+            to the plumb line is not stable.
     """
     if is_zero(k.pull[1]) and is_zero(k.centrifugal[2]):
         if is_zero(k.pull[2]) and is_zero(k.centrifugal[3]):
@@ -86,4 +87,6 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
         return plus(product(at_rest[1], cos), product(at_rest[2], sin))
 
     theta = ctx.findroot(tangential, ctx.atan2(k.pull[1], -k.pull[2]))
+    if ctx.diff(tangential, theta) > 0:
+        raise ValueError("so fast a rotation singles out no rest position")
     return (0, ctx.sin(theta), -ctx.cos(theta))

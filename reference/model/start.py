@@ -77,7 +77,7 @@ class Start:
         try:
             return rest_position(self.k, self.ctx)
         except (ValueError, ZeroDivisionError):
-            raise UnreachableError("the scene has no rest position to swing about.") from None
+            raise UnreachableError("no rest position is singled out that the bob could swing about.") from None
 
     def state(self, formulation: Formulation) -> Sequence[Any]:
         """Return the state at t = 0 in a formulation's variables; ValueError where it cannot express the release."""

@@ -238,9 +238,14 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
         if path.suffix == ".toml":
             raise
         advice = f"`foucault show --template` prints one. Before a trajectory: `foucault score SCENE {path.name}`."
-        raise InputError(error.field, error.got, error.expected, advice) from None
+        raise InputError(
+            error.field, error.got, error.expected, "It is a folder." if path.is_dir() else advice
+        ) from None
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
-    if "id" not in document and is_scene_id(own_name):
+    if "id" not in document:
+        if not is_scene_id(own_name):
+            expected = "an id in the file, or a file's name of letters and digits that can be one"
+            raise InputError("id", path.name, expected, 'Add a line such as id = "mine" to it.')
         document["id"] = own_name
     return _with_values(document, values)
 

@@ -127,9 +127,10 @@ class Explanation:
             yield f"{'-' if listed else BEGIN} {cause.text}: {cause.size_m:.3g} m"
         if self.slip:
             yield self.slip
-        mended = self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions)
+        enough = self.corrected_m <= self.allowed_m  # which the rounding of a file, say, may be by itself
+        mended = self.causes or any(enough or convention.id not in UNCORRECTED for convention in self.conventions)
         if mended and math.isfinite(self.corrected_m):
-            these = "this" if len(self.causes) == 1 else "all this"
+            these = "this" if len(self.causes or self.conventions) == 1 else "all this"
             share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
             # a smaller rest is rounding, and not the same on every processor
             left = f"{self.corrected_m:.2g}" if self.corrected_m > rounding else f"less than {rounding:.1g}"

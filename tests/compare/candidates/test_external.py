@@ -75,6 +75,7 @@ def test_braces_that_are_no_placeholder_stay_and_doubled_ones_too(paris):
         ("", "a command"),
         ("prog 'open", "balanced quotes"),
         ("prog {x1}", r"one of {x0}, {y0}"),
+        ("prog {x1}", r"{grid_step}, {setting}"),
         ("prog {X0}", r"got '{X0}'"),
         ("prog {x0} | tr ' ' ,", r"without \|\. No shell is used"),
         ("prog > out.csv", "without >"),

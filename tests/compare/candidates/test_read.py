@@ -183,6 +183,18 @@ def test_an_exponent_beyond_reason_costs_nothing():
     refused(text("t,x,y", "0,1.0000000000000000000001e999999999,0.4"), "run: x", "inf in row 1")
 
 
+def test_an_exponent_of_fortran_may_come_in_any_row():
+    found = read_stream(text("t,x,y", "0,0.3,0.4", "60,1.5D-01,-2.5D+00"), "run")
+    assert found.columns["x"].tolist() == [0.3, 0.15]
+    assert found.columns["y"].tolist() == [0.4, -2.5]
+
+
+@pytest.mark.parametrize("order", ["utf-16-le", "utf-16-be"])
+def test_a_text_in_utf_16_is_told_as_that(order):
+    with pytest.raises(InputError, match="got 'UTF-16', expected text in UTF-8"):
+        read_stream(io.BytesIO("\ufefft,x,y\n0,0.3,0.4\n".encode(order)), "run")
+
+
 def test_a_last_line_without_its_end_is_noted():
     found = read_stream(io.BytesIO(b"t,x,y\n0,0.3,0.4\n60,0.1,0.2"), "run")
     assert len(found.t) == 2
@@ -194,6 +206,7 @@ def test_a_last_line_without_its_end_is_noted():
     [
         ([], ("no header", "CSV", "t, x, y and, if there, z, vx, vy, vz")),
         (["t,x,y"], ("no rows", "at least one")),
+        (["# t,x,y", "# 0,1,2"], ("no rows", "All lines are comments")),
         (["t,x", "0,1"], ("header", "no y in t, x", "column y")),
         (["t,x,y,x", "0,1,2,3"], ("header", "x, x", "one column x")),
         (["t,x,y,vz,vz", "0,1,2,3,4"], ("header", "vz, vz", "one column vz")),

@@ -10,6 +10,7 @@ from compare.candidates.arrays import candidate_of
 from compare.observed.swing_plane import Gauge
 from compare.report.motion import Motion
 from compare.report.motion_pictures import length_unit, time_unit
+from compare.report.plot import motion_of
 
 pytest.importorskip("matplotlib")
 
@@ -61,6 +62,20 @@ def test_lengths_are_told_in_units_of_their_size(size, unit):
 def test_spans_are_told_in_units_of_their_size(span, unit):
     factor, word = time_unit(span)
     assert word == unit and 1 <= span * factor <= 1000
+
+
+def test_of_a_dataset_that_ships_only_the_span_is_drawn():
+    """Where its grid is not the span's, the scene is solved."""
+    for t_end, rows in ((3600, 61), (90, 3)):
+        motion = motion_of(reference.load_scene("paris", {"run.t_end": t_end}))
+        assert motion.t[-1] == t_end == 60 * (rows - 1) or rows == len(motion.t) == 3
+        assert 0.9 * t_end < motion.transit_t[-1] <= t_end
+        assert len(motion.transit_t) == len(motion.transit_x) == len(motion.directions)
+
+
+def test_a_bob_at_rest_has_no_swing():
+    motion = Motion.of_golden(reference.load("at_rest"))
+    assert motion.swings == len(motion.plane) == 0
 
 
 def test_a_dataset_and_a_file_are_drawn(foucault, tmp_path):

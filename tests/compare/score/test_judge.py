@@ -30,6 +30,7 @@ from reference import InputError, Solution, load, load_scene, solve, trajectory
 from reference.engines.heyoka.model import Numbers
 from reference.engines.trajectory import Variants
 from reference.errors import plain
+from reference.numbers.columns import STATE
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 OWN = """id = "mine"
@@ -766,3 +767,18 @@ def test_a_baseline_is_explained_only_where_a_model_may_pass(monkeypatch, good):
         score = judge(good, "paris", baseline=good, explain=explain, as_model=as_model)
         assert score.notes[-1] == "the baseline has no score of it: this verdict stands alone"
     assert asked == [True, False, False]
+
+
+def test_velocities_are_told_and_not_judged(golden):
+    columns = {name: golden.grid[name] for name in ("t", *STATE)}
+    assert "not judged" not in str(judge(columns, golden.scene))
+    score = judge(columns | {"vx": 2 * columns["vx"]}, golden.scene)
+    assert score.agrees
+    assert "velocities          not judged  (vx off by more than" in str(score)
+
+
+def test_rounding_to_single_precision_is_all_that_is_said_of_it(golden):
+    rounded = {name: golden.grid[name].astype(np.float32).astype(float) for name in ("x", "y", "z")}
+    said = str(judge({"t": golden.t, **rounded}, golden.scene))
+    assert "Your file holds numbers in single precision" in said
+    assert "With this put right, " in said and "No mistake known" not in said

@@ -258,6 +258,9 @@ def test_a_target_that_is_something_else_is_left_alone(tmp_path):
         check_target(tmp_path / "thesis.txt")
     with pytest.raises(InputError, match="a writable place"):
         check_target(Path("/proc/nowhere/paris"))
+    (tmp_path / "manifest.json").write_text("{}")
+    with pytest.raises(InputError, match=r"'thesis\.txt' is there"):
+        check_target(tmp_path)
     assert (tmp_path / "thesis.txt").read_text() == "years of work"
 
 

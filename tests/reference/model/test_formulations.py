@@ -205,6 +205,20 @@ def test_without_a_force_at_the_pivot_no_rest_position_is_singled_out(site):
         rest_position(k, ctx)
 
 
+@pytest.mark.parametrize(("length", "stable"), [("1e9", True), ("1e12", False)])
+def test_a_rotation_so_fast_that_the_bob_would_leave_singles_out_no_rest_position(length, stable):
+    """At rest the energy is least: against the neighbours on the meridian."""
+    ctx, k, _, _ = model_at(make_scene(pendulum={"length": length}), 100)
+    if not stable:
+        with pytest.raises(ValueError, match="so fast a rotation"):
+            rest_position(k, ctx)
+        return
+    rest = rest_position(k, ctx)
+    angle = ctx.atan2(rest[1], -rest[2])
+    here, *beside = (energy((0, ctx.sin(angle + off), -ctx.cos(angle + off)), (0, 0, 0), k) for off in (0, -1e-3, 1e-3))
+    assert here < min(beside)
+
+
 def test_exact_zeros_drop_out_of_sums_and_products():
     assert product(0, "never touched") == 0
     assert plus(0, 3, 0) == 3
