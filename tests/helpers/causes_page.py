@@ -88,7 +88,7 @@ HABITS = {  # of a file: words, what is said of it, what to do
     "z_constant": (conventions.FLAT, "Write the height, or leave the column out."),
     "off_the_sphere": (conventions.SPRING, "Put the bob back on the sphere after each step."),
     "unit_of_length": (
-        "is in another unit than metres, or in cord lengths",
+        "is in another unit than metres or than its header says, or in cord lengths",
         "Name the unit in the header, or say `--units`.",
     ),
     "unit_of_time": ("counts time in another unit than seconds", "Name the unit in the header, or say `--units`."),

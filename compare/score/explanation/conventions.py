@@ -136,6 +136,7 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     if released or not rows.starts or np.hypot(*row[:2]) == 0:
         return rows
     others = [(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()]
+    others += [(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")]
     units = [(1.0, ""), *others, (1 / length, "is in cord lengths (x/l)")]
     ways = [*AXES_SAID]
     for one, (scale, text), (order, signs) in itertools.product((row, last), units, ways if rename else ways[:1]):
@@ -171,6 +172,8 @@ def _in_metres(rows: Rows, scale: float, text: str, length: float) -> Rows:
     if not text:
         return rows
     p = rows.positions / scale
+    # whether it keeps the cord was asked in the wrong unit
+    rows = replace(rows, conventions=tuple(said for said in rows.conventions if said.id != "off_the_sphere"))
     convention = Deviation("unit_of_length", text, largest(p - rows.positions))
     made = rows.changed(convention, positions=p, noise=rows.noise / scale)
     if p.shape[1] < 3:
