@@ -126,6 +126,7 @@ PUBLIC = {
     "reference.dataset.golden": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
     "reference.dataset.place": "RANGES changes golden_folder",
+    "reference.dataset.sheets": "by_field",
     "reference.engines.heyoka.model": "Numbers Propagator RoundedModel compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "MAX_STEPS Variants",

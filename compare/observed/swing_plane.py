@@ -81,6 +81,14 @@ class Gauge:
         return np.where(np.abs(square) > _ROUND * size, np.angle(square) / 2, np.nan)
 
 
+def gauge_of(scene: Scene, rest: Vector | None = None) -> Gauge | None:
+    """Return the gauge of a scene's swing plane, as `Gauge.of`; None where nothing swings: there is no plane."""
+    try:
+        return Gauge.of(scene, rest)
+    except UnreachableError:
+        return None
+
+
 def rest_in_metres(scene: Scene) -> Array:
     """Return the rest position in m, shape (3,).
 

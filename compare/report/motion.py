@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference import FoucaultError, Golden, Scene, Solution, UnreachableError, trajectory
+from reference import FoucaultError, Golden, Scene, Solution, trajectory
 from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 
 from ..candidates.candidate import Candidate
-from ..observed.swing_plane import Gauge
+from ..observed.swing_plane import Gauge, gauge_of
 
 SWINGS = 9  # that are drawn, spread over the span, where the rows lie too far apart to be a line themselves
 POINTS = 40  # of one swing
@@ -95,11 +95,8 @@ class Motion:
 
 def _gauge(golden: Golden | Solution) -> Gauge | None:
     """Return what measures the swing, or None where the bob does not swing but creeps back to rest."""
-    try:
-        gauge = Gauge.of(golden.scene)
-    except UnreachableError:
-        return None
-    return gauge if golden.scene.exact.drag < 2 * gauge.omega else None
+    gauge = gauge_of(golden.scene)
+    return gauge if gauge and golden.scene.exact.drag < 2 * gauge.omega else None
 
 
 def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[Array, int]:

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from reference import FoucaultError, Scene, UnreachableError, trajectory
+from reference import FoucaultError, Scene, trajectory
 from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..approximations import Motion, quantities
-from ..observed.swing_plane import Gauge
+from ..observed.swing_plane import Gauge, gauge_of
 from .row import failure
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
@@ -63,7 +63,7 @@ class ReferenceMotion:
     """
 
     def __init__(self, scene: Scene, t_end: float, marks: Iterable[float] = ()) -> None:
-        self.scene, self.gauge = scene, _gauge(scene)
+        self.scene, self.gauge = scene, gauge_of(scene)
         period = t_end / _SWINGS if self.gauge is None else min(self.gauge.period, t_end)
         fine = np.arange(0.0, t_end, max(period / _PER_SWING, t_end / _MOST))
         self.times: Array = np.unique(np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end])))
@@ -79,7 +79,7 @@ class ReferenceMotion:
             FoucaultError: the approximation does not apply, or fails.
         """
         rows = motion.trajectory(self.scene, self.times)
-        gauge = self.gauge if motion.rest is None else _gauge(self.scene, motion.rest(self.scene))
+        gauge = self.gauge if motion.rest is None else gauge_of(self.scene, motion.rest(self.scene))
         position = np.linalg.norm(rows.T[:3] - self.rows.T[:3], axis=0)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
@@ -97,14 +97,6 @@ class ReferenceMotion:
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
-
-
-def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
-    """Return the gauge of the swing plane; None where nothing swings, so that there is no plane."""
-    try:
-        return Gauge.of(scene, rest)
-    except UnreachableError:
-        return None
 
 
 def error_table(scene: Scene, chosen: Iterable[Motion], t_end: float, times: Sequence[float] = TIMES) -> list[TimeRow]:

@@ -16,6 +16,7 @@ import numpy as np
 from reference import Golden
 from reference.dataset.manifest import FUNCTION
 from reference.dataset.render import MEANING
+from reference.dataset.sheets import by_field
 from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
@@ -104,13 +105,7 @@ def linked(golden: Golden, name: str, base: str) -> Html:
 
 def inputs(golden: Golden) -> Html:
     """Return the scene's inputs as they stand in the manifest."""
-    fields = {
-        f"{section}.{key}": value
-        for section, of in golden.manifest.scene.items()
-        if section != "run"
-        for key, value in of.items()
-    }
-    return facts(fields)
+    return facts(by_field({section: of for section, of in golden.manifest.scene.items() if section != "run"}))
 
 
 def methods(studied: StudyResults) -> list[Html]:
