@@ -97,12 +97,16 @@ def main() -> None:
     gc.set_threshold(SELDOM)
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: more threads only wait
     try:
-        _run()
+        ended = _run()
     except KeyboardInterrupt:
-        _end(INTERRUPTED, interrupted=True)
+        ended = INTERRUPTED, "", True
+    # here no exception is left, which would keep what a signal has interrupted from being cleared away
+    if ended:
+        _end(*ended)
 
 
-def _run() -> None:
+def _run() -> tuple[str | int | None, str, bool] | None:
+    """Run a command; return how it ended, as `_end` takes it, or None where it simply did."""
     from reference.errors import FoucaultError, Stopped, plain_lines, plain_output
     from reference.system.interruption import terminable
 
@@ -114,23 +118,24 @@ def _run() -> None:
             finally:
                 sys.stdout.flush()
     except SystemExit as end:
-        _end(end.code, interrupted=bool(signals))
+        return end.code, "", bool(signals)
     except Stopped as stopped:
-        _end(stopped.exit_status, str(stopped), interrupted=bool(signals))
+        return stopped.exit_status, str(stopped), bool(signals)
     except Exception as error:
         if signals:  # what followed from the interruption is no mistake of the user's
-            _end(128 + signals[0], interrupted=True)
+            return 128 + signals[0], "", True
         if isinstance(error, FoucaultError):
-            _end(error.exit_status, str(error))
+            return error.exit_status, str(error), False
         if not isinstance(error, OSError):
             raise
         _flush_output()
         if isinstance(error, BrokenPipeError):
-            _end(1)
-        _end(2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"))
+            return 1, "", False
+        return 2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"), False
+    return None
 
 
-def _end(status: str | int | None, message: str = "", interrupted: bool = False) -> NoReturn:
+def _end(status: str | int | None, message: str, interrupted: bool) -> NoReturn:
     """End with a message and an exit status; an interrupted run waits for no thread that is still at work."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
     if message:

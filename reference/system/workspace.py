@@ -15,6 +15,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
+from .interruption import held
+
 OLD = "old"  # what stood in the place of the target, while it is moved out of the way
 _LOCK = "lock"
 _LEFT = re.compile(r"\.(.+)\.partial-\w+", re.DOTALL)
@@ -34,9 +36,12 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
 
     clear(parent, name)
     while True:
-        folder = Path(tempfile.mkdtemp(prefix=f".{name}.partial-", dir=parent))
-        lock = FileLock(folder / _LOCK, blocking=False)
+        made = list[tuple[Path, FileLock]]()
         try:
+            with held():  # a signal comes before the folder is there, or when it is known
+                folder = Path(tempfile.mkdtemp(prefix=f".{name}.partial-", dir=parent))
+                lock = FileLock(folder / _LOCK, blocking=False)
+                made.append((folder, lock))
             try:
                 lock.acquire()
             except (Timeout, FileNotFoundError):  # another process took it for left behind
@@ -46,12 +51,13 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
             yield folder
             return
         finally:
-            try:
-                lock.release()
-                _remove(folder, parent / name)
-            except BaseException:  # Ctrl-C, just now
-                _remove(folder, parent / name)
-                raise
+            for folder, lock in made:
+                try:
+                    lock.release()
+                    _remove(folder, parent / name)
+                except BaseException:  # Ctrl-C, just now
+                    _remove(folder, parent / name)
+                    raise
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import errno
+import os
 import pkgutil
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
 from reference.system import workspace as module
+from reference.system.interruption import terminable
 from reference.system.workspace import OLD, workspace
 
 HOLDER = """
@@ -53,6 +56,46 @@ def test_an_interruption_as_it_begins_or_ends_leaves_nothing(tmp_path, monkeypat
     monkeypatch.setattr(place, interrupted)
     with pytest.raises(KeyboardInterrupt), workspace(tmp_path, "pp"):
         pass
+    assert left(tmp_path) == []
+
+
+def test_a_signal_as_the_folder_comes_to_be_leaves_nothing(tmp_path, monkeypatch):
+    usual = tempfile.mkdtemp
+
+    def made(**options: object) -> str:
+        folder = usual(**options)
+        os.kill(os.getpid(), signal.SIGTERM)
+        return folder
+
+    monkeypatch.setattr("tempfile.mkdtemp", made)
+    with pytest.raises(SystemExit), terminable(), workspace(tmp_path, "pp"):
+        pass
+    assert left(tmp_path) == []
+
+
+KEPT = """
+import contextlib, foucault, os, sys
+
+def command(**_):
+    @contextlib.contextmanager
+    def making():
+        open(sys.argv[1], "w").close()
+        try:
+            yield
+        finally:
+            os.remove(sys.argv[1])
+    begun = making()
+    begun.__enter__()  # as where a signal comes before the body of a `with` begins
+    os.kill(os.getpid(), 15)
+
+foucault.commands = lambda: command
+foucault.main()
+"""
+
+
+def test_what_a_signal_interrupts_as_it_begins_is_cleared_away_before_the_end(tmp_path):
+    ended = subprocess.run([sys.executable, "-c", KEPT, tmp_path / "made"], capture_output=True, check=False)
+    assert ended.returncode == 128 + signal.SIGTERM
     assert left(tmp_path) == []
 
 
