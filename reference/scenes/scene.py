@@ -6,6 +6,7 @@ decimal 48.846111 and not the double next to it, unless the scene says `inputs =
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
@@ -239,7 +240,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
             raise
         advice = f"`foucault show --template` prints one. Before a trajectory: `foucault score SCENE {path.name}`."
         raise InputError(
-            error.field, error.got, error.expected, "It is a folder." if path.is_dir() else advice
+            error.field, error.got, error.expected, "It is a folder." if os.path.isdir(path) else advice
         ) from None
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document:
