@@ -17,7 +17,7 @@ from typing import Any
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
-from ..numbers.columns import GRID, POSITION, SECTION, TRANSITS
+from ..numbers.columns import GRID, POSITION, SECTION, TRANSITS, VELOCITY
 from ..numbers.precision import cheapest_type, rounded_up
 from ..numbers.table import Table, bits_in
 from ..scenes.scene import Scene
@@ -169,8 +169,9 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
         try:
             if any(gaps[name] > unit for name, unit in units.items()):
                 raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
-            apart = _transit_gap(event_run, solution, ESTIMATE_FACTOR * gaps["vx"]) if wanted else None
-            _check_passages(event_run, solution, gaps)
+            errors = _between_rows(gaps)
+            apart = _transit_gap(event_run, solution, errors["vx"]) if wanted else None
+            _check_passages(event_run, solution, errors)
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
         else:
@@ -180,9 +181,16 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     return replace(solution, not_checked=str(reason))
 
 
-def _check_passages(event_run: Run, solution: Solution, gaps: Mapping[str, Fraction]) -> None:
-    """Raise `IntegrationError` where a run finds other passages of a section, given how far its states are off."""
-    errors = {name: ESTIMATE_FACTOR * gap for name, gap in gaps.items()}
+def _between_rows(gaps: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Return how far a run may be off in each column, from how far it is at the grid's rows.
+
+    From one row to the next the swing turns an error in one column into one in the others of its kind.
+    """
+    return {name: ESTIMATE_FACTOR * max(gaps[of] for of in kind) for kind in (POSITION, VELOCITY) for name in kind}
+
+
+def _check_passages(event_run: Run, solution: Solution, errors: Mapping[str, Fraction]) -> None:
+    """Raise `IntegrationError` where a run finds other passages of a section, given how far its states may be off."""
     for word, passages in solution.sections.items():
         if not passages.possible:
             seen = with_passage_errors(event_run, errors, word, None)

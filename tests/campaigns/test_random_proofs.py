@@ -117,10 +117,13 @@ def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monke
 
 
 @pytest.mark.parametrize(
-    "seed", [102, *(pytest.param(seed, marks=pytest.mark.long) for seed in (12, 123, 280, 331, 335))]
+    "seed", [102, *(pytest.param(seed, marks=pytest.mark.long) for seed in (12, 123, 280, 286, 331, 335))]
 )
-def test_damped_scenes_that_were_refused_are_proved(seed, size):
-    """F2 and F6 of the audit: late transits known far less closely than the states, and flatter than doubles see."""
+def test_scenes_that_were_refused_are_proved(seed, size):
+    """F2 and F6 of the audit: late transits known far less closely than the states, and flatter than doubles see.
+
+    286 has few rows: at these vx is right by chance, and between them off as vy and vz are.
+    """
     solution = reference.solve(parse_scene(random_scene(seed)))
     assert solution.possible == ()
     assert not solution.not_checked

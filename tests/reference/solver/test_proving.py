@@ -7,7 +7,8 @@ import pytest
 
 from reference.errors import IntegrationError
 from reference.numbers.table import Table
-from reference.solver.proving import EVALUATION_BITS, SEEN_BITS, _bits_to_see, _transit_gap
+from reference.solver.pilot import ESTIMATE_FACTOR
+from reference.solver.proving import EVALUATION_BITS, SEEN_BITS, _between_rows, _bits_to_see, _transit_gap
 
 BITS, PREC, END = 150, 64, Fraction(100)
 XDOT_ERROR = Fraction(1, 10**12)  # m/s
@@ -61,3 +62,10 @@ def test_the_bits_to_see_two_transits_follow_from_the_flattest_and_the_nearest()
     # xdot reaches 10/7 m/s, which is from 1 to 2, between the release and the first transit
     assert _bits_to_see(proved(), END, pilot) == 53 - 40 + SEEN_BITS
     assert _bits_to_see(Table(("t", "ax"), BITS, []), END, pilot) == 0
+
+
+def test_between_rows_a_column_may_be_off_as_far_as_any_of_its_kind():
+    assert _between_rows({"x": 3, "y": 1, "z": 2, "vx": 5, "vy": 7, "vz": 6}) == {
+        **dict.fromkeys(("x", "y", "z"), 3 * ESTIMATE_FACTOR),
+        **dict.fromkeys(("vx", "vy", "vz"), 7 * ESTIMATE_FACTOR),
+    }
