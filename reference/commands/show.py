@@ -180,6 +180,7 @@ def _motion(scene: Scene) -> dict[str, Any]:
     They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
     """
     from ..model.start import Start
+    from ..solver.swing import HOUR, offset, turns_too_far
     from ..sweeps.part import solve_part
     from ..sweeps.promote import Promoted
     from ..sweeps.request import request
@@ -188,19 +189,26 @@ def _motion(scene: Scene) -> dict[str, Any]:
         return Promoted({}, ([], []), "It takes more digits, for which `show` does not wait.")
 
     try:
-        longest = MOST_SWINGS * 2 * math.pi / Start.of(scene.exact, DERIVED_PREC).fastest_rate
+        start = Start.of(scene.exact, DERIVED_PREC)
+        longest = MOST_SWINGS * 2 * math.pi / start.fastest_rate
         if scene.exact.t_end > longest:
             scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
-        asked = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession"])
+        asked = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession", "amplitude"])
         columns = solve_part(asked, range(1), left).columns
     except (FoucaultError, ArithmeticError) as error:
         return {"reason": str(error)}
     row = {name: values[0] for name, values in columns.items()}
     found: dict[str, Any] = {"over_s": scene.run.t_end}
-    swing, turn = float(row["swing_hz"]), float(row["precession_deg_per_h"])
+    swing, turn, angle = (float(row[name]) for name in ("swing_hz", "precession_deg_per_h", "max_angle_deg"))
+    seconds, k = float(scene.run.t_end), start.k
+    smallest = 2 * math.sin(math.radians(angle) / 2) * math.exp(-float(k.drag) * seconds / 2)
+    off = offset(start, float(k.length) * smallest)
+    if off > 1:
+        return {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
     if swing > 0:
         found |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
-    if math.isfinite(turn):
+    followed = swing > 0 and not turns_too_far(start, 0.5 / swing)
+    if math.isfinite(turn) and followed and off <= math.radians(abs(turn)) * seconds / HOUR:
         error_of_turn = float(row["precession_error_deg_per_h"])
         found |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
         if turn:

@@ -79,6 +79,11 @@ class Start:
         except (ValueError, ZeroDivisionError):
             raise UnreachableError("no rest position is singled out that the bob could swing about.") from None
 
+    @cached_property
+    def lean(self) -> Any:
+        """Sine of the angle between the rest position and the plumb line at the pivot; raises as `rest` does."""
+        return self.ctx.norm(cross(self.rest, self.k.pull)) / self.ctx.norm(self.k.pull)
+
     def state(self, formulation: Formulation) -> Sequence[Any]:
         """Return the state at t = 0 in a formulation's variables; ValueError where it cannot express the release."""
         return formulation.start(self.n, self.v, self.k, self.ctx)

@@ -4,19 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any, NamedTuple
 
+from ..errors import UnreachableError
 from ..model.start import Start
 from ..numbers.precision import GUARD_BITS, to_fraction, to_mpf
 from ..scenes.inputs import Inputs
 
 CERTAIN = 1e-6  # of a right angle: how near to it the turn from one highest point to the next may come
+CLEAR = 16  # times as far as the rest position is off the plumb line is where a swing's highest points are its ends
 HOUR = 3600
 ARC, DEGREES = Fraction(21, 20), Fraction(573, 10)  # a little more than π/3, and than a radian in degrees
 
 Ends = tuple[Fraction, Fraction]
+
+
+class Seen(NamedTuple):
+    """A highest point as it is seen along the plumb line.
+
+    Attributes:
+        azimuth: in radians.
+        off: how far off the point may be across the line, in m.
+        wide: its distance from the line, in m.
+        far: its distance from the line's lower end on the sphere, in m.
+    """
+
+    azimuth: Any
+    off: Any
+    wide: Any
+    far: Any
 
 
 @dataclass(frozen=True)
@@ -25,8 +45,8 @@ class Swing:
 
     Attributes:
         hz: swings a second: half of the highest points a second, from the first to the last.
-        precession: their turn about the plumb line, east to north, in degrees an hour; None where one turns so far to
-            the next, up to the half turn between the two sides, that it cannot be followed.
+        precession: their turn about the plumb line, east to north, in degrees an hour; None where they turn by less
+            than they may be off, or one so far to the next, up to the half turn between sides, that none can follow it.
     """
 
     hz: Ends
@@ -54,7 +74,10 @@ class Swing:
 
 
 def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)) -> Swing | None:
-    """Return the swing from the highest points of a run; None with fewer than two, or where their times overlap.
+    """Return the swing from the highest points of a run.
+
+    None with fewer than two, where their times overlap, and where they are not the ends of a swing: it is hardly larger
+    than its rest position is off the plumb line (`offset`), or two on one side follow one another.
 
     Args:
         points: intervals of t, x, y and z of each, in s and m.
@@ -64,37 +87,74 @@ def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: 
     """
     if len(points) < 2 or points[-1][0][0] <= points[0][0][1]:
         return None
+    start = Start.of(inputs, bits + GUARD_BITS)
+    seen = [_seen(point, start, lean) for _, *point in points]
+    off = offset(start, min(point.far for point in seen))
+    if off > 1:
+        return None
     (first, last), half = (points[i][0] for i in (0, -1)), Fraction(len(points) - 1, 2)
     spans = last[0] - first[1], last[1] - first[0]
-    hz, turn = (half / spans[1], half / spans[0]), _turn(points, inputs, bits, lean)
-    if turn is None:
+    hz = half / spans[1], half / spans[0]
+    if turns_too_far(start, max(b[0][1] - a[0][0] for a, b in pairwise(points))):
+        return Swing(hz, None)
+    if any(count % 2 == 0 for count in _halves(seen)):
+        return None
+    turn = _turn(seen, start.ctx, bits)
+    if turn is None or 2 * Fraction(off) * DEGREES > abs(turn[0] + turn[1]):
         return Swing(hz, None)
     rates = [angle / span * HOUR for angle in turn for span in spans]
     return Swing(hz, (min(rates), max(rates)))
 
 
-def _turn(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction) -> Ends | None:
-    """Return the turn from the first highest point to the last in degrees."""
-    start = Start.of(inputs, bits + GUARD_BITS)
+def offset(start: Start, far: Any) -> float:
+    """Return how far a swing's highest points may lie from its ends, in radians of azimuth; above 1: anywhere.
+
+    They are farthest along the plumb line at the pivot. The rest position, about which the bob swings, is off this
+    line, as the centrifugal force at the bob is another.
+
+    Args:
+        start: of the scene.
+        far: least distance of a highest point from the lowest one, in m.
+    """
+    with suppress(UnreachableError):
+        return float(CLEAR * start.lean * start.k.length / far) if far else math.inf
+    return 0.0
+
+
+def turns_too_far(start: Start, seconds: Any) -> bool:
+    """Return whether the site's rotation may turn a swing by a right angle or more from one highest point to the next.
+
+    Then nobody can tell which way it turned.
+    """
+    return float(abs(start.k.rate)) * float(seconds) >= math.pi / 2
+
+
+def _seen(point: Sequence[Ends], start: Start, lean: Fraction) -> Seen:
     ctx, (_, north, up) = start.ctx, start.k.pull
     strength = ctx.sqrt(north**2 + up**2)
-    angles, errors = [], []
-    for _, *point in points:
-        x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in point)
-        dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in point)
-        p = (north * z - up * y) / strength  # up is below 0: along the meridian, northwards
-        dp = (abs(north) * dz + abs(up) * dy) / strength + to_mpf(lean, ctx) * (abs(y) + dy + abs(z) + dz)
-        off, wide = ctx.hypot(dx, dp), ctx.hypot(x, p)
-        if wide <= 2 * off:
+    x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in point)
+    dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in point)
+    p = (north * z - up * y) / strength  # up is below 0: along the meridian, northwards
+    dp = (abs(north) * dz + abs(up) * dy) / strength + to_mpf(lean, ctx) * (abs(y) + dy + abs(z) + dz)
+    wide, drop = ctx.hypot(x, p), start.k.length - (north * y + up * z) / strength
+    return Seen(ctx.atan2(p, x), ctx.hypot(dx, dp), wide, ctx.hypot(wide, drop))
+
+
+def _halves(seen: Sequence[Seen]) -> list[int]:
+    """Return by how many half turns each point is from the one before; even ones are on its side."""
+    return [round(float(b.azimuth - a.azimuth) / math.pi) for a, b in pairwise(seen)]
+
+
+def _turn(seen: Sequence[Seen], ctx: Any, bits: int) -> Ends | None:
+    """Return the turn from the first highest point to the last in degrees; None where it cannot be followed."""
+    if any(point.wide <= 2 * point.off for point in seen):
+        return None
+    angles, halves = [point.azimuth for point in seen], _halves(seen)
+    # asin s <= (π/3) s up to 1/2
+    errors = [to_fraction(point.off / point.wide) * ARC + Fraction(1, 1 << bits) for point in seen]
+    for (a, b), (e, f), half in zip(pairwise(angles), pairwise(errors), halves, strict=True):
+        if abs(float(b - a) / math.pi - half) + float(e + f) > 0.5 - CERTAIN:
             return None
-        angles.append(ctx.atan2(p, x))
-        errors.append(to_fraction(off / wide) * ARC + Fraction(1, 1 << bits))  # asin s <= (π/3) s up to 1/2
-    halves = 0
-    for (a, b), (e, f) in zip(pairwise(angles), pairwise(errors), strict=True):
-        turned = float(b - a) / math.pi
-        halves += round(turned)
-        if abs(turned - round(turned)) + float(e + f) > 0.5 - CERTAIN:
-            return None
-    whole = to_fraction((angles[-1] - angles[0] - halves * ctx.pi) * 180 / ctx.pi)
+    whole = to_fraction((angles[-1] - angles[0] - sum(halves) * ctx.pi) * 180 / ctx.pi)
     most = DEGREES * (errors[0] + errors[-1])
     return whole - most, whole + most

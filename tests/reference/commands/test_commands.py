@@ -45,6 +45,13 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
     assert all(0 < motion[name] < 1e-6 for name in motion if "error" in name)
     status, out, _ = foucault("show", "conical")
     assert (status, "no period: " in out) == (0, True)
+    motion = json.loads(foucault("show", "damped", "--json")[1])["motion"]  # its last highest points were 157° an hour
+    assert motion == {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
+    motion = json.loads(foucault("show", "damped", "--set", "run.t_end=120", "--json")[1])["motion"]
+    assert motion["full_turn_h"] == pytest.approx(31.7, rel=0.05)
+    assert {"period_s", "period_error_s", "over_s"} == {
+        *json.loads(foucault("show", "fast_pole", "--json")[1])["motion"]
+    }
 
 
 def test_show_begins_a_scene(foucault):

@@ -304,13 +304,13 @@ def test_period_precession_and_full_turn_of_every_pendulum_lie_inside(name, deri
     one_in(
         3,
         [
-            ("halves += round(turned)", "halves += 1", "across the cut"),
+            ("sum(halves) * ctx.pi", "len(halves) * ctx.pi", "across the cut"),
             ("ctx.atan2(p, x)", "ctx.atan2(x, p)", "from rest"),
             ("north * z - up * y", "north * z + up * y", "from rest"),
             ("north * z - up * y", "-up * y", "lean"),
             ("DEGREES * (errors[0] + errors[-1])", "0", "ellipse"),
-            ("ctx.hypot(dx, dp), ctx", "0 * dx, ctx", "ellipse"),
-            ("(half / spans[1], half / spans[0])", "(half / spans[0], half / spans[0])", "from rest"),
+            ("ctx.hypot(dx, dp), wide", "0 * dx, wide", "ellipse"),
+            ("half / spans[1], half / spans[0]", "half / spans[0], half / spans[0]", "from rest"),
         ],
     ),
 )
