@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import typer
 
 INTERRUPTED = 130
+UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
 GROUPS = {
     "Solve and judge": ("scenes", "show", "generate", "verify", "score", "plot", "atlas"),
     "Compare many": ("methods", "study", "stability", "sweep"),
@@ -118,7 +119,8 @@ def _run() -> tuple[str | int | None, str, bool] | None:
             finally:
                 sys.stdout.flush()
     except SystemExit as end:
-        return end.code, "", bool(signals)
+        unread = isinstance(end.__context__, BrokenPipeError)
+        return UNREAD if unread else end.code, "", bool(signals)
     except Stopped as stopped:
         return stopped.exit_status, str(stopped), bool(signals)
     except Exception as error:
@@ -130,7 +132,7 @@ def _run() -> tuple[str | int | None, str, bool] | None:
             raise
         _flush_output()
         if isinstance(error, BrokenPipeError):
-            return 1, "", False
+            return UNREAD, "", False
         return 2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"), False
     return None
 

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from numbers import Integral
 from typing import Any
 
 import mpmath
@@ -70,9 +71,11 @@ def to_mpf(value: Fraction, ctx: Any) -> Any:
 
 
 def to_fraction(value: Any) -> Fraction:
-    """Return an mpf, float or int as the exact fraction."""
-    if isinstance(value, float | int):
-        return Fraction(value)
+    """Return an mpf, or a finite number of Python's or numpy's types, as the exact fraction."""
+    if isinstance(value, Integral):
+        return Fraction(int(value))
+    if not hasattr(value, "_mpf_"):
+        return Fraction(*value.as_integer_ratio())
     sign, mantissa, exponent, _ = value._mpf_
     if not mantissa and exponent:
         raise ValueError(f"{value} is not finite")

@@ -189,7 +189,7 @@ def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
 
 
 def _range(key: str, word: str) -> tuple[str, ...]:
-    """Return the values of START:STOP:STEP, both ends in, exactly.
+    """Return the values of START:STOP:STEP exactly, STOP among them if a step leads to it.
 
     Raises:
         InputError: no three numbers, no step, no value, or too many.

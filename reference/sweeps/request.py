@@ -24,7 +24,7 @@ from ..model.sections import direction_of
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
-from ..scenes.scene import Scene, parse_scene
+from ..scenes.scene import Scene, checked_value, parse_scene
 from ..system.imports import needed
 from .axes import TEXTS, Table, grid, listed
 from .parquet import (
@@ -190,6 +190,10 @@ def request(
         raise unknown("--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}.")
     if level == "enclosed":
         needed("flint", "enclose", "--level", level, "which the proof needs")
+    if digits is not None:
+        checked_value("run.digits", str(digits), scene.inputs)
+    if tolerance is not None and not tolerance >= 0:
+        raise InputError("--tolerance", tolerance, "a number of metres from 0")
     if audit is not None and audit < 0:
         raise InputError("--audit", audit, "a number of rows from 0")
     words = list(over)

@@ -64,11 +64,9 @@ class Numbers:
         self.keywords: dict[str, Any] = {} if number.hardware else {"prec": number.prec}
 
     def of(self, value: Any) -> Any:
-        """Return the number of the type that is nearest to an mpf, int, Fraction or float."""
-        if isinstance(value, float | np.floating):
-            if self.number.hardware and np.isfinite(value):
-                return self.type(value)
-            value = Fraction(*value.as_integer_ratio())
+        """Return the number of the type that is nearest to an mpf, or a number of Python's or numpy's types."""
+        if isinstance(value, float | np.floating) and self.number.hardware and np.isfinite(value):
+            return self.type(value)
         exact = value if isinstance(value, int | Fraction) else to_fraction(value)
         if self.number == DOUBLE:
             return exact.numerator / exact.denominator

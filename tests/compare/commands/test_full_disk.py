@@ -160,6 +160,16 @@ def test_stdout_on_a_full_disk_is_a_message(words):
     assert (done.returncode, done.stderr) == (2, "foucault: output: No space left on device\n")
 
 
+def test_output_that_nobody_reads_ends_with_a_status_of_its_own():
+    """1 would say that a check failed."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    command = [sys.executable, "-m", "foucault", "scenes"]
+    done = subprocess.run(command, cwd=ROOT, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
 def test_an_error_that_nobody_expects_names_its_file(foucault, monkeypatch, tmp_path):
     def fail(*_: object) -> None:
         raise PermissionError(13, "Permission denied", str(tmp_path / "scenes.toml"))

@@ -124,6 +124,10 @@ def test_a_row_that_fails_is_named_and_the_others_stand(foucault):
         ([], "SCENE: got 'nothing'"),
         (["--over", "site.latitude=1"], "no such option without SCENE"),
         (["paris", "--over", "site.latitude=1", "--workers", "0"], "--workers"),
+        (["paris", "--over", "site.latitude=1", "--digits", "0"], "run.digits: got '0'"),
+        (["paris", "--over", "site.latitude=1", "--digits", "2000"], "expected a whole number from 1 to 1000"),
+        (["paris", "--over", "site.latitude=1", "--tolerance", "-1"], "expected a number of metres from 0"),
+        (["paris", "--over", "run.t_end=6,7", "--t-end", "5"], "no such option together with --over run.t_end"),
         (
             ["paris", "--over", "site.latitude=1", "--audit", "-1"],
             "--audit: got '-1', expected a number of rows from 0",

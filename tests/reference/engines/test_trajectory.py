@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from decimal import Decimal
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 from sampled import one_in
@@ -160,3 +162,11 @@ def test_the_model_with_open_constants_is_the_model(variants, changes):
 def test_a_release_beyond_the_cord_is_refused(variants, paris):
     with pytest.raises(InputError, match="beyond the cord"):
         variants.states(replace(paris.exact, length=Fraction(1, 2)), TIMES)
+
+
+@pytest.mark.parametrize(
+    "times",
+    [np.arange(3), np.arange(3, dtype=np.float32), [0, Decimal(1), Fraction(2)], [mpmath.mpf(0), 1, np.longdouble(2)]],
+)
+def test_times_may_be_any_numbers(times):
+    assert (trajectory("paris", times) == trajectory("paris", [0.0, 1.0, 2.0])).all()
