@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .dataset.golden import Golden as Golden
     from .dataset.golden import load as load
     from .dataset.ranges import load_ranges as load_ranges
+    from .dataset.ranges import write_ranges as write_ranges
     from .dataset.write import write as write
     from .engines.trajectory import integrate as integrate
     from .engines.trajectory import trajectory as trajectory
@@ -46,7 +47,7 @@ __getattr__, __dir__, __all__ = lazy(
     __name__,
     {
         "dataset.golden": "Golden load",
-        "dataset.ranges": "load_ranges",
+        "dataset.ranges": "load_ranges write_ranges",
         "dataset.write": "write",
         "engines.trajectory": "integrate trajectory",
         "errors": "DatasetError FoucaultError InputError IntegrationError UnreachableError",

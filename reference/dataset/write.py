@@ -75,7 +75,9 @@ def write(solution: Solution, folder: str | Path, name: str | None = None, *, ta
         DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
     """
     if not isinstance(solution, Solution):
-        raise InputError("solution", solution, "what reference.solve returns", "Solve the scene first.")
+        raise InputError(
+            "solution", solution, "a Solution", "Solve the scene first. Ranges are written by write_ranges."
+        )
     folder = Path(folder)
     if not tables and solution.function is None:
         raise InputError("tables", "none", "a golden function, or tables", "Solve it with function=True.")

@@ -162,6 +162,8 @@ def trajectory(
     scene = as_scene(scene)
     if formulation not in FORMULATIONS:
         raise unknown("formulation", formulation, f"one of {', '.join(FORMULATIONS)}", FORMULATIONS, "")
+    if not isinstance(number, NumberType):
+        raise InputError("number", number, "DOUBLE, LONG_DOUBLE or real(BITS) of reference.numbers.precision")
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.model import Numbers, RoundedModel
