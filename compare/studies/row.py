@@ -17,7 +17,7 @@ from reference.numbers.precision import Array, context, to_mpf
 from reference.status import Status
 
 from ..candidates.candidate import COLUMNS
-from ..methods import Outcome
+from ..methods.method import Outcome
 
 Column: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)

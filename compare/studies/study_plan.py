@@ -11,7 +11,9 @@ from typing import Any
 from reference import InputError, Scene
 from reference.numbers.precision import DOUBLE_BITS
 
-from ..methods import METHODS, Method, available, suited
+from ..methods import METHODS
+from ..methods.method import Method, available
+from ..methods.rhs.problem import suited
 
 FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
 FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared

@@ -1,7 +1,7 @@
 """A user's program or file on one scene: its output, at whatever times it has, against the truth there.
 
-Unlike `methods.external`, which has a study time a program at the golden grid times, this asks only where it breaks, or
-how far a file is off.
+Unlike `methods.method.external`, which has a study time a program at the golden grid times, this asks only where it
+breaks, or how far a file is off.
 """
 
 from __future__ import annotations
