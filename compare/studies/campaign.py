@@ -20,8 +20,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from pydantic import TypeAdapter
 
-from reference import InputError, IntegrationError
-from reference.errors import finite
+from reference import IntegrationError
+from reference.errors import finite, usable
 from reference.status import Status
 from reference.system import cache
 from reference.system.documents import json_lines
@@ -134,15 +134,13 @@ def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tup
 def _store(path: Path | None, record: dict[str, Any]) -> None:
     if path is None:
         return
-    try:
+    with usable("--out", path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("ab+") as stream:
             end = stream.seek(0, os.SEEK_END)
             stream.seek(max(0, end - 1))
             separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"  # the line before was cut short
             stream.write(separator + json.dumps(finite(record), allow_nan=False).encode() + b"\n")
-    except OSError as error:
-        raise InputError("--out", str(path), "a folder that can be written to", f"{error.strerror}.") from None
 
 
 def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> Generator[Result, None, None]:
