@@ -25,6 +25,7 @@ from ..methods.method import LONGEST_NAME
 from ..truth import truth_at
 from .campaign import load_per_core
 from .row import Row
+from .study_plan import parsed
 
 DIGITS = 6.0  # that a program is asked for: the millionth of the amplitude that `foucault score` allows
 PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
@@ -76,10 +77,7 @@ def files_of(
         InputError: a file cannot be read or has no positions, two have the same name, or the seconds are not as many.
     """
     words = ["-"] * len(paths) if cpu is None else cpu.split(",")
-    try:
-        seconds = [None if word.strip() == "-" else float(word) for word in words]
-    except ValueError:
-        seconds = []
+    seconds = parsed(words, lambda word: None if word.strip() == "-" else float(word))
     if len(seconds) != len(paths) or not all(value is None or 0 < value < math.inf for value in seconds):
         raise InputError("--cpu", cpu, f"{len(paths)} positive numbers of seconds, or - where nobody knows")
     files: dict[str, tuple[Candidate, float | None]] = {}
