@@ -28,6 +28,7 @@ from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
 from ..methods import METHODS, library
+from .row import grouped
 
 JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
@@ -93,10 +94,7 @@ def campaign(
     marks = {item: _mark([*common, measurement.commands.get(item[0])]) for item in items}
     stored = dict(_stored(journal_path, measurement.kind))
     results = {item: stored[mark, item] for item, mark in marks.items() if (mark, item) in stored}
-    groups: dict[tuple[Any, ...], list[Item]] = {}
-    for item in items:
-        if item not in results:
-            groups.setdefault(item[:-1], []).append(item)
+    groups = grouped((item for item in items if item not in results), lambda item: item[:-1])
     cache.check()
     for group in groups.values():
         with closing(_isolated(measurement, group)) as answers:
