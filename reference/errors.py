@@ -14,6 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, TextIO, cast
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
@@ -49,6 +50,15 @@ class InputError(FoucaultError):
         self.field, self.got, self.expected, self.advice = field, got, expected, advice
         text = f"{plain(field)}: got {_shown(got)!r}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
+
+
+@contextmanager
+def usable(field: str, path: Path, expected: str = "a folder that can be written to") -> Iterator[None]:
+    """Make an InputError of what the disk refuses; `field` is the option or variable that names the path."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(field, str(path), expected, f"{error.strerror}.") from None
 
 
 def all_of(mistakes: Sequence[InputError]) -> InputError:

@@ -131,7 +131,7 @@ PUBLIC = {
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "MAX_STEPS Variants",
     "reference.errors": "BeyondDoublesError Stopped did_you_mean finite in_words plain plain_json plain_lines "
-    "shortened",
+    "shortened usable",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
     "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero",

@@ -14,16 +14,8 @@ from collections.abc import Mapping
 
 from reference.system.imports import Registry
 
-from .approximation import Approximation, Motion, Quantity
-
-__all__ = [
-    "APPROXIMATIONS",
-    "Approximation",
-    "Motion",
-    "Quantity",
-    "motions",
-    "quantities",
-]
+from .approximation import Approximation, Quantity
+from .approximation import Motion as Motion
 
 APPROXIMATIONS: Mapping[str, Approximation] = Registry(
     __name__, "APPROXIMATIONS", "approximation", lambda declared: isinstance(declared, Quantity)

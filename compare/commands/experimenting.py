@@ -10,6 +10,7 @@ from typing import BinaryIO
 from reference import InputError, Scene
 from reference.commands.progress import progress
 from reference.commands.terminal import stoppable
+from reference.errors import usable
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE
 
@@ -17,7 +18,7 @@ from ..candidates.candidate import Candidate
 from ..candidates.external import SETTING, STEPS, arguments, run_program
 from ..candidates.names import Naming
 from ..candidates.read import read_stream
-from ..report.folder import json_text, write_file, writing
+from ..report.folder import json_text, write_file
 from ..score.experiments.findings import MOST_RUNS, Experiment, possible
 from ..score.verdict import Score
 
@@ -51,7 +52,7 @@ class Runnable:
         possible(self.scene, self.command)
         if self.out is None:
             return
-        with writing("--out", self.out):
+        with usable("--out", self.out):
             self.out.mkdir(parents=True, exist_ok=True)
             if any(self.out.iterdir()) and not (self.out / f"{GIVEN}.txt").exists():
                 expected = "a new folder, or one of earlier experiments"

@@ -58,10 +58,9 @@ def listed(text: str | None, field: str) -> list[str] | None:
 
 def numbers(text: str, field: str) -> list[float]:
     """Split a comma-separated option into positive numbers."""
-    try:
-        values = [float(word) for word in text.split(",")]
-    except ValueError:
-        values = []
+    from ..studies.study_plan import parsed
+
+    values = parsed(text.split(","), float)
     if not values or not all(0 < value < float("inf") for value in values):
         raise InputError(field, text, "positive numbers", "Separate several with commas.")
     return values

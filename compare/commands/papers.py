@@ -14,7 +14,7 @@ import typer
 from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, option, stoppable
 
-from ..papers.foucpend_options import SWITCHES, Switch
+from ..papers.foucpend_options import SWITCHES, Options, Switch
 from .options import finish
 
 OUT = option("--out", "Write a page with figures, CSV and JSON into this folder (extra plot).", "DIR")
@@ -54,7 +54,7 @@ def pend(*, exact: bool = False, **typed: str | None) -> None:
 
     It integrates at a fixed step and prints snapshots and transits.
     """
-    from ..papers.foucpend import Options, lines
+    from ..papers.foucpend import lines
 
     options = Options.parse({letter: text for letter, text in typed.items() if text is not None}, exact)
     output = lines(options)

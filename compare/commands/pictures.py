@@ -30,6 +30,11 @@ if TYPE_CHECKING:
     from ..report.motion import Motion
 
 PICTURES = ("path", "sphere", "plane", "transits")
+SOURCE = typer.Argument(
+    metavar="SCENE|DATASET|FILE",
+    help="A scene, a dataset, or the file of a program's output; - is stdin.",
+    autocompletion=completion(lambda: {*scene_ids(), *seals()}),
+)
 OUT = option("--out", "The picture: .svg, .png or .pdf (default: the name, and .svg).", "FILE")
 WHAT = option(
     "--what",
@@ -46,14 +51,7 @@ FILES = option("--files", "Link files to URL/DATASET/FILE (default: name them al
 
 
 def plot(
-    source: Annotated[
-        str,
-        typer.Argument(
-            metavar="SCENE|DATASET|FILE",
-            help="A scene, a dataset, or the file of a program's output; - is stdin.",
-            autocompletion=completion(lambda: {*scene_ids(), *seals()}),
-        ),
-    ],
+    source: Annotated[str, SOURCE],
     out: Annotated[Path | None, OUT] = None,
     what: Annotated[str | None, WHAT] = None,
     t_end: EndTime = None,

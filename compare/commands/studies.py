@@ -185,7 +185,8 @@ def stability(
 def methods(as_json: AsJson = False) -> None:
     """List the integrators and approximations that are compared."""
     from ..approximations import APPROXIMATIONS
-    from ..methods import METHODS, available
+    from ..methods import METHODS
+    from ..methods.method import available
 
     integrators = [
         {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}

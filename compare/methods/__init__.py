@@ -1,10 +1,12 @@
 """Integrators behind one interface (the paper's, this project's, libraries'), each declared in a file of its own.
 
->>> from compare.methods import METHODS, available
+>>> from compare.methods import METHODS
 >>> METHODS["rk4"].title
 'classical Runge-Kutta, order 4'
 
 A method prepares a problem and returns a function that integrates it, so that the integration can be timed alone:
+
+    from compare.methods.rhs.problem import Problem
 
     problem = Problem.of(reference.load_scene("paris"), "plane")
     work = METHODS["rk4"].prepare(problem, 0.01)    # imports and compiles
@@ -22,22 +24,7 @@ from collections.abc import Mapping, Sequence
 from reference import InputError
 from reference.system.imports import Registry
 
-from .method import LONGEST_NAME, Family, Method, Outcome, Work, available, external, file_name
-from .rhs.problem import FirstOrderSystem, Problem, suited
-
-__all__ = [
-    "METHODS",
-    "Family",
-    "FirstOrderSystem",
-    "Method",
-    "Outcome",
-    "Problem",
-    "Work",
-    "available",
-    "external",
-    "named_programs",
-    "suited",
-]
+from .method import LONGEST_NAME, Family, Method, file_name
 
 METHODS: Mapping[str, Method] = Registry(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from operator import mul
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from reference import FoucaultError
 
@@ -98,6 +98,11 @@ def fractions(row: str) -> Vector:
 def triangle(*rows: str) -> Matrix:
     """Return rows of exact numbers."""
     return tuple(map(fractions, rows))
+
+
+def parts(table: dict[str, str | list[str]]) -> dict[str, Any]:
+    """Return the parts of a tableau that a document holds: lines of numbers, and the rows of triangles."""
+    return {name: fractions(part) if isinstance(part, str) else triangle(*part) for name, part in table.items()}
 
 
 class Term(NamedTuple):

@@ -29,8 +29,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .checks import Check, JudgedRow
 
-__all__ = ["build", "declared", "rows"]
-
 MATHAR = ("kinematics", "lagrangian", "rest", "paris", "appendix_a")
 GASTEBOIS = ("rotation", "small", "swings", "lagrangian")
 SECTIONS = (*(f"mathar.{name}" for name in MATHAR), *(f"gastebois.{name}" for name in GASTEBOIS), "three_methods")

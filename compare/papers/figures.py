@@ -14,7 +14,9 @@ from reference.system.documents import texts_of
 
 from ..approximations import motions
 from ..approximations.frequency import anharmonic
-from ..methods import METHODS, Problem, available
+from ..methods import METHODS
+from ..methods.method import available
+from ..methods.rhs.problem import Problem
 from ..observed.swing_plane import rest_in_metres
 from ..report.drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, logarithmic, name_ends, picture, sheet
 from .digits import degrees, mpf

@@ -1,6 +1,7 @@
 """foucPend, the program of Mathar's appendix A, with the same switches: fixed steps, snapshots and transits as text.
 
->>> from compare.papers.foucpend import Options, lines
+>>> from compare.papers.foucpend import lines
+>>> from compare.papers.foucpend_options import Options
 >>> options = Options.parse({"x": "0.3", "y": "0.4", "T": "20", "s": "100"})
 >>> for line in lines(options):                                       # doctest: +SKIP
 ...     print(line)
@@ -46,10 +47,10 @@ from reference.numbers.precision import Array, context, to_mpf
 from reference.scenes.scene import MAX_ROWS
 
 from ..approximations.mathar import VARIABLES, derivatives, truncated
-from ..methods import METHODS, FirstOrderSystem, Problem, available
+from ..methods import METHODS
+from ..methods.method import available
+from ..methods.rhs.problem import FirstOrderSystem, Problem
 from .foucpend_options import METHOD_OF, Options
-
-__all__ = ["Options", "lines"]
 
 DIGITS = 17  # decimal digits that identify a double
 PREC = 128  # bits in which the site's constants are computed before they become doubles

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.errors import plain_json
+from reference.errors import plain_json, usable
 from reference.system.workspace import replace_file
 
 from .page import MARK, Table
@@ -54,7 +53,7 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
         InputError: it has one of these files but no page of ours, so that somebody else's would be replaced; it is no
             folder, or cannot be written to.
     """
-    with writing("--out", folder):
+    with usable("--out", folder):
         existing = next((name for name in names if (folder / name).exists()), None)
         if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
             reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
@@ -70,15 +69,6 @@ def _is_ours(page: Path) -> bool:
     return page.is_file() and MARK.encode() in page.read_bytes()[:_HEAD]
 
 
-@contextmanager
-def writing(field: str, path: Path, expected: str = "a folder that can be written to") -> Iterator[None]:
-    """Make an InputError of what the disk refuses; `field` is the option or variable that names the path."""
-    try:
-        yield
-    except OSError as error:
-        raise InputError(field, str(path), expected, f"{error.strerror}.") from None
-
-
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
     """Write files into a folder, each whole or not at all, the page first; other files in it are left alone.
 
@@ -90,7 +80,7 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
         InputError: the folder cannot be written to, or `check_folder` refuses it.
     """
     check_folder(folder, texts)
-    with writing("--out", folder):
+    with usable("--out", folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name in sorted(texts, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
             _replace(folder / name, texts[name])
@@ -102,7 +92,7 @@ def write_file(path: Path, content: str | bytes, field: str) -> None:
     Raises:
         InputError: it cannot be written; `field` is the option.
     """
-    with writing(field, path, "a file that can be written"):
+    with usable(field, path, "a file that can be written"):
         _replace(path, content)
 
 

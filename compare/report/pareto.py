@@ -15,7 +15,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
-from ..studies.row import Row
+from ..studies.row import Row, grouped
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named
 PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
@@ -65,13 +65,9 @@ def rows_of(document: dict[str, Any]) -> list[Row]:
 
 def curves(rows: Sequence[Row]) -> list[Curve]:
     """Group rows by method and formulation, in order of appearance; a method's first formulation is its own."""
-    usual: dict[str, str] = {}
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        usual.setdefault(row.method, row.formulation)
-        groups.setdefault((row.method, row.formulation), []).append(row)
+    usual = {row.method: row.formulation for row in reversed(rows)}
     found = []
-    for (method, formulation), group in groups.items():
+    for (method, formulation), group in grouped(rows, lambda row: (row.method, row.formulation)).items():
         ladder = sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)
         found.append(Curve(method, formulation, usual[method] == formulation, tuple(ladder)))
     return found

@@ -17,7 +17,7 @@ from reference.status import Status
 from reference.system.documents import texts_of
 
 from ..methods import METHODS
-from ..studies.row import Row
+from ..studies.row import Row, grouped
 from ..studies.stability import Cell
 from ..studies.study import ObservedOrder, orders
 from ..studies.users_program import FILE
@@ -84,17 +84,13 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
 
 def failures(rows: Sequence[Row]) -> Html | None:
     """Return the reasons for which rows failed, rows with the same reason together; None if no row failed."""
-    groups: dict[tuple[str, Status, str], list[Row]] = {}
-    for curve in curves(rows):
-        for row in curve.rows:
-            if row.failed:
-                groups.setdefault((curve.label, row.status, row.reason), []).append(row)
-    if not groups:
+    failed = [(curve.label, row) for curve in curves(rows) for row in curve.rows if row.failed]
+    if not failed:
         return None
     cells = []
-    for (label, status, reason), group in groups.items():
-        reached = {f"{row.reached_t:g}" for row in group if row.reached_t is not None}
-        settings = ", ".join(setting(row) for row in group)
+    for (label, status, reason), group in grouped(failed, lambda one: (one[0], one[1].status, one[1].reason)).items():
+        reached = {f"{row.reached_t:g}" for _, row in group if row.reached_t is not None}
+        settings = ", ".join(setting(row) for _, row in group)
         cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
     columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
     return Table(columns, cells, ["failed"] * len(cells)).html(TEXTS["failed"])

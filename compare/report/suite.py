@@ -16,12 +16,12 @@ from string import Template
 from typing import Any
 from xml.etree import ElementTree
 
-from reference.errors import plain_lines
+from reference.errors import plain_lines, usable
 from reference.scenes.shipped import DATA_VERSION
 
 from ..score.document import of_outcome
 from ..score.verdict import REFUSED, Outcome, percent
-from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
+from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files
 from .page import Html, Table, findings, page, paragraph, section, text
 
 JSON, BADGE = "suite.json", "badge.svg"
@@ -176,7 +176,7 @@ def append_summary(text: str) -> None:
     if not name:
         return
     path = Path(name)
-    with writing(SUMMARY, path, "a file that can be written to"), path.open("ab") as stream:
+    with usable(SUMMARY, path, "a file that can be written to"), path.open("ab") as stream:
         stream.write(text.encode(errors="backslashreplace"))
 
 

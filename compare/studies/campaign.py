@@ -20,14 +20,15 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from pydantic import TypeAdapter
 
-from reference import InputError, IntegrationError
-from reference.errors import finite
+from reference import IntegrationError
+from reference.errors import finite, usable
 from reference.status import Status
 from reference.system import cache
 from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
 from ..methods import METHODS, library
+from .row import grouped
 
 JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
@@ -93,10 +94,7 @@ def campaign(
     marks = {item: _mark([*common, measurement.commands.get(item[0])]) for item in items}
     stored = dict(_stored(journal_path, measurement.kind))
     results = {item: stored[mark, item] for item, mark in marks.items() if (mark, item) in stored}
-    groups: dict[tuple[Any, ...], list[Item]] = {}
-    for item in items:
-        if item not in results:
-            groups.setdefault(item[:-1], []).append(item)
+    groups = grouped((item for item in items if item not in results), lambda item: item[:-1])
     cache.check()
     for group in groups.values():
         with closing(_isolated(measurement, group)) as answers:
@@ -134,15 +132,13 @@ def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tup
 def _store(path: Path | None, record: dict[str, Any]) -> None:
     if path is None:
         return
-    try:
+    with usable("--out", path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("ab+") as stream:
             end = stream.seek(0, os.SEEK_END)
             stream.seek(max(0, end - 1))
             separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"  # the line before was cut short
             stream.write(separator + json.dumps(finite(record), allow_nan=False).encode() + b"\n")
-    except OSError as error:
-        raise InputError("--out", str(path), "a folder that can be written to", f"{error.strerror}.") from None
 
 
 def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> Generator[Result, None, None]:

@@ -17,7 +17,9 @@ import numpy as np
 from reference import Scene, load_scene
 from reference.status import Status
 
-from ..methods import METHODS, Problem, available
+from ..methods import METHODS
+from ..methods.method import available
+from ..methods.rhs.problem import Problem
 from ..observed.least_squares import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, campaign

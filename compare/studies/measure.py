@@ -25,7 +25,8 @@ from reference import Scene, load
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..methods import Method, Outcome, Problem, Work, available, suited
+from ..methods.method import Method, Outcome, Work, available
+from ..methods.rhs.problem import Problem, suited
 from .campaign import Item, Measurement, Result, load_per_core
 from .row import FAILURES, GridTruth, Row, failure, h_drift
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -17,8 +17,10 @@ from reference.numbers.precision import Array, context, to_mpf
 from reference.status import Status
 
 from ..candidates.candidate import COLUMNS
-from ..methods import Outcome
+from ..methods.method import Outcome
 
+T = TypeVar("T")
+K = TypeVar("K")
 Column: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
 H_ROWS = 64  # rows at which h is evaluated
@@ -177,6 +179,14 @@ def h_drift(scene: Scene, outcome: Outcome) -> float | None:
         values.append(invariant(n, v, k))
         kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
     return float(max(abs(value - values[0]) for value in values) / kinetic) if kinetic else None
+
+
+def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
+    """Return items by a key, the keys and the items of each in order of appearance."""
+    groups: dict[K, list[T]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups
 
 
 def difference(one: Column, other: Column) -> Array:

@@ -17,12 +17,13 @@ from reference.scenes.scene import AnyScene, as_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
-from ..methods import METHODS, external
+from ..methods import METHODS
+from ..methods.method import external
 from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
 from ..truth import Report, golden_of
 from .campaign import Counted, campaign, machine
 from .measure import Bench, OnScene
-from .row import Row
+from .row import Row, grouped
 from .study_plan import Item, on_doubles, plan
 from .users_program import FILE, file_row
 
@@ -178,10 +179,8 @@ def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
         rows: of a study.
         bound_m: of the reference, in m.
     """
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        if row.method in METHODS and METHODS[row.method].order is not None:
-            groups.setdefault((row.method, row.formulation), []).append(row)
+    declared = [row for row in rows if row.method in METHODS and METHODS[row.method].order is not None]
+    groups = grouped(declared, lambda row: (row.method, row.formulation))
     return [_order(*key, group, bound_m) for key, group in groups.items()]
 
 

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 from reference import InputError, Scene
 from reference.numbers.precision import DOUBLE_BITS
 
-from ..methods import METHODS, Method, available, suited
+from ..methods import METHODS
+from ..methods.method import Method, available
+from ..methods.rhs.problem import suited
 
 FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
 FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
-SPAN_S = (
-    14_400  # longer scenes are cut to this, unless an end is given; over less, what a run costs at all hides digits
-)
+# longer scenes are cut to this, unless an end is given; over less, what a run costs at all hides digits
+SPAN_S = 14_400
 MOST_BITS = 4096
 SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
 STEP_BITS = 12  # bits of a step's mantissa: its first 2**41 multiples are doubles
 
+T = TypeVar("T")
 Item = tuple[str, str, float]  # method, formulation, setting
 
 
@@ -111,14 +113,19 @@ def bits_of(text: str) -> list[int]:
     Raises:
         InputError: they are not whole numbers from 53 to 4096.
     """
-    try:
-        precisions = sorted({int(word) for word in text.split(",")})
-    except ValueError:
-        precisions = []
+    precisions = sorted({*parsed(text.split(","), int)})
     if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > MOST_BITS:
         expected = f"bits from {DOUBLE_BITS} to {MOST_BITS}, such as 53,64,113,256,512"
         raise InputError("--precisions", text, expected, "Separate them by commas.")
     return precisions
+
+
+def parsed(words: Iterable[str], kind: Callable[[str], T]) -> list[T]:
+    """Return the numbers that words are; none at all where one of them is no number."""
+    try:
+        return [kind(word) for word in words]
+    except ValueError:
+        return []
 
 
 def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Scene, int]:

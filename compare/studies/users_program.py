@@ -1,7 +1,7 @@
 """A user's program or file on one scene: its output, at whatever times it has, against the truth there.
 
-Unlike `methods.external`, which has a study time a program at the golden grid times, this asks only where it breaks, or
-how far a file is off.
+Unlike `methods.method.external`, which has a study time a program at the golden grid times, this asks only where it
+breaks, or how far a file is off.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from ..methods.method import LONGEST_NAME
 from ..truth import truth_at
 from .campaign import load_per_core
 from .row import Row
+from .study_plan import parsed
 
 DIGITS = 6.0  # that a program is asked for: the millionth of the amplitude that `foucault score` allows
 PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
@@ -76,10 +77,7 @@ def files_of(
         InputError: a file cannot be read or has no positions, two have the same name, or the seconds are not as many.
     """
     words = ["-"] * len(paths) if cpu is None else cpu.split(",")
-    try:
-        seconds = [None if word.strip() == "-" else float(word) for word in words]
-    except ValueError:
-        seconds = []
+    seconds = parsed(words, lambda word: None if word.strip() == "-" else float(word))
     if len(seconds) != len(paths) or not all(value is None or 0 < value < math.inf for value in seconds):
         raise InputError("--cpu", cpu, f"{len(paths)} positive numbers of seconds, or - where nobody knows")
     files: dict[str, tuple[Candidate, float | None]] = {}

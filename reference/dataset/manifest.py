@@ -49,14 +49,19 @@ FUNCTION: tuple[FileName, FileName] = ("function.json", "function.f64")
 Content = str | bytes  # of a file
 
 
+def text_of(document: dict[str, Any]) -> str:
+    """Return the text of a file that holds a document, in the one form that is accepted."""
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+
+
 class Part(BaseModel):
     """A document or a part of one: frozen, without extra keys; read from a dictionary or from what has its names."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, from_attributes=True)
 
     def text(self) -> str:
-        """Return the text of the file that holds the document, in the one form that is accepted."""
-        return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
+        """Return the text of the file that holds the document."""
+        return text_of(self.model_dump())
 
 
 class Bounds(Part):
@@ -195,8 +200,7 @@ class Manifest(Part):
 
     def text(self) -> str:
         """Return the text of the file, without sections where there are none."""
-        document = self.model_dump(exclude=None if self.sections else {"sections"})
-        return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+        return text_of(self.model_dump(exclude=None if self.sections else {"sections"}))
 
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:

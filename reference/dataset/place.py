@@ -38,11 +38,14 @@ def dataset_id(scene: Scene, base: Scene | None = None) -> str:
     name = scene.id if scene.inputs == "decimal" else f"{scene.id}.{scene.inputs}"
     every = changes(scene, base or shipped_scene(scene))
     changed = ",".join(change for change in every if not change.startswith("run."))
-    if not changed:
-        return name
-    if len(name) + len(changed) >= MAX_ID:
-        changed = f"sha256={hashlib.sha256(changed.encode()).hexdigest()[:16]}"
-    return f"{name}+{changed}"
+    return id_with(name, "+", changed) if changed else name
+
+
+def id_with(name: str, sign: str, words: str) -> str:
+    """Return an id and, behind a sign, what it is changed by: words, or their hash where they are too long."""
+    if len(name) + len(words) >= MAX_ID:
+        words = f"sha256={hashlib.sha256(words.encode()).hexdigest()[:16]}"
+    return f"{name}{sign}{words}"
 
 
 def changes_in(name: str) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import replace as with_fields
 from fractions import Fraction
@@ -19,8 +18,9 @@ from ..solver.ranges import Ends, Intervals, Ranges
 from ..solver.solution import Passages, exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
-from .place import MAX_ID, RANGES, dataset_id, golden_folder
-from .sheets import scene_inputs
+from .manifest import text_of
+from .place import RANGES, dataset_id, golden_folder, id_with
+from .sheets import open_intervals, scene_inputs
 from .write import check_target, filled, replace, writable_place
 
 FORMAT = 1
@@ -30,10 +30,8 @@ DIGITS = 2  # that a width has in the tables: the ends widen it by a tenth at mo
 
 def ranges_id(ranges: Ranges) -> str:
     """Return the id: that of the scene's dataset, with the half-widths, such as paris+-pendulum.length=0.001."""
-    name, box = dataset_id(ranges.scene), ",".join(f"{key}={width}" for key, width in ranges.uncertain.items())
-    if len(name) + len(box) >= MAX_ID:
-        box = f"sha256={hashlib.sha256(box.encode()).hexdigest()[:16]}"
-    return f"{name}+-{box}"
+    box = ",".join(f"{key}={width}" for key, width in ranges.uncertain.items())
+    return id_with(dataset_id(ranges.scene), "+-", box)
 
 
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
@@ -105,7 +103,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
         texts = {RANGES: (folder / RANGES).read_text(encoding="utf-8")}
         names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in said else []))
         texts |= {name: (folder / name).read_text(encoding="utf-8") for name in names}
-        if _text({**said, "seal": _seal(said)}) != texts[RANGES]:
+        if text_of({**said, "seal": _seal(said)}) != texts[RANGES]:
             raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed"])
         for name, digest in said["sha256"].items():
             if _hash(texts[name]) != digest:
@@ -214,16 +212,12 @@ def _texts(ranges: Ranges) -> dict[str, str]:
         rows = [[word, *row] for word, found in named for row in _zero_rows(found.table, found.directions)]
         tables[SECTIONS_FILE] = _table(["section", "k", "direction"], SECTION, rows)
     said = _manifest(ranges, tables)
-    return {RANGES: _text(said | {"seal": _seal(said)}), **tables}
-
-
-def _text(said: dict[str, Any]) -> str:
-    return json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+    return {RANGES: text_of(said | {"seal": _seal(said)}), **tables}
 
 
 def _seal(said: dict[str, Any]) -> str:
     """Return the sha256 of the text with an empty seal: it finds accidents."""
-    return _hash(_text({**said, "seal": ""}))
+    return _hash(text_of({**said, "seal": ""}))
 
 
 def _hash(text: str) -> str:
@@ -235,7 +229,7 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
     sections = scene_inputs(scene)
     sections["run"] = {name: text for name, text in sections["run"].items() if name != "digits"}  # as widths support
     made = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
-    named = {word: _possible(zeros.possible) for word, zeros in ranges.sections.items()}
+    named = {word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()}
     return {
         "format": FORMAT,
         "seal": "",
@@ -245,14 +239,9 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
         "scene": sections,
         "uncertain": _signed(ranges),
         "period_s": period_texts(ranges),
-        "possible": _possible(ranges.possible),
+        "possible": open_intervals(ranges.possible),
         **({"sections": named} if named else {}),
         "counts": {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)},
         "proof": made | {"radius_m": rounded_up(proof.radius)},
         "sha256": {name: _hash(text) for name, text in tables.items()},
     }
-
-
-def _possible(intervals: Sequence[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
-    """Return intervals that may hold other zeros, as `ranges.json` lists them."""
-    return [{"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity} for low, high, parity in intervals]

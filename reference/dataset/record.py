@@ -16,7 +16,7 @@ from ..engines.heyoka.system import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
-from ..numbers.precision import bits_of, context, fixed_decimal, outward, rounded_up
+from ..numbers.precision import bits_of, context, fixed_decimal, rounded_up
 from ..numbers.table import FixedPoint
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
@@ -35,7 +35,7 @@ from .manifest import (
     SectionsRecord,
 )
 from .place import changes, changes_in, dataset_id, is_of_shipped_scene, shipped_scene, ships
-from .sheets import Sheet, column_bounds, scene_inputs
+from .sheets import Sheet, column_bounds, open_intervals, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
@@ -142,12 +142,8 @@ def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | Non
 
 def _possible(intervals: Iterable[tuple[Fraction, Fraction, str]], end: str) -> list[Possible]:
     """Return intervals rounded outwards, but not beyond the end of the run, which the last row prints exactly."""
-    return [
-        Possible.model_validate(
-            {"from_s": outward(low, -1), "to_s": min(outward(high, 1), end, key=Fraction), "parity": parity}
-        )
-        for low, high, parity in intervals
-    ]
+    texts = open_intervals(intervals)
+    return [Possible.model_validate(part | {"to_s": min(part["to_s"], end, key=Fraction)}) for part in texts]
 
 
 def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:

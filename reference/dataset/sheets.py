@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
 from ..numbers.columns import GRID, STATE, TRANSITS
-from ..numbers.precision import fixed_decimal, rounded_up
+from ..numbers.precision import fixed_decimal, outward, rounded_up
 from ..numbers.table import Integers, Table, integers
 from ..scenes.fields import SECTION_SEPARATOR
 from ..scenes.scene import Scene
@@ -112,6 +112,11 @@ def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
     """Return the largest bound of each column as text, rounding to the printed digits included."""
     bounds = table.largest_bounds()
     return {name: rounded_up(bounds[name] + Fraction(1, 2 * 10 ** decimals[name])) for name in table.columns}
+
+
+def open_intervals(intervals: Iterable[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
+    """Return intervals that may hold other zeros as text, rounded outwards, each with the parity of their number."""
+    return [{"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity} for low, high, parity in intervals]
 
 
 def by_field(inputs: Mapping[str, Mapping[str, str]]) -> dict[str, str]:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError, unknown
+from ..errors import InputError, unknown, usable
 from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
 from ..scenes.scene import Reading, checked_value, field_names, full_name
@@ -288,8 +288,7 @@ def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
 @contextmanager
 def _readable(option: str, path: Path) -> Iterator[None]:
     try:
-        yield
-    except OSError as error:
-        raise InputError(option, str(path), "a readable file", f"{error.strerror}.") from None
+        with usable(option, path, "a readable file"):
+            yield
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(option, str(path), "a CSV file in UTF-8", f"{error}.") from None

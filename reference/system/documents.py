@@ -59,7 +59,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
 
 
 def texts_of(module: str) -> dict[str, Any]:
-    """Return the texts of a module, given by its `__file__`: the tables of the TOML file beside it with its name."""
+    """Return what a module keeps in a TOML file of its name beside it; the module is given by its `__file__`."""
     return tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
 
 

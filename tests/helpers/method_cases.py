@@ -10,8 +10,8 @@ import numpy as np
 from small_scenes import make_scene
 
 import reference
-from compare.methods import METHODS, Problem
-from compare.methods.rhs.problem import suited
+from compare.methods import METHODS
+from compare.methods.rhs.problem import Problem, suited
 from compare.methods.rhs.straight_line import FUNCTIONS
 from reference import Scene, Solution
 

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 from reference import Golden, InputError, load, load_scene, scene_ids
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.place import changes
-from reference.errors import shortened
+from reference.errors import shortened, usable
 from reference.scenes.shipped import data_root, in_checkout
 from reference.status import Status
 from reference.system.documents import json_document
@@ -116,10 +116,8 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
         InputError: a folder cannot be read, or holds no dataset; a file is no study.
         DatasetError: a dataset is damaged.
     """
-    try:
+    with usable("--data", folder, "a folder of golden datasets"):
         paths = sorted(path.parent for path in folder.glob(f"*/{MANIFEST}"))
-    except OSError as error:
-        raise InputError("--data", str(folder), "a folder of golden datasets", f"{error.strerror}.") from None
     if not paths:
         advice = "`foucault generate --all` makes those that ship."
         raise InputError("--data", str(folder), "a folder of golden datasets, each a folder in it", advice)

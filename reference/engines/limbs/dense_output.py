@@ -16,7 +16,7 @@ from .limb import (
     divide,
     double_of,
 )
-from .series import TENSION, VM, VX, LinearTerms, M, Series, X, partner, positions, to_positions, to_speeds
+from .series import TENSION, VM, VX, M, Series, Step, X, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products
 
 _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")
@@ -61,13 +61,14 @@ def evaluate(to: Array, s: Series, place: Array, order: int, limb_count: int) ->
 
 
 @compiled
-def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTerms, model: Model, m: int) -> None:
-    """Turn all lanes at some place to x, y, z, their rates and xddot, in l and the unit of time.
+def to_cartesian(to: Array, start: int, step: Step, model: Model, m: int) -> None:
+    """Turn all lanes in `rows` to x, y, z, their rates and xddot, in l and the unit of time.
 
-    They are written to seven lanes of `limb_count` rows of `to`, from `start` on. `terms` and the length m in grains
-    are those of the step; the matrix from the Earth's axes to east, north, up is in `model`.
+    They are written to seven lanes of `limb_count` rows of `to`, from `start` on. The step is m grains long;
+    the matrix from the Earth's axes to east, north, up is in `model`.
     """
-    limb_count, total, rate, other = model.limb_count, s.total, s.partners, s.other
+    (s, terms, rows), limb_count = step, model.limb_count
+    total, rate, other = s.total, s.partners, s.other
     for r in range(limb_count):
         store(other, LANES * r, partner(load(rows, LANES * r)))
     total[:] = 0.0
@@ -78,7 +79,7 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
     for r in range(limb_count):
         store(rate, LANES * r, load(rate, LANES * r) + to_positions(load(rows, LANES * r)))
     carry(rate, 0, limb_count)
-    _xddot(rows, s, terms, model)
+    _xddot(step, model)
     stretch = spread(GRAINS)
     for r in range(limb_count):
         store(total, LANES * r, to_speeds(load(rate, LANES * r)) * stretch)
@@ -102,9 +103,10 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
 
 
 @merged
-def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
+def _xddot(step: Step, model: Model) -> None:
     """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm; the rates are in `partners`."""
-    limb_count, total, rate, other = model.limb_count, s.total, s.partners, s.other
+    (s, terms, rows), limb_count = step, model.limb_count
+    total, rate, other = s.total, s.partners, s.other
     for r in range(limb_count):
         store(other, LANES * r, partner(load(rate, LANES * r)))
     total[:] = 0.0
@@ -144,16 +146,16 @@ def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int)
 
 
 @compiled
-def xdot_at(place: Array, s: Series, terms: LinearTerms, rows: Array, model: Model) -> float:
+def xdot_at(place: Array, step: Step, model: Model) -> float:
     """Return xdot times h at a place of the step, with the sign that its limbs have; write all lanes to `rows`."""
-    evaluate(rows, s, place, model.order, model.limb_count)
-    return xdot_of(rows, s, terms.turn, 1.0, model.limb_count)
+    evaluate(step.rows, step.s, place, model.order, model.limb_count)
+    return xdot_of(step.rows, step.s, step.terms.turn, 1.0, model.limb_count)
 
 
 @compiled
-def xddot_of(rows: Array, xdot: float, terms: LinearTerms, model: Model) -> float:
-    """Return xddot times h² from all lanes and xdot times h, as a double."""
-    limb_count = model.limb_count
+def xddot_of(step: Step, xdot: float, model: Model) -> float:
+    """Return xddot times h² from all lanes in `rows` and xdot times h, as a double."""
+    (_, terms, rows), limb_count = step, model.limb_count
     turn = double_of(terms.turn, limb_count, 0, LANES) / DOUBLED
     x, vm = double_of(rows, limb_count, X, LANES), double_of(rows, limb_count, VM, LANES)
     tension = double_of(rows, limb_count, TENSION, LANES)

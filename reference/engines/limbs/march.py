@@ -12,7 +12,7 @@ from .dense_output import divide_place, evaluate, to_cartesian, xdot_of
 from .lanes import LANES, OPTIONS, load, merged, store
 from .limb import DOUBLED, Array, aligned, double_of
 from .recurrence import taylor_coefficients
-from .series import Counts, LinearTerms, Series, X, empty_series
+from .series import Counts, LinearTerms, Step, X, empty_series
 from .step import (
     LEAST_FACTOR,
     SAFETY_FACTOR,
@@ -39,17 +39,13 @@ class MarchState(NamedTuple):
         now: rows of n, in the axes x, m, w, and of V in the unit of time.
         counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of xdot; steps;
             output times passed; zeros written; the step length that `terms` is for; the next step's length.
-        s: the step's series.
-        terms: its linear terms.
-        rows: a working array: all lanes at some place in the step.
-        search: working arrays for that place, and for the step's zeros.
+        step: the step.
+        search: working arrays for a place in it, and for its zeros.
     """
 
     now: Array
     counts: Counts
-    s: Series
-    terms: LinearTerms
-    rows: Array
+    step: Step
     search: Search
 
 
@@ -85,8 +81,8 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: Model) 
     rows = aligned(LANES * (limb_count + 2))
     now = aligned(len(start))
     now[:] = start
-    series, search = empty_series(order, limb_count), empty_search(order, limb_count)
-    return MarchState(now, counts, series, terms, rows, search)
+    step, search = Step(empty_series(order, limb_count), terms, rows), empty_search(order, limb_count)
+    return MarchState(now, counts, step, search)
 
 
 @merged
@@ -100,8 +96,8 @@ def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
         for q in range(limb_count):
             place[q] = out.remainders[i * limb_count + q]
         divide_place(place, out.whole[i] - start, m, limb_count)
-        evaluate(state.rows, state.s, place, model.order, limb_count)
-        to_cartesian(out.states, i * limb_count * LANES, state.rows, state.s, state.terms, model, m)
+        evaluate(state.step.rows, state.step.s, place, model.order, limb_count)
+        to_cartesian(out.states, i * limb_count * LANES, state.step, model, m)
         counts[ROWS] += 1
 
 
@@ -109,17 +105,17 @@ def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
 def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
     """Write the zeros of xdot on the step; return false if they stay in doubt."""
     counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
-    after = int(np.sign(xdot_of(state.now, state.s, model.terms.turn, DOUBLED, limb_count)))
-    count = bracket_zeros(z, state.s, state.terms, state.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
+    after = int(np.sign(xdot_of(state.now, state.step.s, model.terms.turn, DOUBLED, limb_count)))
+    count = bracket_zeros(z, state.step, counts[SIGN], after, counts[MULTIPLICITY], model)
     if count == GRAZING:
         return False
     for i in range(count):
-        if not polish(z, i, state.s, state.terms, state.rows, model):
+        if not polish(z, i, state.step, model):
             return False
         n = counts[ZEROS]
         for q in range(limb_count):
             out.places[n * limb_count + q] = z.place[q]
-        to_cartesian(out.zero_states, n * limb_count * LANES, state.rows, state.s, state.terms, model, m)
+        to_cartesian(out.zero_states, n * limb_count * LANES, state.step, model, m)
         out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = counts[TIME], m, z.direction[i]
         counts[ZEROS] += 1
     counts[SIGN] = after
@@ -129,18 +125,18 @@ def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
 @kept(*Path(__file__).parent.glob("*.py"), **OPTIONS)
 def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
     """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
-    s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
+    s, counts, limb_count, order = state.step.s, state.counts, model.limb_count, model.order
     for i in range(steps):
         if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
             return FULL
         if not _step_coefficients(state, model):
             return STUCK
         m = counts[LENGTH]
-        sum_series(state.rows, s, order, limb_count)
+        sum_series(state.step.rows, s, order, limb_count)
         if seek and counts[STEPS] == 0:
             leading = (counts[MULTIPLICITY] + 1) * limb_count * LANES + X  # the first coefficient of xdot that is not 0
             counts[SIGN] = int(np.sign(double_of(s.c, limb_count, leading, LANES)))
-        project(state.now, state.rows, s, m, limb_count)
+        project(state.now, state.step.rows, s, m, limb_count)
         if seek and not _write_zeros(state, model, out):
             return DOUBTFUL
         _write_states(state, model, out)
@@ -161,16 +157,16 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
 @merged
 def _step_coefficients(state: MarchState, model: Model) -> bool:
     """Compute the coefficients of the next step, shortened until they decay enough; false if no length will do."""
-    counts = state.counts
+    counts, (s, terms, _) = state.counts, state.step
     while True:
         m = counts[LENGTH]
         if m != counts[SCALED]:
-            scale_terms(state.terms, model, m)
+            scale_terms(terms, model, m)
             counts[SCALED] = m
-        order_zero(state.s, state.terms, state.now, m, model.limb_count)
+        order_zero(s, terms, state.now, m, model.limb_count)
         shorter = m // 2
-        if taylor_coefficients(state.s, state.terms, model.order, model.limb_count, model.drag):
-            factor = step_size_factor(state.s, model.order, model.limb_count, model.tolerance)
+        if taylor_coefficients(s, terms, model.order, model.limb_count, model.drag):
+            factor = step_size_factor(s, model.order, model.limb_count, model.tolerance)
             if factor >= LEAST_FACTOR:
                 counts[NEXT] = next_length(m, factor, model.longest)
                 return True

@@ -72,6 +72,14 @@ class Series(NamedTuple):
     scalar: Array
 
 
+class Step(NamedTuple):
+    """A step: its series, its linear terms, and `rows`, to which all lanes at some place in it are written."""
+
+    s: Series
+    terms: LinearTerms
+    rows: Array
+
+
 def empty_series(order: int, limb_count: int) -> Series:
     """Return empty arrays for a series of an order, at most MOST_ORDER."""
     if order > MOST_ORDER:

@@ -16,7 +16,7 @@ from .dense_output import evaluate, xddot_of, xdot_at
 from .lanes import LANES, compiled, merged
 from .limb import Array, add_double, double_of, set_double
 from .polynomial import CONVEX, FREE, UNDECIDED, classify, crossing
-from .series import Counts, LinearTerms, Series, X
+from .series import Counts, Series, Step, X
 from .size import LIMB_BITS
 from .step import Model
 
@@ -69,16 +69,12 @@ def empty_search(order: int, limb_count: int) -> Search:
 
 
 @compiled
-def bracket_zeros(
-    z: Search, s: Series, terms: LinearTerms, rows: Array, before: int, after: int, multiplicity: int, model: Model
-) -> int:
+def bracket_zeros(z: Search, step: Step, before: int, after: int, multiplicity: int, model: Model) -> int:
     """Bracket the zeros on 0 < s <= 1, in order; return their number, or GRAZING.
 
     Args:
         z: where the zeros are written.
-        s: the step's series.
-        terms: the step's linear terms.
-        rows: working array.
+        step: the step.
         before: sign of xdot at the start, or just after it.
         after: sign at the end.
         multiplicity: of the zero that xdot has exactly at the start; 0 if none.
@@ -86,7 +82,7 @@ def bracket_zeros(
     """
     if before == 0 or after == 0:
         return GRAZING
-    size = _polynomial(z, s, multiplicity, model)
+    size = _polynomial(z, step.s, multiplicity, model)
     total = 0.0
     for k in range(size):
         total += abs(z.f[k])
@@ -101,7 +97,7 @@ def bracket_zeros(
             if half < NARROWEST or depth == DEEPEST:
                 return GRAZING
             z.stack[2 * depth] = middle
-            z.stack[2 * depth + 1] = _sign_at(z, middle, value, noise, s, terms, rows, model)
+            z.stack[2 * depth + 1] = _sign_at(z, middle, value, noise, step, model)
             depth += 1
             continue
         if (kind == FREE and left != right) or count + 2 > MOST_ZEROS:
@@ -109,7 +105,7 @@ def bracket_zeros(
         if left != right:
             count = _record(z, count, low, high, crossing(z.f, size, low, high, left), right)
         elif kind == CONVEX and (bend > 0.0) == (left > 0):
-            count = _dip(z, count, size, low, high, left, noise, s, terms, rows, model)
+            count = _dip(z, count, size, low, high, left, noise, step, model)
             if count == GRAZING:
                 return GRAZING
         low, left, depth = high, right, depth - 1
@@ -133,14 +129,12 @@ def _polynomial(z: Search, s: Series, multiplicity: int, model: Model) -> int:
 
 
 @merged
-def _sign_at(
-    z: Search, place: float, value: float, noise: float, s: Series, terms: LinearTerms, rows: Array, model: Model
-) -> int:
+def _sign_at(z: Search, place: float, value: float, noise: float, step: Step, model: Model) -> int:
     """Return the sign of xdot at a place where its value in double is known within the noise."""
     if abs(value) > noise:
         return 1 if value > 0.0 else -1
     set_double(z.place, place, model.limb_count)
-    exact = xdot_at(z.place, s, terms, rows, model)
+    exact = xdot_at(z.place, step, model)
     return 1 if exact >= 0.0 else -1
 
 
@@ -152,17 +146,7 @@ def _record(z: Search, count: int, low: float, high: float, guess: float, direct
 
 @merged
 def _dip(
-    z: Search,
-    count: int,
-    size: int,
-    low: float,
-    high: float,
-    side: int,
-    noise: float,
-    s: Series,
-    terms: LinearTerms,
-    rows: Array,
-    model: Model,
+    z: Search, count: int, size: int, low: float, high: float, side: int, noise: float, step: Step, model: Model
 ) -> int:
     """Record none or two zeros where xdot has one sign at both ends and bends towards zero.
 
@@ -177,8 +161,8 @@ def _dip(
         # the bottom of a shallow dip is noise in double: Newton's method on xddot gives its place, limbs its value
         set_double(z.place, flat, model.limb_count)
         for _ in range(NEWTON_STEPS):
-            bottom = xdot_at(z.place, s, terms, rows, model)
-            shift = -xddot_of(rows, bottom, terms, model) / (2.0 * bend)
+            bottom = xdot_at(z.place, step, model)
+            shift = -xddot_of(step, bottom, model) / (2.0 * bend)
             if abs(shift) < 2.0**-50:
                 break
             add_double(z.place, shift, model.limb_count)
@@ -195,14 +179,14 @@ def _dip(
 
 
 @merged
-def polish(z: Search, i: int, s: Series, terms: LinearTerms, rows: Array, model: Model) -> bool:
+def polish(z: Search, i: int, step: Step, model: Model) -> bool:
     """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval."""
     enough = 2.0 ** min(DERIVATIVE_BITS - (LIMB_BITS * model.limb_count - 1), -NEAR_BITS)
     previous = 1.0
     set_double(z.place, z.guess[i], model.limb_count)
     for _ in range(NEWTON_STEPS):
-        xdot = xdot_at(z.place, s, terms, rows, model)
-        xddot = xddot_of(rows, xdot, terms, model)
+        xdot = xdot_at(z.place, step, model)
+        xddot = xddot_of(step, xdot, model)
         shift = -xdot / xddot if xddot != 0.0 else 1.0
         if not abs(shift) < 1.0:
             return False
@@ -210,7 +194,7 @@ def polish(z: Search, i: int, s: Series, terms: LinearTerms, rows: Array, model:
         # where xdot is small against its last limb, rounding ends convergence before the shift is small enough
         stalled, previous = abs(shift) > 0.25 * previous and previous < EDGE, abs(shift)
         if stalled or abs(shift) < enough:
-            evaluate(rows, s, z.place, model.order, model.limb_count)
+            evaluate(step.rows, step.s, z.place, model.order, model.limb_count)
             place = double_of(z.place, model.limb_count)
             return bool(z.low[i] - EDGE <= place <= z.high[i] + EDGE)
     return False

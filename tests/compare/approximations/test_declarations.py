@@ -5,15 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compare.approximations import (
-    APPROXIMATIONS,
-    Approximation,
-    Motion,
-    Quantity,
-    mathar,
-    motions,
-    quantities,
-)
+from compare.approximations import APPROXIMATIONS, mathar, motions, quantities
+from compare.approximations.approximation import Approximation, Motion, Quantity
 from compare.papers.foucpend import ITEMS
 from reference import InputError, IntegrationError, UnreachableError, load_scene
 

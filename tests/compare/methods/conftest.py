@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from compare.methods import METHODS, Method, available
+from compare.methods import METHODS
+from compare.methods.method import Method, available
 
 
 @pytest.fixture

@@ -9,8 +9,9 @@ import pytest
 
 import reference
 from compare import assert_agrees, study
-from compare.methods import METHODS, available, library
+from compare.methods import METHODS, library
 from compare.methods.library import captured, quoted
+from compare.methods.method import available
 from compare.methods.rhs.problem import Problem
 from reference.scenes.fields import LEVELS
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from method_cases import case
 
-from compare.methods import METHODS, available
-from compare.methods.method import Family, Method
+from compare.methods import METHODS
+from compare.methods.method import Family, Method, available
 from compare.methods.rhs.problem import suited
 from reference import InputError
 

@@ -9,7 +9,9 @@ import pytest
 from method_cases import case
 from small_scenes import make_scene
 
-from compare.methods import METHODS, Problem, external, gauss_legendre, library
+from compare.methods import METHODS, gauss_legendre, library
+from compare.methods.method import external
+from compare.methods.rhs.problem import Problem
 from reference import InputError
 
 

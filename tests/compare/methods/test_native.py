@@ -9,8 +9,10 @@ import pytest
 from method_cases import case, python_function
 from small_scenes import make_scene
 
-from compare.methods import METHODS, Problem, available, c_libraries, library
+from compare.methods import METHODS, c_libraries, library
 from compare.methods.library import BOOST, GSL, Library
+from compare.methods.method import available
+from compare.methods.rhs.problem import Problem
 from reference import IntegrationError
 
 HOST = r"""

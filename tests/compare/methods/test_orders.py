@@ -12,7 +12,9 @@ from small_scenes import make_scene
 
 import compare.methods
 import reference
-from compare.methods import METHODS, Problem, available, gauss_legendre
+from compare.methods import METHODS, gauss_legendre
+from compare.methods.method import available
+from compare.methods.rhs.problem import Problem
 from reference.numbers.precision import real
 
 SPAN = 3.0

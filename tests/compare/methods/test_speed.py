@@ -12,8 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compare.methods import METHODS, Problem, available, rk4
+from compare.methods import METHODS, rk4
 from compare.methods.fixed_step import runge_kutta, traced_step
+from compare.methods.method import available
+from compare.methods.rhs.problem import Problem
 from compare.methods.rhs.straight_line import compiled
 from reference import load_scene
 

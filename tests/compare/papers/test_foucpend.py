@@ -18,8 +18,8 @@ from compare.candidates.read import read_stream
 from compare.commands.papers import pend as command
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
-from compare.papers.foucpend import Options, Transits, lines, parabola_zero, snapshots_of
-from compare.papers.foucpend_options import DEFAULTS
+from compare.papers.foucpend import Transits, lines, parabola_zero, snapshots_of
+from compare.papers.foucpend_options import DEFAULTS, Options
 from compare.papers.points import paris
 from reference import InputError, IntegrationError, load, load_scene
 from reference.engines.trajectory import trajectory

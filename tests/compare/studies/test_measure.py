@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compare.methods import Method, Outcome, Problem, Work
-from compare.methods.method import outcome
+from compare.methods.method import Method, Outcome, Work, outcome
+from compare.methods.rhs.problem import Problem
 from compare.studies.measure import Bench
 from compare.studies.row import GridTruth
 from compare.truth import golden_of

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from here import measured_here
 
-from compare.methods import METHODS, Problem
-from compare.methods.rhs.problem import suited
+from compare.methods import METHODS
+from compare.methods.rhs.problem import Problem, suited
 from compare.report.stability_page import document_of, headlines, page_text, text_table
 from compare.studies.character import Character
 from compare.studies.long_runs import LongRun, laws

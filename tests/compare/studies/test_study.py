@@ -14,7 +14,8 @@ import pytest
 from sampled import one_in
 
 import compare.studies.measure as measure
-from compare.methods import METHODS, Problem
+from compare.methods import METHODS
+from compare.methods.rhs.problem import Problem
 from compare.report.pareto import front, rows_of
 from compare.report.study_tables import transit_error
 from compare.studies import users_program

@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 import reference
 from reference.commands import app
 from reference.dataset import ranges as written
-from reference.dataset.ranges import _seal, _text, ends, ranges_id, verify_ranges, write_ranges
+from reference.dataset.manifest import text_of
+from reference.dataset.ranges import _seal, ends, ranges_id, verify_ranges, write_ranges
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 
@@ -139,7 +140,7 @@ def test_verify_finds_what_is_not_proved_even_if_it_is_sealed_anew(ranges, tmp_p
             said["sha256"][file] = hashlib.sha256(text.encode()).hexdigest()
     if sealed:
         said["seal"] = _seal(said)
-    (folder / "ranges.json").write_text(_text(said), encoding="utf-8")
+    (folder / "ranges.json").write_text(text_of(said), encoding="utf-8")
     problems = verify_ranges(folder)
     assert problems and ("does not hold what is proved" in problems[0]) is sealed
     if not sealed:
