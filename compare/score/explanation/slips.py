@@ -151,8 +151,9 @@ def falls(rows: Rows, right: Program) -> str:
     time, gone = rows.times[1:] - rows.times[0], rows.plane[1:] - rows.plane[0]
     for name, way in zip("xy", gone.T, strict=True):
         pulls = np.abs(2 * way / time**2) / right.g
-        if pulls.min() > FREELY[0] and pulls.max() < FREELY[1] and abs(way[-1]) > GROWN * right.length:
-            fell = f"Its {name} falls by {abs(way[-1]):.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
+        far = float(abs(way[-1:]).sum())
+        if ((pulls > FREELY[0]) & (pulls < FREELY[1])).all() and far > GROWN * right.length:
+            fell = f"Its {name} falls by {far:.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
             return f"{fell}: {name} is its vertical, and its cord pulls too little."
     return ""
 

@@ -410,6 +410,18 @@ def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
 DRIFT = "semi_implicit_euler_drift"
 
 
+@pytest.mark.parametrize("times", [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)])
+def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(times: tuple[float, ...]) -> None:
+    """A family of models fits a few rows whatever they are, and so do as many fitted numbers as the rows have."""
+    scene = load_scene("paris", ["inputs=binary64"])
+    still = Variants().states(with_value(scene.exact, "site.rotation_rate", Fraction(0)), np.unique([0.0, *times]))
+    found = explain(np.array(times), dict(zip("xy", still[-len(times) :].T, strict=False)), scene, 7e-7)
+    assert [cause.id for cause in found.causes] == ["no_rotation"] * (times[-1] > 0)
+    for rows in ([[0.3, 0.4], [0.1, 0.2], [0.2, -0.3]], [[-0.1, 0.2], [0.3, 0.4], [0.1, 0.1]]):
+        columns = dict(zip("xy", np.array(rows)[: len(times)].T, strict=True))
+        assert explain(np.array(times), columns, scene, 7e-7).causes == (), rows
+
+
 @pytest.mark.parametrize("pull", [1.0, 2.0])
 def test_a_bob_that_nothing_holds_falls(pull: float) -> None:
     """And one of the public simulators in test_wild.py is told so, after all that is tried before."""
