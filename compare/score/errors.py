@@ -23,6 +23,7 @@ import numpy as np
 
 from reference import Golden, Scene, Solution
 from reference.dataset.golden import Dense
+from reference.errors import counted
 from reference.model.constants import constants_in_double
 from reference.model.force import energy, rates
 from reference.numbers.precision import Array
@@ -94,7 +95,7 @@ class TrajectoryErrors:
     speed_m_s: float
 
     def __repr__(self) -> str:
-        return f"TrajectoryErrors({len(self.t)} rows, max_m={self.max_m:.2g}, rms_m={self.rms_m:.2g})"
+        return f"TrajectoryErrors({counted(len(self.t), 'row')}, max_m={self.max_m:.2g}, rms_m={self.rms_m:.2g})"
 
     @property
     def max_m(self) -> float:
@@ -257,11 +258,6 @@ def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, 
 
     (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
     return float(turn), float(delay)
-
-
-def counted(count: int, word: str) -> str:
-    """Return how many there are of something."""
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def entry(name: str, value: str, remark: str = "") -> str:

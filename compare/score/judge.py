@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
 from reference.dataset.golden import WITHIN, Dense
+from reference.errors import counted
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.scenes.scene import AnyScene, as_scene
@@ -32,7 +33,7 @@ from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
-from .errors import TrajectoryErrors, counted, drifts, trajectory_errors
+from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 

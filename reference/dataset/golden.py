@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DatasetError, InputError
+from ..errors import DatasetError, InputError, counted
 from ..numbers.columns import POSITION, STATE, Framed, GridColumns, place_of
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
@@ -143,7 +143,7 @@ class Golden(GridColumns):
     def __repr__(self) -> str:
         """Return id, level, digits, and the numbers of rows and transits."""
         about, counts = self.manifest, self.manifest.counts
-        rows = f"{counts.grid} grid times, {counts.transits} transits"
+        rows = f"{counted(counts.grid, 'grid time')}, {counted(counts.transits, 'transit')}"
         return f"Golden({about.id}: {about.level}, {about.digits} digits, {rows})"
 
 
