@@ -192,7 +192,7 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     if not kept.any():
         raise InputError("t_end", f"{end:g}", f"a time from the first row on, which is at t = {candidate.t[0]:g} s")
     columns, low = ({name: column[kept] for name, column in of.items()} for of in (candidate.columns, candidate.low))
-    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored"
+    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored, the last at {candidate.t[-1]:g} s"
     return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
 
 

@@ -32,7 +32,7 @@ from compare.score.explanation.case import Explanation, Rows
 from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.families import fits_of
 from compare.score.explanation.fitted import TIE, _is_tied, readers_of
-from compare.score.explanation.slips import falls, slip
+from compare.score.explanation.slips import _sentence, falls, slip
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from foucault import commands
@@ -540,6 +540,14 @@ def test_a_slip_in_a_formula_is_found_in_the_accelerations(term: tuple[int, int]
     assert float(told[3]) == pytest.approx(wrong, rel=2e-3, abs=1e-7)
     assert float(told[4]) == pytest.approx(right, rel=2e-3)
     assert ("does work" in said) is (place != (0, 0))
+
+
+def test_rows_too_far_apart_for_their_own_motion_tell_no_slip() -> None:
+    """Ten seconds from row to row, which the clock counts as a sixth of a second: a bob that turns back each time."""
+    scene, seconds = load_scene("paris", ["inputs=binary64"]), 10.0 * np.arange(361)
+    columns = dict(zip("xy", Variants().states(scene.exact, seconds).T, strict=False))
+    assert slip(KnownScene.of(scene).rows(seconds / 60, columns), scene) == ""
+    assert _sentence("y", "x", 1.0, -0.0).endswith("the model has 0")
 
 
 @pytest.mark.long  # the search for causes takes long; what is told once it is over, a bob that falls shows as well
