@@ -225,7 +225,7 @@ def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     ratio = complex(x[0], y[0]) / release if release and candidate.t[0] == 0 else 0j
     scale = abs(ratio)
     if not abs(ratio - scale) < SAME * scale:  # it does not begin at the release, in its direction
-        return Deviation("beyond_the_cord", f"{far}: pixels, or another unit? Metres are wanted")
+        return Deviation("beyond_the_cord", f"{far}: pixels, another unit, or another pendulum? Metres are wanted")
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
