@@ -26,7 +26,7 @@ from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
 from .candidates.arrays import candidate_of, real_array
-from .candidates.candidate import COLUMNS, checked_transits
+from .candidates.candidate import COLUMNS
 from .candidates.external import placeholders
 from .score.judge import judge
 from .score.verdict import Score, lines
@@ -72,11 +72,10 @@ def assert_agrees(
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
     arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
-    transit_times = None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
     result = judge(
         candidate_of("states", arrays),
         scene,
-        transits=transit_times,
+        transits=transits,
         tolerance=tolerance,
         inputs=inputs,
         covers=covers,
@@ -116,15 +115,14 @@ class SceneCase:
 
 
 def message(result: Score) -> str:
-    """Return the message of a failed assertion: the worst number, and all that `foucault score` says."""
+    """Return the message of a failed assertion: the worst number if it is off, and all that `foucault score` says."""
     errors, worst = result.errors, result.worst
-    return "\n".join(
-        [
-            f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0]}):",
-            f"  expected   {worst.expected!r}",
-            f"  got        {worst.got!r}",
-            f"  difference {worst.difference:+.3e} m",
-            f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
-            *lines(result),
-        ]
-    )
+    head = [
+        f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0]}):",
+        f"  expected   {worst.expected!r}",
+        f"  got        {worst.got!r}",
+        f"  difference {worst.difference:+.3e} m",
+        f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
+    ]
+    within = [f"{result.scene.id}: every position is within the {result.allowed_m:.3e} m that are allowed, and yet:"]
+    return "\n".join([*(head if result.off_path else within), *lines(result)])

@@ -140,6 +140,11 @@ def in_words(names: Sequence[str]) -> str:
     return " or ".join(part for part in (", ".join(names[:-1]), names[-1]) if part)
 
 
+def counted(count: int, word: str) -> str:
+    """Return how many there are of something."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
 def unknown(field: str, word: str, expected: str, known: Iterable[str], otherwise: str) -> InputError:
     """Return the error for a word that is none of the known ones.
 

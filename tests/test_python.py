@@ -66,7 +66,7 @@ def test_columns_by_name_are_judged(columns):
 @pytest.mark.parametrize(
     ("candidate", "message"),
     [
-        ({"x": [0.3], "y": [0.4]}, "candidate: got 'columns x, y', expected a file, a Candidate, or columns by name"),
+        ({"x": [0.3], "y": [0.4]}, "candidate: got 'no t in x, y', expected one column t. Wanted: t, x, y"),
         ([[0.0, 0.3, 0.4]], "candidate: got 'list', expected a file"),
         (np.zeros((2, 3)), "candidate: got 'ndarray', expected a file"),
         ({**ROWS, "x": ["a", "b"]}, "candidate: x: got 'dtype"),
@@ -77,6 +77,12 @@ def test_other_candidates_are_refused(candidate, message):
     with pytest.raises(InputError) as caught:
         compare.judge(candidate, "paris")
     assert str(caught.value).startswith(message)
+
+
+def test_columns_may_have_the_names_and_units_of_a_header():
+    centimetres = {"Time [ms]": [0.0, 60000.0], **{f"{name} (cm)": 100 * np.array(ROWS[name]) for name in "xy"}}
+    score = compare.judge(centimetres, "paris", tolerance=1e-8)
+    assert score.agrees and "x from cm, y from cm, converted to SI units" in str(score)
 
 
 def test_solutions_and_their_tables_are_frames(minute, monkeypatch):

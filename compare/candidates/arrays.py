@@ -46,17 +46,15 @@ def candidate_of(
 
 
 def candidate_from(columns: Any) -> Candidate:
-    """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
+    """Make a candidate of columns by name, as in a header: a mapping of arrays, or a pandas.DataFrame.
 
     Raises:
-        InputError: it has no names, or as in `Candidate.of`.
+        InputError: it has no names, a column is missing or its unit not known, or as in `Candidate.of`.
     """
-    names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
-    if "t" not in names:
-        got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
+    if not (hasattr(columns, "__getitem__") and hasattr(columns, "keys")):
+        got = type(columns).__name__
         raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
-    arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
-    return candidate_of("candidate", arrays)
+    return _of_arrays({str(name): columns[name] for name in columns}, "candidate", Naming())
 
 
 def real_array(values: Any, name: str) -> Array:

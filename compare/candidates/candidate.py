@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import InputError
+from reference.errors import counted
 from reference.numbers.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
@@ -66,7 +67,7 @@ class Candidate:
     conventions: tuple[Deviation, ...] = ()
 
     def __repr__(self) -> str:
-        return f"Candidate({Path(self.name).name}: {len(self.t)} rows of t, {', '.join(self.columns)})"
+        return f"Candidate({Path(self.name).name}: {counted(len(self.t), 'row')} of t, {', '.join(self.columns)})"
 
     @property
     def extended(self) -> bool:

@@ -293,4 +293,4 @@ def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | Non
 def advice(needed: Sequence[str]) -> str:
     """Return what a header has to name."""
     more = f" and, if there, {', '.join(COLUMNS[2:])}" if len(needed) > 1 else ""
-    return f"The first line names the columns: {', '.join(needed)}{more}; or --columns does."
+    return f"Wanted: {', '.join(needed)}{more}, as a file's first line or --columns names them."

@@ -112,7 +112,7 @@ def study(
     files = files_of(candidates or (), cpu, programs)
     steps = numbers(STEPS_S if settings is None else settings, "--settings")
     for program, words in programs.items():
-        items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
+        items += [(program, "momentum", step) for step in (steps if SETTING in words else [0.0])]
     with stoppable(resumes(out)), progress() as show:
         done = measured(
             problem,

@@ -176,11 +176,9 @@ def text_table(document: dict[str, Any]) -> str:
 
 
 def setting(row: Row | Cell) -> str:
-    """Return a row's setting with its unit; a dash for a file, which has none; empty for None."""
-    if row.setting is None:
-        return ""
-    if row.kind == FILE:
-        return ABSENT
+    """Return a row's setting with its unit; a dash for a file or a program that has none, 0; empty for None."""
+    if not row.setting:
+        return "" if row.setting is None else ABSENT
     return tidy(row.setting) + {"step": " s", "precision": " bits"}.get(row.kind, "")
 
 

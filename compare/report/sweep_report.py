@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reference import InputError
+from reference.errors import counted
 from reference.numbers.precision import Array, digits_that_hold
 from reference.scenes.scene import unit_of
 from reference.status import Status
@@ -89,10 +90,10 @@ def text(swept: Swept, out: Path | None) -> str:
     """Return the table of a sweep, or where its folder is; then what an audit found, statuses and costs."""
     tally, counts = swept.tally, swept.counts
     by_status = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items())
-    total = f"{len(swept)} rows: {by_status}"
+    total = f"{counted(len(swept), 'row')}: {by_status}"
     cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s"
     if tally.promoted:
-        cost += f", {tally.promoted_s:.2f} s of them for {tally.promoted} rows that went to the solver"
+        cost += f", {tally.promoted_s:.2f} s of them for {counted(tally.promoted, 'row')} that went to the solver"
     cost += f", compiling {swept.compile_s:.2f} s; {swept.request.engine}"
     lines = []
     if out is None:
@@ -110,11 +111,13 @@ def text(swept: Swept, out: Path | None) -> str:
         named = (*keys, *(heads[column.name] for column in shown))
         lines += Table({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
     else:
-        lines.append(f"{out}: {swept.request.parts} parts in Parquet")
+        lines.append(f"{out}: {counted(swept.request.parts, 'part')} in Parquet")
     if swept.audit is not None:
         found = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
         found += f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
-        lines.append(f"{swept.audit.rows} rows solved again in 28 digits: {found}, CPU {swept.audit_s:.2f} s")
+        lines.append(
+            f"{counted(swept.audit.rows, 'row')} solved again in 28 digits: {found}, CPU {swept.audit_s:.2f} s"
+        )
     return "\n".join([*lines, total, cost])
 
 

@@ -17,7 +17,7 @@ from reference import InputError
 from reference.system.documents import json_document
 
 from .document import document, explained
-from .since import Since, changes, left_of
+from .since import Since, changes, left_of, untold_m
 from .verdict import REFUSED, WHOLE, Score
 
 SHARE = 0.1  # of a change: what is smaller is no part of it
@@ -99,7 +99,7 @@ def _since(new: Score, rows: Score | None, said: Mapping[str, Any], explains: bo
         now, then = explained(both[0], []), said if rows is None else explained(both[1], [])
         left = left_of(then, before), left_of(now, after)
         told = tuple(changes(then, now, left, math.inf if rows is None else WOBBLE * apart))
-        left_m = max(left) if told else None
+        left_m = max(left) + untold_m(then, now) if told else None
     name, complete = str(said["candidate"]), left_m is not None and left_m <= allowed
     return Since(name, before, after, apart if changed else 0.0, worse, better, told, left_m, complete)
 

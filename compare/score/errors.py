@@ -23,6 +23,7 @@ import numpy as np
 
 from reference import Golden, Scene, Solution
 from reference.dataset.golden import Dense
+from reference.errors import counted
 from reference.model.constants import constants_in_double
 from reference.model.force import energy, rates
 from reference.numbers.precision import Array
@@ -35,6 +36,7 @@ FEWEST = 3  # rows of a run at least: one row has as many equations as unknowns,
 ROWS = 12  # rows of a part at least
 MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
 TURNS = 4  # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
+EPSILON = 2.0**-52  # of a double: twice the largest rounding
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 
 
@@ -79,7 +81,7 @@ class TrajectoryErrors:
         position: distance from the truth in m over the position columns that the candidate has, shape (rows,); if it
             has transits alone, the truth's |vx|/ω there, by which the motion has to be off.
         truth: at those times.
-        bound_m: bound of the truth's own error, in m.
+        bound_m: bound of the error of the truth at these times, in m.
         amplitude_m: the truth's largest distance from the vertical in m, the scale of the digits.
         speed_m_s: the truth's largest speed in m/s, the scale of the digits of velocities.
     """
@@ -93,7 +95,7 @@ class TrajectoryErrors:
     speed_m_s: float
 
     def __repr__(self) -> str:
-        return f"TrajectoryErrors({len(self.t)} rows, max_m={self.max_m:.2g}, rms_m={self.rms_m:.2g})"
+        return f"TrajectoryErrors({counted(len(self.t), 'row')}, max_m={self.max_m:.2g}, rms_m={self.rms_m:.2g})"
 
     @property
     def max_m(self) -> float:
@@ -180,10 +182,13 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
         truth: at the candidate's times.
         golden: dataset or solution of the truth; the scales are those of its whole grid, whatever the candidate has.
     """
-    t_low = candidate.low.get("t")
     # the truth is known at the double t; the candidate's row belongs to t + t_low
-    k = constants_in_double(golden.scene.exact)
-    later = np.zeros((1, 6)) if t_low is None else np.column_stack(rates([*truth.states.T], k)) * t_low[:, None]
+    t_low = candidate.low.get("t", np.zeros(1))
+    slopes = np.column_stack(rates([*truth.states.T], constants_in_double(golden.scene.exact)))
+    later = slopes * t_low[:, None]
+    # which leaves out a t_low²/2 (doubled, as a changes meanwhile), and rounds v, v t_low and two sums with it
+    speeds, pulls = (np.linalg.norm(part, axis=1) for part in np.hsplit(slopes, 2))
+    left_out = float((pulls * t_low**2 + 2 * EPSILON * speeds * np.abs(t_low)).max())
     components = {}
     for i, name in enumerate(COLUMNS):
         if name in candidate.columns:
@@ -198,7 +203,7 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
         position = np.linalg.norm([components[name] for name in "xyz" if name in components], axis=0)
     else:
         position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed) or math.inf)
-    return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m, amplitude, speed)
+    return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m + left_out, amplitude, speed)
 
 
 def swing_rate(scene: Scene, speed_m_s: float) -> float:
@@ -253,11 +258,6 @@ def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, 
 
     (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
     return float(turn), float(delay)
-
-
-def counted(count: int, word: str) -> str:
-    """Return how many there are of something."""
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def entry(name: str, value: str, remark: str = "") -> str:

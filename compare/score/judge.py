@@ -11,27 +11,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
 from reference.dataset.golden import WITHIN, Dense
+from reference.errors import counted
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
-from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
-from ..candidates.arrays import candidate_from
-from ..candidates.candidate import Candidate, Deviation
+from ..candidates.arrays import candidate_from, real_array
+from ..candidates.candidate import Candidate, Deviation, checked_transits
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
-from .errors import TrajectoryErrors, counted, drifts, trajectory_errors
+from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
@@ -49,7 +51,7 @@ def judge(
     candidate: Candidate | str | Path | Mapping[str, Any] | None,
     scene: AnyScene,
     *,
-    transits: Array | None = None,
+    transits: npt.ArrayLike | None = None,
     tolerance: float | None = None,
     inputs: str = "auto",
     t_end: float | None = None,
@@ -63,8 +65,8 @@ def judge(
     """Judge a candidate against the truth of a scene.
 
     Args:
-        candidate: the trajectory, at its own times; the path of its file; or columns by name, t, x, y and any of z,
-            vx, vy, vz, in a mapping or a pandas.DataFrame; None to judge transits alone.
+        candidate: the trajectory, at its own times; the path of its file; or columns by name, as in a header, t, x, y
+            and any of z, vx, vy, vz, in a mapping or a pandas.DataFrame; None to judge transits alone.
         scene: the problem that it claims to solve: a scene, its id, the path of a TOML file, or nested mappings.
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
@@ -83,20 +85,22 @@ def judge(
             the tolerance is not positive.
         UnreachableError: the scene cannot be solved.
     """
-    if tolerance is not None and (isinstance(tolerance, str) or not 0 < tolerance < math.inf):
+    if tolerance is not None and not (isinstance(tolerance, Real) and 0 < tolerance < math.inf):
         raise InputError("tolerance", tolerance, "a positive number of metres")
+    if t_end is not None and not isinstance(t_end, Real):
+        raise InputError("t_end", t_end, "a number of seconds")
+    if not (isinstance(covers, Real) and 0 <= covers <= 1):
+        raise InputError("covers", covers, "a share of the scene's span, from 0 to 1")
     if isinstance(scene, Mapping) and "t" in scene:
         got = f"columns {', '.join(map(str, scene))}"
         raise InputError("scene", got, "a scene", "The rows stand before the scene.")
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
-    if not 0 <= covers <= 1:
-        raise InputError("covers", f"{covers:g}", "a share of the scene's span, from 0 to 1")
-    if candidate is None:
-        end = float(scene.exact.t_end)
-        candidate = Candidate.of_transits("transits", np.empty(0) if transits is None else transits[transits <= end])
+    times = None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
+    if candidate is None and times is not None:
+        candidate = Candidate.of_transits("transits", times[times <= float(scene.exact.t_end)])
     elif not isinstance(candidate, Candidate):
         candidate = read(candidate) if isinstance(candidate, str | Path) else candidate_from(candidate)
-    times = candidate.transits if transits is None else transits
+    times = candidate.transits if times is None else times
     if t_end is not None:
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
@@ -188,7 +192,7 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     if not kept.any():
         raise InputError("t_end", f"{end:g}", f"a time from the first row on, which is at t = {candidate.t[0]:g} s")
     columns, low = ({name: column[kept] for name, column in of.items()} for of in (candidate.columns, candidate.low))
-    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored"
+    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored, the last at {candidate.t[-1]:g} s"
     return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
 
 
@@ -221,7 +225,7 @@ def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     ratio = complex(x[0], y[0]) / release if release and candidate.t[0] == 0 else 0j
     scale = abs(ratio)
     if not abs(ratio - scale) < SAME * scale:  # it does not begin at the release, in its direction
-        return Deviation("beyond_the_cord", f"{far}: pixels, or another unit? Metres are wanted")
+        return Deviation("beyond_the_cord", f"{far}: pixels, another unit, or another pendulum? Metres are wanted")
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:

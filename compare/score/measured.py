@@ -8,12 +8,12 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from reference import InputError, Ranges
+from reference.errors import counted
 from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 from reference.solver.uncertain import solve_ranges
 
 from ..candidates.candidate import Candidate
-from .errors import counted
 
 TOLD = 5  # of the numbers outside, those that are listed: the farthest of each column first
 ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from reference import InputError, Scene
+from reference.errors import counted
 from reference.model.constants import constants_in_double
 from reference.model.force import rates
 from reference.model.sections import form_of
@@ -17,7 +18,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ..truth import DIGITS, Report, golden_of, truth_at
-from .errors import counted, entry, swing_rate
+from .errors import entry, swing_rate
 from .judge import TOLERANCE
 from .transit_matching import TransitErrors, transit_errors
 

@@ -71,6 +71,13 @@ def left_of(said: Mapping[str, Any], error_m: float) -> float:
     return float((said["corrected"] or {"max_error_m": error_m})["max_error_m"])
 
 
+def untold_m(then: Told, now: Told) -> float:
+    """Return how far in m numbers that only one of two documents has may move the bob, their cause not known."""
+    here, there = ([one for one in said["causes"] if one["id"].startswith(AS_IF)] for said in (then, now))
+    pairs = [(one, there) for one in here] + [(one, here) for one in there]
+    return float(sum(one["size_m"] for one, others in pairs if not any(_is_same(one, other) for other in others)))
+
+
 def changes(then: Told, now: Told, left: tuple[float, float], most: float) -> Iterator[str]:
     """Yield what came and what went; a number that changed has come.
 

@@ -77,16 +77,16 @@ class TransitErrors:
     def lines(self, tolerance_m: float, name: str = "transits", weighted: str = "weighted by |ax|") -> Iterator[str]:
         """Yield the lines for people."""
         worst = f"largest error {self.max_error_s:.3g} s, {weighted}: {self.max_conditioned_m:.3g} m"
-        counted = f"{self.matched} matched, {len(self.missed)} missed, {len(self.extra)} extra"
-        yield entry(name, counted, worst)
+        shifted = self.shifted(tolerance_m)
+        matched = f"{self.matched} matched{f' ({len(shifted)} shifted)' if shifted else ''}"
+        yield entry(name, f"{matched}, {len(self.missed)} missed, {len(self.extra)} extra", worst)
         may = "a motion within the tolerance may or may not have them"
         kinds = ("missed", self.missed, ""), ("extra", self.extra, ""), ("undecided", self.undecided, may)
         for word, times, remark in kinds:
             if times:
                 yield entry(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s", remark)
-        if shifted := self.shifted(tolerance_m):
-            text = _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted)
-            yield entry("  shifted", text, f"{len(shifted)} in all")
+        if shifted:
+            yield entry("  shifted", _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted))
 
     def document(self, tolerance_m: float) -> dict[str, Any]:
         """Return the JSON document."""

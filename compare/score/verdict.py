@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from reference import FoucaultError, Golden, Scene, Solution
+from reference.errors import counted
 from reference.numbers.columns import VELOCITY
 from reference.status import Status
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
-from .errors import SwingErrors, TrajectoryErrors, Worst, counted, entry
+from .errors import SwingErrors, TrajectoryErrors, Worst, entry
 from .experiments.findings import Experiments
 from .explanation.case import Explanation
 from .input_floor import input_floor

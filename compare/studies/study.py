@@ -144,7 +144,7 @@ def study(
     commands = programs or {}
     recipe = [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s]
     runs = _MethodRuns(recipe, PATIENCE * limit_s, commands, problem, golden.path, limit_s)
-    chosen = items or plan(requested, methods, formulations)
+    chosen = plan(requested, methods, formulations) if items is None else items
     rows = campaign(runs, chosen, journal_path=journal_path, report=report)
     rows += [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
     return Study(problem, float(problem.exact.t_end), limit_s, golden, rows, machine(), commands)

@@ -101,10 +101,10 @@ def check_usable(methods: Sequence[str] | None) -> None:
     Raises:
         InputError: a method is unknown, or a package is missing for each.
     """
-    reasons = {name: available(METHODS[name]) for name in methods or METHODS}
+    reasons = {name: available(METHODS[name]) for name in (METHODS if methods is None else methods)}
     if all(reasons.values()):
-        why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
-        raise InputError("methods", ", ".join(reasons), "a method that can run here", f"{why}.")
+        why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items()) or "None stands for all"
+        raise InputError("methods", ", ".join(reasons) or "no id", "a method that can run here", f"{why}.")
 
 
 def bits_of(text: str) -> list[int]:

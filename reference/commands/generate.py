@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..engines import AUTO, engine_names
-from ..errors import InputError, in_words
+from ..errors import InputError, counted, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
@@ -162,7 +162,7 @@ def command(
         emit(measured)
         return
     confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
-    rows = f"{len(solution.times)} grid times, {measured['transits']} transits"
+    rows = f"{counted(len(solution.times), 'grid time')}, {counted(measured['transits'], 'transit')}"
     rows += f", {measured['possible']} undecided" if measured["possible"] else ""
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}{confirmed}")
     if solution.not_checked:
@@ -200,7 +200,8 @@ def _generate_ranges(
         emit({"dataset": ranges_id(ranges), "out": str(folder), "period_s": period, **counts})
         return
     box = ", ".join(f"{name} ±{width}" for name, width in ranges.uncertain.items())
-    typer.echo(f"{folder}: {counts['grid']} grid times, {counts['transits']} transits, for every {box}: enclosed")
+    rows = f"{counted(counts['grid'], 'grid time')}, {counted(counts['transits'], 'transit')}"
+    typer.echo(f"{folder}: {rows}, for every {box}: enclosed")
     if ranges.possible:
         typer.echo(f"intervals that may hold more transits: {counts['possible']}")
     for word, found in ranges.sections.items():

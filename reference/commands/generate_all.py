@@ -18,7 +18,7 @@ from ..dataset.record import making_of
 from ..dataset.render import check_proved, render
 from ..dataset.sheets import scene_inputs
 from ..dataset.write import check_target, summary, write_texts
-from ..errors import DatasetError, FoucaultError, IntegrationError, UnreachableError
+from ..errors import DatasetError, FoucaultError, IntegrationError, UnreachableError, counted
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import scene_ids, seals
 from ..solver.solve import solve
@@ -166,4 +166,5 @@ def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Genera
 def _line(row: Row) -> str:
     if row["status"] != Status.OK.value:
         return f"{row['dataset']}: {Status(row['status']).words}: {row['reason']}"
-    return f"{row['out']}: {row['transits']} transits, {row['digits']} digits, {row['level']}, {row['cpu_s']:.1f} CPU s"
+    transits = counted(row["transits"], "transit")
+    return f"{row['out']}: {transits}, {row['digits']} digits, {row['level']}, {row['cpu_s']:.1f} CPU s"

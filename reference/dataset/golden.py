@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DatasetError, InputError
-from ..numbers.columns import POSITION, STATE, GridColumns, place_of
+from ..errors import DatasetError, InputError, counted
+from ..numbers.columns import POSITION, STATE, Framed, GridColumns, place_of
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
 from ..scenes.fields import Level
@@ -32,16 +32,20 @@ PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two doub
 
 
 @dataclass(frozen=True, repr=False)
-class PrintedTable:
+class PrintedTable(Framed):
     """A CSV table of a dataset: columns of decimals, by name, and the largest bound of each."""
 
     _sheet: Sheet
     _bounds: Mapping[str, str]
 
-    @property
+    @cached_property
     def columns(self) -> tuple[str, ...]:
         """The names of the columns, in order."""
         return self._sheet.header
+
+    def __repr__(self) -> str:
+        """Return the names of the columns and the number of rows."""
+        return f"PrintedTable({', '.join(self.columns)}; rows: {len(self)})"
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -61,9 +65,9 @@ class PrintedTable:
         """Return bounds on the errors of a column's printed values: a transit time's own, else the column's largest."""
         if name == "t":
             return self.exact("bound") if "bound" in self.columns else [Fraction(0)] * len(self)
-        if name not in self._bounds:
-            raise KeyError(f"a dataset bounds t, {', '.join(self._bounds)}, not {name!r}")
-        return [Fraction(self._bounds[name])] * len(self)
+        if name not in (self._bounds if len(self) else self.columns):  # a table without rows has none
+            raise KeyError(f"a dataset bounds {', '.join(['t', *self._bounds])}, not {name!r}")
+        return [Fraction(self._bounds[name])] * len(self) if len(self) else []
 
     def decimals(self, name: str) -> list[str]:
         """Return a column as printed."""
@@ -85,7 +89,8 @@ class Golden(GridColumns):
         grid: `grid.csv`.
         transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically zero.
         function: the golden function, None if it has none; `at` serves all the same.
-        sections: the rows of `sections.csv` of each section that the scene asks for, by its word.
+        sections: the rows of `sections.csv` of each section that the scene asks for, by its word; none where the
+            dataset is a function alone.
     """
 
     path: Path
@@ -138,7 +143,7 @@ class Golden(GridColumns):
     def __repr__(self) -> str:
         """Return id, level, digits, and the numbers of rows and transits."""
         about, counts = self.manifest, self.manifest.counts
-        rows = f"{counts.grid} grid times, {counts.transits} transits"
+        rows = f"{counted(counts.grid, 'grid time')}, {counted(counts.transits, 'transit')}"
         return f"Golden({about.id}: {about.level}, {about.digits} digits, {rows})"
 
 
@@ -164,12 +169,18 @@ def load(name: str | Path) -> Golden:
     return Golden(files.folder, files.manifest, files.scene, grid, transits, function, _sections(files))
 
 
-def _sections(files: Files) -> dict[str, PrintedTable]:
+class _Sections(dict[str, PrintedTable]):
+    def __missing__(self, word: str) -> PrintedTable:
+        expected = f"a section of sections.csv, of which there are: {', '.join(self) or 'none'}"
+        raise InputError("sections", word, expected, "reference.solve(golden.scene, sections=…) finds any.")
+
+
+def _sections(files: Files) -> _Sections:
     if (sheet := files.tables.get("sections.csv")) is None or files.manifest.sections is None:
-        return {}
-    said = files.manifest.sections
-    rows = {word: [row for row in sheet.rows if row[0] == word] for word in said.counts}
-    return {word: PrintedTable(replace(sheet, rows=own), said.bounds) for word, own in rows.items()}
+        return _Sections()
+    said, header = files.manifest.sections, sheet.header[1:]
+    rows = {word: [row[1:] for row in sheet.rows if row[0] == word] for word in said.counts}
+    return _Sections({word: PrintedTable(Sheet(header, own, {}), said.bounds) for word, own in rows.items()})
 
 
 @dataclass(frozen=True)

@@ -55,9 +55,16 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
 class Framed:
     """Columns that pandas can hold: a notebook shows them as a table where it is installed."""
 
+    columns: Any
+    array: Any
+
     def to_pandas(self) -> Any:
-        """Return a pandas.DataFrame."""
-        raise NotImplementedError
+        """Return the columns as a pandas.DataFrame of the nearest doubles.
+
+        Raises:
+            InputError: pandas is not installed.
+        """
+        return data_frame({name: self.array(name) for name in self.columns})
 
     def _repr_html_(self) -> str | None:
         try:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .columns import KINDS, Framed, data_frame, place_of
+from .columns import KINDS, Framed, place_of
 from .precision import Array, decimals_for, rounded, to_fraction, with_decimal_point
 
 Integers = Any  # an array of integers of any size: dtype object, shape (rows,)
@@ -65,14 +65,6 @@ class Table(Framed):
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
 
     array = __getitem__
-
-    def to_pandas(self) -> Any:
-        """Return the columns as a pandas.DataFrame of the nearest doubles.
-
-        Raises:
-            InputError: pandas is not installed.
-        """
-        return data_frame({name: self.array(name) for name in self.columns})
 
     def exact(self, name: str) -> list[Fraction]:
         """Return the values of a column, exactly as computed."""

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import InputError, unknown
+from ..errors import InputError, counted, unknown
 from ..numbers.columns import GRID, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..scenes.scene import Scene, full_name
@@ -211,7 +211,8 @@ class Ranges:
     def __repr__(self) -> str:
         """Return scene, uncertain inputs, and the numbers of rows and transits."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.uncertain.items())
-        return f"Ranges({self.scene.id}: {box}; {len(self.times)} grid times, {len(self.transits)} transits)"
+        rows = f"{counted(len(self.times), 'grid time')}, {counted(len(self.transits), 'transit')}"
+        return f"Ranges({self.scene.id}: {box}; {rows})"
 
 
 def _mean(times: Sequence[Any], swings: int) -> Ends:

@@ -14,7 +14,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy.typing as npt
 
 from ..engines.plan import Run
-from ..errors import InputError, UnreachableError
+from ..errors import InputError, UnreachableError, counted
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
 from ..numbers.precision import decimals_for
@@ -178,8 +178,9 @@ class Solution(GridColumns):
 
     def __repr__(self) -> str:
         """Return scene, level, digits, and the numbers of rows and transits."""
-        run, transits = self.scene.run, f"{len(self.directions)} transits"
-        return f"Solution({self.scene.id}: {run.level}, {run.digits} digits, {len(self.times)} grid times, {transits})"
+        run, transits = self.scene.run, counted(len(self.directions), "transit")
+        times = counted(len(self.times), "grid time")
+        return f"Solution({self.scene.id}: {run.level}, {run.digits} digits, {times}, {transits})"
 
 
 def grid_decimals(solution: Solution) -> dict[str, int]:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..engines import AUTO
-from ..errors import InputError, unknown
+from ..errors import InputError, counted, unknown
 from ..numbers.columns import Framed, data_frame
 from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
 from ..status import Status
@@ -65,7 +65,7 @@ class Swept(Framed):
     def __repr__(self) -> str:
         """Return the scene, and how many rows there are of each status."""
         found = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return f"Swept({self.request.scene.id}: {len(self)} rows, {found}; {self.request.engine})"
+        return f"Swept({self.request.scene.id}: {counted(len(self), 'row')}, {found}; {self.request.engine})"
 
     def to_pandas(self) -> Any:
         """Return the rows as a pandas.DataFrame: the values of the fields, then the columns.

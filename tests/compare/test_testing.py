@@ -91,7 +91,10 @@ def test_a_failure_of_transits_tells_which(golden, states):
     zeros = np.delete(golden.transits["t"], [5])
     with pytest.raises(AssertionError, match="missed at") as caught:
         assert_agrees("paris", golden.t, states[:, :2], tolerance=1e-6, transits=zeros)
-    assert f"missed at         {golden.transits['t'][5]:.6f} s" in str(caught.value)
+    said = str(caught.value)
+    assert f"missed at         {golden.transits['t'][5]:.6f} s" in said
+    assert said.startswith("paris: every position is within the 1.000e-06 m that are allowed, and yet:\n")
+    assert "got  " not in said  # of no row that is within the tolerance
 
 
 def test_what_says_nothing_or_too_little_of_the_motion_fails():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from reference import InputError, load_scene, scene_ids
-from reference.errors import did_you_mean, in_words, nearest
+from reference.errors import counted, did_you_mean, in_words, nearest
 from reference.scenes.scene import field_names
 
 
@@ -32,6 +32,10 @@ def test_there_are_at_most_five_names():
 
 def test_of_names_that_contain_the_word_the_shortest_stand_first():
     assert nearest("dop853", ["numbalsoda_dop853", "rk4", "scipy_dop853"]) == ["scipy_dop853", "numbalsoda_dop853"]
+
+
+def test_one_of_a_kind_has_no_plural():
+    assert [counted(number, "row") for number in (0, 1, 2)] == ["0 rows", "1 row", "2 rows"]
 
 
 def test_names_are_joined_as_in_a_sentence():

@@ -197,7 +197,7 @@ def clock(rows: Rows, release: Array) -> Rows:
     first, last = (is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
     if last and not first and len(rows.times) > 2:
         return replace(_reversed(rows), starts=True)
-    return _from_zero(rows, release) if first and rows.times[0] > 0 else rows
+    return _from_zero(rows, release) if first and 0 < rows.times[0] < rows.times[-1] else rows
 
 
 def _from_zero(rows: Rows, release: Array) -> Rows:
@@ -209,7 +209,7 @@ def _from_zero(rows: Rows, release: Array) -> Rows:
 
 def other_ways(rows: Rows, release: Array) -> Iterator[Rows]:
     """Yield rows that were made right as those of other conventions between which row 0 does not decide."""
-    if rows.times[0] > 0:  # a clock that starts late, and a release that is off
+    if 0 < rows.times[0] < rows.times[-1]:  # a clock that starts late, and a release that is off
         yield _from_zero(rows, release)
     if abs(abs(release[0]) - abs(release[1])) <= NEAR * abs(release[0]):
         yield _renamed(rows, (1, 0), (1, 1) if release[0] * release[1] > 0 else (-1, -1))

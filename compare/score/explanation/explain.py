@@ -99,7 +99,7 @@ class KnownScene:
         truth = self.model.states(self.scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
         right, frequency = self.right, self.frequency
         pendulum = Pendulum(self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate)))
-        intervals = round(float(rows.times[-1] / rows.times[1])) if rows.times[0] == 0 else 0
+        intervals = round(float(rows.times[-1] / rows.times[1])) if rows.times[0] == 0 < rows.times[-1] else 0
         return Case(rows, truth, right, pendulum, frequency, allowed_m, intervals)
 
 

@@ -13,7 +13,7 @@ from .case import AS_IF, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
 from .gate import CLEAN, Evidence, loose, may_be_told, without_doubtful_steps
-from .programs import Program
+from .programs import NAMES, Program
 from .readings import Reader, Reading, adjusted
 
 TRIED = 6  # readings of a family that are run
@@ -67,6 +67,8 @@ def best_of(case: Case, stepped: bool = False) -> Reading | None:
     best = polished(case, run[0]) if run else None
     if best is None or stepped:
         return best
+    if case.rows.plane.size <= len(NAMES):  # a family fits any such rows: what leaves much of them says nothing
+        return best if best.rest <= case.enough else None
     one_of_many = any(cause.free or cause.group == "g" for cause in best.causes)  # 9.81, 9.80665 and so on
     share = FITTED_SHARE if one_of_many else NAMED_SHARE
     return best if best.rest <= max(share * case.error, noise) else None
@@ -111,10 +113,12 @@ def ranked(
         tried: number of readings of a family that are run.
     """
     run: list[Reading] = []
+    numbers = case.rows.plane[int(case.released) :].size  # as many that are fitted make any rows
     for reader in sorted(readers, key=lambda reader: reader.fit.rest):
         least = min((reading.score + EXTRA[reading.reader.right.kind] for reading in run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
-        likely = reader.readings(causes_of(reader.right.kind), most)[:tried]
+        likely = reader.readings(causes_of(reader.right.kind), most)
+        likely = [one for one in likely if sum(bool(cause.free) for cause in one.causes) < numbers][:tried]
         likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
         for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
             leaves = rms(case.left(reading.program))
@@ -144,7 +148,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     kind, reading = reader.right.kind, _without_needless(case, reading)
     left = case.left(reading.program)
     corrected = largest(left)
-    spacing, enough = float(rows.times[1] - rows.times[0]), max(case.allowed_m, 2 * rows.noise)
+    spacing, enough = float(np.ptp(rows.times[:2])), max(case.allowed_m, 2 * rows.noise)
     shown = ("release.x", "release.y") if rows.starts and rows.times[0] == 0 else ()
     evidence = Evidence(corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown)
     read = [*sized(case, reading), *([] if step is None else [step])]

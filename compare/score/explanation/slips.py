@@ -74,8 +74,8 @@ def _size(rates: Array) -> float:
 def _differentiated(times: Array, plane: Array, rate: float) -> tuple[Array, Array, float] | None:
     """Return x, y, vx, vy, and ax, ay of rows with equal steps, differentiated, and the error of the last in m/s².
 
-    None if rows are too few or too far apart, or steps differ. Of rows that are close to each other only some are
-    taken: their rounding would be magnified most.
+    None if rows are too few, or too far apart for the scene's motion or their own, or steps differ. Of rows that are
+    close to each other only some are taken: their rounding would be magnified most.
     """
     steps = np.diff(times)
     if len(times) < LEAST or not np.ptp(steps) < 1e-6 * steps[0] or not steps[0] * rate < FARTHEST:
@@ -84,6 +84,8 @@ def _differentiated(times: Array, plane: Array, rate: float) -> tuple[Array, Arr
     h, plane = float(steps[0]) * stride, plane[::stride]
     parts = [np.array([np.convolve(q, stencil[::-1], "valid") for q in plane.T]) for stencil in (FIRST, SECOND, COARSE)]
     speeds, rates, coarse = parts[0] / h, parts[1] / h**2, parts[2][:, 1:-1] / h**2
+    if h * h * _size(rates) > _size(plane):  # the bob turns back from row to row
+        return None
     return np.vstack([plane[3:-3].T, speeds]), rates, _size(rates - coarse)
 
 
@@ -143,7 +145,7 @@ def _alike(off: list[tuple[str, str, float]]) -> bool:
 
 def _sentence(equation: str, term: str, value: float, right: float) -> str:
     name = "the constant term" if term == "1" else f"the term with {term}"
-    return f"in the equation of {equation}, {name} is {value:.6g} {TERMS[term]} where the model has {right:.6g}"
+    return f"in the equation of {equation}, {name} is {value:.6g} {TERMS[term]} where the model has {right + 0.0:.6g}"
 
 
 def falls(rows: Rows, right: Program) -> str:
@@ -151,8 +153,9 @@ def falls(rows: Rows, right: Program) -> str:
     time, gone = rows.times[1:] - rows.times[0], rows.plane[1:] - rows.plane[0]
     for name, way in zip("xy", gone.T, strict=True):
         pulls = np.abs(2 * way / time**2) / right.g
-        if pulls.min() > FREELY[0] and pulls.max() < FREELY[1] and abs(way[-1]) > GROWN * right.length:
-            fell = f"Its {name} falls by {abs(way[-1]):.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
+        far = float(abs(way[-1:]).sum())
+        if ((pulls > FREELY[0]) & (pulls < FREELY[1])).all() and far > GROWN * right.length:
+            fell = f"Its {name} falls by {far:.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
             return f"{fell}: {name} is its vertical, and its cord pulls too little."
     return ""
 

@@ -194,7 +194,7 @@ def test_pixels_with_another_origin_are_not_given_a_scale(foucault, tmp_path):
     status, out, _ = foucault("score", "paris", tmp_path / "px.csv", "--no-diagnosis", "--json")
     (convention,) = json.loads(out)["conventions"]
     assert status == 1
-    assert convention["id"] == "beyond_the_cord" and "pixels, or another unit?" in convention["text"]
+    assert convention["id"] == "beyond_the_cord" and "pixels, another unit, or another pendulum?" in convention["text"]
 
 
 @pytest.mark.parametrize(

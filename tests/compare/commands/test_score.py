@@ -34,7 +34,7 @@ def test_later_rows_and_transits_are_ignored_and_a_note_says_how_many(foucault, 
     status, out, _ = foucault(*words, "--t-end", "600")
     assert status == 0
     assert "11 rows, t = 0 to 600 of 600 s" in out
-    assert "Note: 20 rows after t = 600 s ignored." in out
+    assert "Note: 20 rows after t = 600 s ignored, the last at 1800 s." in out
     inside = sum(t <= 600 for t in times)
     document = json.loads(foucault(*words, "--t-end", "600", "--json")[1])
     assert document["transits"]["matched"] == inside == 73

@@ -25,6 +25,7 @@ def test_a_small_sweep_prints_a_table(foucault):
     assert lines[0].split()[0] == "site.latitude"
     assert [line.split()[0] for line in lines[1:4]] == ["0", "10", "20"]
     assert lines[4] == "3 rows: 3 ok"
+    assert foucault("sweep", *SMALL, "--over", "site.latitude=48")[1].splitlines()[2] == "1 row: 1 ok"
 
 
 def test_a_table_shows_no_digit_beyond_its_error():
@@ -154,7 +155,7 @@ def test_a_folder_is_gone_on_with_by_the_same_command_or_by_itself(foucault, tmp
     before = part.read_bytes()
     part.unlink()
     status, out, _ = foucault("sweep", "--out", folder)
-    assert (status, out.splitlines()[1]) == (0, "3 rows: 3 ok")
+    assert (status, out.splitlines()[:2]) == (0, [f"{folder}: 1 part in Parquet", "3 rows: 3 ok"])
     assert part.read_bytes() == before
     status, out, _ = foucault(*words, "--json")
     assert json.loads(out)["rows_done"] == 0

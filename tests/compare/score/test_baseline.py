@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 from compare.candidates.candidate import Candidate
 from compare.score.judge import judge
 from compare.score.since import Since
+from reference import load_scene, trajectory
 
 COMPILER = shutil.which("cc")
 FINE = {"swing": 900.0}
@@ -170,3 +171,19 @@ def test_a_tolerance_is_the_step(method: str, old: float, new: float, outcome: s
         check(found, set(), outcome)
         return
     assert found.changes and all(STEP in one or "leaves the sphere" in one for one in found.changes), found.text
+
+
+def test_a_number_without_a_cause_is_no_part_of_what_changed_and_more_than_nothing_else() -> None:
+    """A fast clock moves like another g, which is not told for certain."""
+    scene, times = load_scene("paris", ["run.t_end=3600", "inputs=binary64"]), np.linspace(0, 3600, 121)
+
+    def version(pace: float, rate: str) -> Candidate:
+        run = trajectory(scene.with_values([f"site.rotation_rate={rate}", "run.t_end=4000"]), times * pace)
+        return Candidate.of("old", times, dict(zip("xyz", run.T, strict=False)))
+
+    same = judge(version(1.0, "7.3e-5"), scene, baseline=version(1.0, "7.292115e-5")).since
+    assert same is not None and same.complete and "7.3e-05" in same.text
+    for new, old in (("7.3e-5", 1.0001), ("0", 1.0)):
+        found = judge(version(1.0 if old > 1 else 1.0001, new), scene, baseline=version(old, "7.292115e-5")).since
+        assert found is not None and found.changes and not found.complete, found.text
+        assert found.left_m is not None and found.left_m > 0.06 and "that explains all but 0.0" in found.text

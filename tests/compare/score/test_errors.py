@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ from compare.candidates.arrays import candidate_of
 from compare.candidates.candidate import COLUMNS, Candidate
 from compare.score.errors import drifts, swing_rate, trajectory_errors
 from reference import load, load_scene, trajectory
-from reference.dataset.golden import dense
+from reference.dataset.golden import Dense, dense
 from reference.numbers.precision import LONG_DOUBLE
+from reference.solver.solve import solve_at
 
 TIMES = np.linspace(0.0, 3600.0, 721)
 
@@ -174,6 +176,23 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     assert max(np.abs(made.components[name]).max() for name in ("z", "vz")) < 1e-17  # 67 m in a long double
     blind = trajectory_errors(candidate_of("wide", {"t": near, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
     assert blind.max_m > 1e-14
+
+
+def test_the_bound_holds_at_times_that_are_no_doubles():
+    """Rows at tenths of a second, right to 34 digits, of a short cord: the bob moves on as t and not as its double."""
+    scene = make_scene(pendulum={"length": "0.01"}, release={"x": "0.003", "y": "0.004"}, run={"t_end": "60"})
+    times = [Fraction(i, 10) for i in range(581, 600)]
+    near = np.array([float(t) for t in times])
+    solution = solve_at(scene, {*times, *map(Fraction, near.tolist())}, 34)
+    row = {t: i for i, t in enumerate(solution.times)}
+    truth = Dense.of(near, solution.grid, [row[Fraction(t)] for t in near.tolist()])
+    right = Dense.of(near, solution.grid, [row[t] for t in times])
+    lows = dict(zip(COLUMNS, right.low.T, strict=True)) | {
+        "t": np.array([float(t - Fraction(float(t))) for t in times])
+    }
+    made = Candidate.of("right", near, dict(zip(COLUMNS, right.states.T, strict=True)), low=lows)
+    errors = trajectory_errors(made, truth, solution)
+    assert 10 * truth.bound_m < errors.max_m < errors.bound_m < 10 * errors.max_m
 
 
 def test_a_turn_of_the_swing_plane_is_told_where_there_are_positions(golden, truth):

@@ -32,7 +32,7 @@ from compare.score.explanation.case import Explanation, Rows
 from compare.score.explanation.explain import KnownScene, explain
 from compare.score.explanation.families import fits_of
 from compare.score.explanation.fitted import TIE, _is_tied, readers_of
-from compare.score.explanation.slips import falls, slip
+from compare.score.explanation.slips import _sentence, falls, slip
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from foucault import commands
@@ -410,6 +410,18 @@ def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
 DRIFT = "semi_implicit_euler_drift"
 
 
+@pytest.mark.parametrize("times", [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)])
+def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(times: tuple[float, ...]) -> None:
+    """A family of models fits a few rows whatever they are, and so do as many fitted numbers as the rows have."""
+    scene = load_scene("paris", ["inputs=binary64"])
+    still = Variants().states(with_value(scene.exact, "site.rotation_rate", Fraction(0)), np.unique([0.0, *times]))
+    found = explain(np.array(times), dict(zip("xy", still[-len(times) :].T, strict=False)), scene, 7e-7)
+    assert [cause.id for cause in found.causes] == ["no_rotation"] * (times[-1] > 0)
+    for rows in ([[0.3, 0.4], [0.1, 0.2], [0.2, -0.3]], [[-0.1, 0.2], [0.3, 0.4], [0.1, 0.1]]):
+        columns = dict(zip("xy", np.array(rows)[: len(times)].T, strict=True))
+        assert explain(np.array(times), columns, scene, 7e-7).causes == (), rows
+
+
 @pytest.mark.parametrize("pull", [1.0, 2.0])
 def test_a_bob_that_nothing_holds_falls(pull: float) -> None:
     """And one of the public simulators in test_wild.py is told so, after all that is tried before."""
@@ -528,6 +540,14 @@ def test_a_slip_in_a_formula_is_found_in_the_accelerations(term: tuple[int, int]
     assert float(told[3]) == pytest.approx(wrong, rel=2e-3, abs=1e-7)
     assert float(told[4]) == pytest.approx(right, rel=2e-3)
     assert ("does work" in said) is (place != (0, 0))
+
+
+def test_rows_too_far_apart_for_their_own_motion_tell_no_slip() -> None:
+    """Ten seconds from row to row, which the clock counts as a sixth of a second: a bob that turns back each time."""
+    scene, seconds = load_scene("paris", ["inputs=binary64"]), 10.0 * np.arange(361)
+    columns = dict(zip("xy", Variants().states(scene.exact, seconds).T, strict=False))
+    assert slip(KnownScene.of(scene).rows(seconds / 60, columns), scene) == ""
+    assert _sentence("y", "x", 1.0, -0.0).endswith("the model has 0")
 
 
 @pytest.mark.long  # the search for causes takes long; what is told once it is over, a bob that falls shows as well

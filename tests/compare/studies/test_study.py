@@ -191,11 +191,14 @@ def test_somebody_elses_program_is_a_row_of_the_study(foucault, tmp_path: Path) 
         "for i in range(round(end / step) + 1):\n    print(f'{i * step!r},0.3,0.4')\n"
     )
     command = f"python3 {script} {{t_end}} {{grid_step}}"
-    status, out, _ = foucault("study", "paris", "--methods", "rk4", "--t-end", "120", "--run", command, "--json")
+    words = ("study", "paris", "--methods", "rk4", "--t-end", "120", "--run", command, "--out", tmp_path / "out")
+    status, out, _ = foucault(*words, "--json")
     assert status == 0
-    (row,) = (row for row in json.loads(out)["rows"] if row["method"] != "rk4")  # it has no {setting}
+    (row,) = (row for row in json.loads(out)["rows"] if row["method"] != "rk4")
     assert row["method"] == "still.py"
     assert row["error_m"] > 0.5
+    (line,) = (line for line in foucault(*words)[1].splitlines() if "still.py" in line)
+    assert line.split()[:3] == ["still.py", "–", f"{row['error_m']:.2e}"]  # it has no {setting}, and so no step
 
 
 @pytest.fixture

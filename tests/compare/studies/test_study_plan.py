@@ -8,8 +8,11 @@ import pytest
 
 from compare.methods import METHODS
 from compare.studies.stability import cut
-from compare.studies.study_plan import declared, on_doubles, precision_items
+from compare.studies.study import study
+from compare.studies.study_plan import declared, on_doubles, plan, precision_items
 from reference import InputError, load_scene, scene_ids
+
+PARIS = load_scene("paris")
 
 
 def test_a_grid_of_doubles_stays_as_it_is():
@@ -34,6 +37,14 @@ def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
         declared(["rk4", "mpmath_odefun"], "stability")
     with pytest.raises(InputError, match="rk5"):
         declared(["rk5"], "stability")
+
+
+@pytest.mark.parametrize(
+    "runs", [lambda: study("paris", []), lambda: declared([], "stability"), lambda: plan(PARIS, ())]
+)
+def test_no_methods_are_not_all_of_them(runs):
+    with pytest.raises(InputError, match="got 'no id', expected a method that can run here"):
+        runs()
 
 
 def test_precisions_of_some_methods_are_those_of_all_methods_chosen_from():

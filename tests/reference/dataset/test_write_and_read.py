@@ -232,6 +232,29 @@ def test_a_dataset_and_a_solution_say_in_a_line_what_they_hold(dataset, solution
     held = "paris: confirmed, 25 digits, 6 grid times, 36 transits"
     assert repr(solution) == f"Solution({held})"
     assert repr(load(dataset)) == f"Golden({held})"
+    assert repr(load(dataset).grid) == "PrintedTable(t, x, y, z, vx, vy, vz; rows: 6)"
+
+
+def test_the_tables_of_a_dataset_are_frames(dataset):
+    golden = load(dataset)
+    for table in (golden.grid, golden.transits, load("museum_gate").sections["gate 127"]):
+        frame = table.to_pandas()
+        assert tuple(frame.columns) == table.columns and frame["t"].tolist() == table["t"].tolist()
+        assert "<table" in table._repr_html_()
+
+
+def test_a_dataset_of_a_function_alone_says_that_it_lists_no_sections():
+    golden = load("museum_gate.binary64")
+    assert golden.scene.run.sections == ("gate 127",) and not golden.sections
+    with pytest.raises(InputError, match=r"got 'gate 127', .* there are: none.*sections=…\) finds any"):
+        golden.sections["gate 127"]
+
+
+def test_a_table_without_rows_has_no_bounds_and_no_other_columns_for_that():
+    transits = load("creeping").transits
+    assert transits.bound("x") == transits.bound("t") == transits.exact("x") == []
+    with pytest.raises(KeyError, match="a dataset bounds t, not 'w'"):
+        transits.bound("w")
 
 
 def test_what_has_no_transits_says_why(tmp_path):
