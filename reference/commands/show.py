@@ -200,21 +200,21 @@ def _motion(scene: Scene) -> dict[str, Any]:
     row = {name: values[0] for name, values in columns.items()}
     found: dict[str, Any] = {"over_s": scene.run.t_end}
     swing, turn, angle = (float(row[name]) for name in ("swing_hz", "precession_deg_per_h", "max_angle_deg"))
+    if not swing > 0:
+        return {"reason": row["reason"] or "the bob does not swing to and fro"}
     seconds, k = float(scene.run.t_end), start.k
     smallest = 2 * math.sin(math.radians(angle) / 2) * math.exp(-float(k.drag) * seconds / 2)
     off = offset(start, float(k.length) * smallest)
     if off > 1:
         return {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
-    if swing > 0:
-        found |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
-    followed = swing > 0 and not turns_too_far(start, 0.5 / swing)
-    if math.isfinite(turn) and followed and off <= math.radians(abs(turn)) * seconds / HOUR:
+    found |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
+    if off <= math.radians(abs(turn)) * seconds / HOUR and not turns_too_far(start, 0.5 / swing):
         error_of_turn = float(row["precession_error_deg_per_h"])
         found |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
-        if turn:
+        if abs(turn) > error_of_turn:
             full = 360 / abs(turn)
             found |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
-    return found if len(found) > 1 else {"reason": row["reason"] or "the bob does not swing to and fro"}
+    return found
 
 
 def _motion_line(motion: dict[str, Any]) -> str:

@@ -43,8 +43,12 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
     assert motion["period_s"] == pytest.approx(1 / 0.060843634, rel=2e-8)  # Mathar
     assert motion["full_turn_h"] == pytest.approx(360 / 11.3418, rel=1e-5)
     assert all(0 < motion[name] < 1e-6 for name in motion if "error" in name)
-    status, out, _ = foucault("show", "conical")
-    assert (status, "no period: " in out) == (0, True)
+    for scene in ("conical", "weightless"):
+        status, out, _ = foucault("show", scene)
+        assert (status, "no period: " in out) == (0, True)
+    motion = json.loads(foucault("show", "paris", "--set", "site.rotation_rate=0", "--json")[1])["motion"]
+    assert motion["precession_error_deg_per_h"] > abs(motion["precession_deg_per_h"])
+    assert "full_turn_h" not in motion
     motion = json.loads(foucault("show", "damped", "--json")[1])["motion"]  # its last highest points were 157° an hour
     assert motion == {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
     motion = json.loads(foucault("show", "damped", "--set", "run.t_end=120", "--json")[1])["motion"]
