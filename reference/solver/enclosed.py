@@ -89,8 +89,8 @@ def audited(solution: Solution, digits: Any) -> Solution:
 def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
     tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
-    found = [(part.directions, [parity for *_, parity in part.possible]) for part in solution.sections.values()]
-    return tables, [(solution.directions, [parity for *_, parity in solution.possible]), *found]
+    passages = [(part.directions, [parity for *_, parity in part.possible]) for part in solution.sections.values()]
+    return tables, [(solution.directions, [parity for *_, parity in solution.possible]), *passages]
 
 
 def _send_digits(emit: Emit, problem: ProofTask) -> None:
@@ -158,8 +158,8 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
         if word in witness.passages and not passages.possible:
             missing.append(zeros_lacking(passages[:2], witness.passages[word], section_decimals(solution), witness)[0])
     if solution.zeros is not None and witness.transits is not None and not solution.possible:
-        ones, others = (solution.zeros, solution.directions), (witness.transits, witness.directions)
-        lacking, apart = zeros_lacking(ones, others, transit_decimals(solution), witness)
+        zeros, witnessed = (solution.zeros, solution.directions), (witness.transits, witness.directions)
+        lacking, apart = zeros_lacking(zeros, witnessed, transit_decimals(solution), witness)
         missing.append(lacking)
         late = None if apart is None else apart.largest()["t"]
     return CrossCheck.by(witness, gaps, late), max(missing)
