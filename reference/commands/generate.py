@@ -151,7 +151,7 @@ def command(
         refuse({"--no-tables": True}, "without --function")
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        solution = solve(scene, **making.asked_of(scene), report=report)
+        solution = solve(scene, **making.solve_options(scene), report=report)
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)

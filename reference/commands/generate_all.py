@@ -81,7 +81,7 @@ def made(job: Job) -> tuple[Row, dict[str, Content]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
         making = making_of(job.scene, job.name, job.folder)
-        solution = solve(job.scene, **making.asked_of(job.scene))
+        solution = solve(job.scene, **making.solve_options(job.scene))
         texts = render(solution, job.name, tables=making.tables)
         check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
         return job.row(Status.OK) | summary(solution, job.folder), texts
