@@ -129,8 +129,8 @@ def generate_all(
     if as_json:
         emit({"rows": rows, **counts})
     else:
-        made = len(undone) - len(failed)
-        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {made} made, {len(failed)} failed")
+        done = len(undone) - len(failed)
+        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {done} made, {len(failed)} failed")
     if failed:
         typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
         unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
