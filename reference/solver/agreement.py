@@ -117,7 +117,7 @@ def zeros_lacking(
 ) -> tuple[int, Table | None]:
     """Return the bits that a witness lacks to agree on zeros, which are `witnessed` there, and how far these are apart.
 
-    Where directions differ, no distances are told.
+    Where directions differ, there are no distances.
     """
     (table, directions), (seen, signs) = published, witnessed
     if directions != signs:

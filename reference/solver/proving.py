@@ -40,7 +40,7 @@ SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 @dataclass(frozen=True)
 class ProofTask:
-    """A scene to be proved, and what its pilot runs told about it.
+    """A scene to be proved, and what its pilot runs measured.
 
     Attributes:
         scene: the scene, with the digits asked for.

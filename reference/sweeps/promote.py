@@ -143,7 +143,7 @@ def promoted(
 
 
 def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
-    """Return a scene solved, with its highest points where its swing is wanted and they can be told.
+    """Return a scene solved, with its highest points where its swing is wanted and has them.
 
     A cone has none. With drag they take more digits.
     """

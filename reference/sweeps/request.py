@@ -1,4 +1,4 @@
-"""A sweep as it was asked for: the scene, what varies, what is wanted, and how the rows are cut into parts.
+"""The request of a sweep: the scene, what varies, which quantities, and how the rows are cut into parts.
 
 `request` checks what a user asks for before any work, and chooses the engine and the size of parts.
 """
