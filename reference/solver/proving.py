@@ -113,7 +113,7 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     table = partial(Table.of_intervals, bits=bits)
     zeros = separated(enclosed.proved.transits or (), TRANSITS, times[-1], table)
     transits = None if enclosed.proved.transits is None else zeros.table
-    size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
+    size, gap = (max(columns[name] for name in POSITION) for columns in (grid.largest(), gaps))
     transit_radius = None if transits is None else max(transits.bound("t"), default=None)
     proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)
     passages, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
@@ -186,7 +186,8 @@ def _between_rows(gaps: Mapping[str, Fraction]) -> dict[str, Fraction]:
 
     From one row to the next the swing turns an error in one column into one in the others of its kind.
     """
-    return {name: ESTIMATE_FACTOR * max(gaps[of] for of in kind) for kind in (POSITION, VELOCITY) for name in kind}
+    largest = {kind: max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY)}
+    return {name: ESTIMATE_FACTOR * gap for kind, gap in largest.items() for name in kind}
 
 
 def _check_passages(event_run: Run, solution: Solution, errors: Mapping[str, Fraction]) -> None:

@@ -244,14 +244,15 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
     n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
     sine, speed = np.linalg.norm(np.cross(n, down), axis=1) + position / length, np.linalg.norm(v, axis=1)
     at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
-    turn, some, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
+    turn, has_apsides, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
     across = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
     offset = np.abs((turn * down).sum(axis=1)) * across
     spun = np.abs((np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1))
     upright = np.fmax(np.cos(run.largest_angle), np.fmin(GOLDEN, rows.rate**2 / (rows.rate**2 + spun**2)))
-    near = np.where(some, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
-    round_ = ~some & (4 * position >= LEAST_BEND * length * lean)  # of two squares, each twice its relative error
-    return np.asarray(some & at_end | near | round_)
+    near = np.where(has_apsides, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
+    # of two squares, each twice its relative error
+    round_ = ~has_apsides & (4 * position >= LEAST_BEND * length * lean)
+    return np.asarray(has_apsides & at_end | near | round_)
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:

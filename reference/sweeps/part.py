@@ -118,12 +118,12 @@ class Part:
         """List transits in the order of their rows, in place of those that are listed for some rows."""
         stays = ~np.isin(self.transits["row"], list(replaced))
         added = dict(zip(self.transits, (rows, times, directions), strict=True))
-        both = {
+        columns = {
             name: np.concatenate([listed[stays], np.asarray(added[name], listed.dtype)])
             for name, listed in self.transits.items()
         }
-        order = np.argsort(both["row"], kind="stable")
-        self.transits = {name: values[order] for name, values in both.items()}
+        order = np.argsort(columns["row"], kind="stable")
+        self.transits = {name: values[order] for name, values in columns.items()}
 
 
 def solve_part(request: Request, numbers: range, promote: Promote = promoted) -> Part:

@@ -109,18 +109,18 @@ def main(count: int = 181, pairs: int = 5) -> None:
     print(f"{count} rows, {pairs} pairs; octet compiled or read in {first:.2f} CPU s")
     silent, located = ScalarLoop(False), ScalarLoop(True)
 
-    def octet(wanted: RunOptions) -> Callable[[], object]:
-        return lambda: OCTET.solve(rows, wanted)
+    def octet(options: RunOptions) -> Callable[[], object]:
+        return lambda: OCTET.solve(rows, options)
 
-    def heyoka(wanted: RunOptions) -> Callable[[], object]:
-        return lambda: HEYOKA.solve(rows, wanted)
+    def heyoka(options: RunOptions) -> Callable[[], object]:
+        return lambda: HEYOKA.solve(rows, options)
 
     def default(engine: Any) -> Callable[[], object]:
         return lambda: judged(engine, rows, engine.solve(rows, whole))
 
-    for wanted in (bare, transits, whole, MOVED):
-        HEYOKA.solve(rows[:8], wanted)
-        OCTET.solve(rows[:8], wanted)
+    for options in (bare, transits, whole, MOVED):
+        HEYOKA.solve(rows[:8], options)
+        OCTET.solve(rows[:8], options)
 
     def with_events() -> None:
         located.solve(rows)

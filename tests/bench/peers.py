@@ -190,11 +190,11 @@ def own(rows: Rows) -> list[Peer]:
     """Return octet, and heyoka in all its forms."""
     OCTET.prepare(RunOptions())
     silent, located, whole, bare = ScalarLoop(False), ScalarLoop(True), RunOptions(), RunOptions(False, False)
-    for wanted in (bare, whole):
-        HEYOKA.solve(rows[:8], wanted)
+    for options in (bare, whole):
+        HEYOKA.solve(rows[:8], options)
 
-    def batch(engine: Any, wanted: RunOptions) -> tuple[float, Any]:
-        seconds, run = timed(lambda: engine.solve(rows, wanted))
+    def batch(engine: Any, options: RunOptions) -> tuple[float, Any]:
+        seconds, run = timed(lambda: engine.solve(rows, options))
         return seconds, run.state[:, :3]
 
     return [

@@ -107,8 +107,8 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
             where = "transits.csv" if sheet else MANIFEST
             differing.append(f"{where}: {count} transits are not the motion's, which are {len(expected)}")
         elif expected:
-            both = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
-            kinds.append(("transits", both[0], both[1]))
+            tables = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
+            kinds.append(("transits", tables[0], tables[1]))
     if sheet := files.tables.get("sections.csv"):
         if any(coarse.passages[word][1] != directions for word, (_, directions) in fine.passages.items()):
             return None

@@ -75,15 +75,15 @@ def _doubles(files: Files, kind: str) -> Iterator[str]:
     for name in NUMBERS[kind]:
         i, j = plain.header.index(name), count + NUMBERS[kind].index(name)
         column = Fraction(0) if (kind, name) == ("grid", "t") else files.manifest.bound(kind, name)  # type: ignore[arg-type]
-        for row, other in zip(plain.rows, doubles.rows, strict=True):
+        for row, double_row in zip(plain.rows, doubles.rows, strict=True):
             bound = Fraction(row[-1]) if kind == "transits" and name == "t" else column
-            value, double = Fraction(row[i]), float(other[i])
-            if double.hex() != other[j] or not float(value - bound) <= double <= float(value + bound):
-                yield f"{kind}.binary64.csv: {name} = {other[i]} is not the double nearest to {row[i]}"
-            elif f"{double:.16e}" != other[i]:
-                yield f"{kind}.binary64.csv: {name} = {other[i]} is not written with the digits of {double!r}"
-    for row, other in zip(plain.rows, doubles.rows, strict=True):
-        if any(row[i] != other[i] for i, name in enumerate(plain.header) if name not in NUMBERS[kind]):
+            value, double = Fraction(row[i]), float(double_row[i])
+            if double.hex() != double_row[j] or not float(value - bound) <= double <= float(value + bound):
+                yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not the double nearest to {row[i]}"
+            elif f"{double:.16e}" != double_row[i]:
+                yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not written with the digits of {double!r}"
+    for row, double_row in zip(plain.rows, doubles.rows, strict=True):
+        if any(row[i] != double_row[i] for i, name in enumerate(plain.header) if name not in NUMBERS[kind]):
             yield f"{kind}.binary64.csv: row {row[0]} has another direction, number or bound than {kind}.csv"
 
 
@@ -169,8 +169,8 @@ def problems(files: Files) -> Iterator[str]:
             "transits": completeness(scene, vanishes, bool(possible)),
         }
     )
-    for place, *both in differences(manifest.model_dump(), expected.model_dump()):
-        old, new = (shortened(str(value), LONGEST_VALUE) for value in both)
+    for place, *values in differences(manifest.model_dump(), expected.model_dump()):
+        old, new = (shortened(str(value), LONGEST_VALUE) for value in values)
         yield f"{MANIFEST}: {place} = {old} does not follow from the scene and the tables, which give {new}"
     if (manifest.scene, manifest.notes) != (expected.scene, expected.notes):  # what is checked below needs them whole
         return

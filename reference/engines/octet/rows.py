@@ -73,11 +73,11 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     result.least_ax[:] = np.where(crossed, r[LEAST_SLOPE] * length / (unit * unit), np.nan)
     result.least_bend[:] = np.where(r[APSIDES] > 0, r[LEAST_BEND], np.nan)
     result.apsides[:] = np.where(result.least_bend >= LEAST, r[APSIDES], 0)
-    some = result.apsides > 0
-    result.least_fall[:] = np.where(some, r[LEAST_FALL] / (unit * unit), np.nan)
-    result.apsis_first[:], result.apsis_last[:] = np.where(some, r[A_FIRST : A_LAST + 1], np.nan)
+    has_apsides = result.apsides > 0
+    result.least_fall[:] = np.where(has_apsides, r[LEAST_FALL] / (unit * unit), np.nan)
+    result.apsis_first[:], result.apsis_last[:] = np.where(has_apsides, r[A_FIRST : A_LAST + 1], np.nan)
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
-    result.turn[:] = np.where(some, last - first + np.pi * r[HALF_TURNS], np.nan)
+    result.turn[:] = np.where(has_apsides, last - first + np.pi * r[HALF_TURNS], np.nan)
     result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
     result.state[result.fate != OK] = np.nan
     return replace(result, transit_row=moments[0], transit_t=moments[1], transit_direction=moments[2])

@@ -59,12 +59,12 @@ def test_any_two_that_are_lost_together_leave_a_doubt(monkeypatch, name, kind):
         assert BATCH.solve(rows, RunOptions(times=True)).fate.tolist() == [DOUBTFUL], first
 
 
-@pytest.mark.parametrize("wanted", [RunOptions(times=True), RunOptions(False, False, moved=1)], ids=["run", "moved"])
-def test_a_row_is_the_same_alone_and_after_others(wanted):
+@pytest.mark.parametrize("options", [RunOptions(times=True), RunOptions(False, False, moved=1)], ids=["run", "moved"])
+def test_a_row_is_the_same_alone_and_after_others(options):
     rows = rows_of(list(random_kinds(20261124, 10)))
-    together = BATCH.solve(rows, wanted)
+    together = BATCH.solve(rows, options)
     for row in range(len(rows)):
-        alone = BATCH.solve(rows[row : row + 1], wanted)
+        alone = BATCH.solve(rows[row : row + 1], options)
         for name in ("state", "t_first", "t_last", "turn", "largest_angle", "least_ax", "steps"):
             assert np.array_equal(getattr(alone, name)[0], getattr(together, name)[row], equal_nan=True), name
         own = together.transit_row == row
@@ -88,8 +88,8 @@ def test_steps_without_end_stop_a_row_alone(monkeypatch, paris):
 
 def test_octet_says_the_same_of_every_row():
     rows = rows_of(list(random_kinds(20261124, 20)))
-    wanted = RunOptions(times=True)
-    own, other = BATCH.solve(rows, wanted), OCTET.solve(rows, wanted)
+    options = RunOptions(times=True)
+    own, other = BATCH.solve(rows, options), OCTET.solve(rows, options)
     for name in ("fate", "transits", "close_pairs", "apsides", "transit_row", "transit_direction"):
         assert np.array_equal(getattr(own, name), getattr(other, name)), name
     for name in ("state", "t_first", "t_last", "apsis_first", "apsis_last", "turn", "largest_angle", "transit_t"):

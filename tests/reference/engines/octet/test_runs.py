@@ -32,10 +32,10 @@ def test_transits_and_states_are_those_of_limbs(kind, tally):
 
 def test_a_row_is_bit_for_bit_the_same_alone_and_in_company():
     many = list(random_kinds(3, 25, Fraction(60)))
-    rows, wanted = rows_of(many), RunOptions(times=True)
-    together, backwards = BATCH.solve(rows, wanted), BATCH.solve(rows[::-1], wanted)
+    rows, options = rows_of(many), RunOptions(times=True)
+    together, backwards = BATCH.solve(rows, options), BATCH.solve(rows[::-1], options)
     for i in range(len(many)):
-        alone = BATCH.solve(rows[[i]], wanted)
+        alone = BATCH.solve(rows[[i]], options)
         for whole, at in ((together, i), (backwards, len(many) - 1 - i)):
             for field in fields(Outcomes):
                 if field.name not in LISTS:
@@ -49,11 +49,11 @@ def test_a_row_is_bit_for_bit_the_same_alone_and_in_company():
 def test_what_is_wanted_does_not_change_what_comes_out():
     rows = rows_of(list(random_kinds(4, 10, Fraction(60))))
     whole = BATCH.solve(rows, RunOptions(times=True))
-    for wanted in (RunOptions(apsides=False), RunOptions(transits=False), RunOptions(transits=False, apsides=False)):
-        other = BATCH.solve(rows, wanted)
+    for options in (RunOptions(apsides=False), RunOptions(transits=False), RunOptions(transits=False, apsides=False)):
+        other = BATCH.solve(rows, options)
         assert np.array_equal(whole.state, other.state)
-        assert np.array_equal(whole.transits if wanted.transits else 0 * whole.transits, other.transits)
-        assert np.array_equal(whole.apsides if wanted.apsides else 0 * whole.apsides, other.apsides)
+        assert np.array_equal(whole.transits if options.transits else 0 * whole.transits, other.transits)
+        assert np.array_equal(whole.apsides if options.apsides else 0 * whole.apsides, other.apsides)
 
 
 def test_arrays_that_lie_apart_in_memory_are_not_compiled_for_anew():
