@@ -59,19 +59,19 @@ def solve_enclosed(
     with ExitStack() as meanwhile:
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
-        whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
+        confirming = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
         pays = problem.pilot.steps >= AUDIT_STEPS
         again = in_background(pays, _send_digits, replace(problem, function=False))
         second_proof = meanwhile.enter_context(again) if audit else None
-        report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
+        report = report and slowest(report, [child for child in (confirming, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
         if plan and confirm == "sampled":  # while the audit goes on
             solution = confirmed(problem, solution, confirm, _sampled(plan, solution, report))
         if second_proof is not None:
             solution = audited(solution, second_proof.result(report))
-        if whole is not None:
-            solution = confirmed(problem, solution, confirm, whole.result(report))
-        return solution if whole and not solution.possible else guarded(solution, problem.pilot)
+        if confirming is not None:
+            solution = confirmed(problem, solution, confirm, confirming.result(report))
+        return solution if confirming and not solution.possible else guarded(solution, problem.pilot)
 
 
 def audited(solution: Solution, digits: Any) -> Solution:

@@ -220,6 +220,6 @@ def _assemble(scene: Scene, published: Run, gap: Agreement, checks: tuple[CrossC
     errors, times, signs, source = gap.errors, published.plan.times, published.directions, Source.of(published)
     grid = published.grid.only(GRID).with_errors(errors)
     transits = None if published.transits is None else with_transit_errors(published, errors, gap.transits)
-    tables = {w: with_passage_errors(published, errors, w, gap.sections.get(w)) for w in published.passages}
+    tables = {word: with_passage_errors(published, errors, word, gap.sections.get(word)) for word in published.passages}
     sections = {word: Passages(table, published.passages[word][1]) for word, table in tables.items()}
     return Solution(scene, times, grid, transits, signs, source, checks, pilot_s, sections=sections)
