@@ -110,10 +110,10 @@ def command(
     proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
     proving |= {"--no-confirm": no_confirm, "--function": function, "--no-function": function is False}
     proving["--no-tables"] = no_tables
-    engine_asked = None if engine == AUTO else engine
+    named_engine = None if engine == AUTO else engine
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {"--set": set_, "--section": section, "--uncertain": uncertain, "--engine": engine_asked}
+        unused |= {"--set": set_, "--section": section, "--uncertain": uncertain, "--engine": named_engine}
         refuse(unused, "with --all")
         from .generate_all import generate_all
 
@@ -144,17 +144,17 @@ def command(
     if confirm is not None:
         chosen("--confirm", confirm, CONFIRMATIONS)
     confirm = "none" if no_confirm else confirm
-    given = {"engine": engine_asked, "audit": audit, "confirm": confirm, "function": function}
-    asked: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
-    making = replace(usual, **asked, tables=usual.tables and not no_tables)
+    choices: dict[str, Any] = {"engine": named_engine, "audit": audit, "confirm": confirm, "function": function}
+    choices = {name: value for name, value in choices.items() if value is not None}
+    making = replace(usual, **choices, tables=usual.tables and not no_tables)
     if not (making.tables or making.function):
         refuse({"--no-tables": True}, "without --function")
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        solution = solve(scene, **making.asked_of(scene), report=report)
+        solution = solve(scene, **making.solve_options(scene), report=report)
     if engine not in (AUTO, solution.run.engine):
-        few = f"So few digits need only {solution.run.number}, which {engine} does not have."
-        raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
+        advice = f"So few digits need only {solution.run.number}, which {engine} does not have."
+        raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", advice)
     with stoppable("nothing half was written"):
         write(solution, folder, name, tables=making.tables)
     measured, run = summary(solution, folder), solution.run
@@ -204,8 +204,8 @@ def _generate_ranges(
     typer.echo(f"{folder}: {rows}, for every {box}: enclosed")
     if ranges.possible:
         typer.echo(f"intervals that may hold more transits: {counts['possible']}")
-    for word, found in ranges.sections.items():
-        left = f", intervals that are left open: {len(found.possible)}" if found.possible else ""
-        typer.echo(f"passages of {word}: {len(found.table)}{left}")
+    for word, passages in ranges.sections.items():
+        undecided = f", intervals that are left open: {len(passages.possible)}" if passages.possible else ""
+        typer.echo(f"passages of {word}: {len(passages.table)}{undecided}")
     if period:
         typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")

@@ -81,7 +81,7 @@ def made(job: Job) -> tuple[Row, dict[str, Content]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
         making = making_of(job.scene, job.name, job.folder)
-        solution = solve(job.scene, **making.asked_of(job.scene))
+        solution = solve(job.scene, **making.solve_options(job.scene))
         texts = render(solution, job.name, tables=making.tables)
         check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
         return job.row(Status.OK) | summary(solution, job.folder), texts
@@ -129,8 +129,8 @@ def generate_all(
     if as_json:
         emit({"rows": rows, **counts})
     else:
-        made = len(undone) - len(failed)
-        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {made} made, {len(failed)} failed")
+        done = len(undone) - len(failed)
+        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {done} made, {len(failed)} failed")
     if failed:
         typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
         unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)

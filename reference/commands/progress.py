@@ -81,22 +81,22 @@ def notice(label: str, total: float = 0, unit: str = "s simulated") -> Move:
         total: how much of it there is, in `unit`.
         unit: of completed and total.
     """
-    begun, known, given, last = time.monotonic(), total, False, 0.0
+    begun, known_total, noticed, last = time.monotonic(), total, False, 0.0
     first: tuple[float, float] | None = None  # time and part done at the first move, also of a second try
 
     def move(completed: float, total: float | None = None, item: str = "") -> None:
-        nonlocal first, last, given
-        now, total = time.monotonic(), known if total is None else total
+        nonlocal first, last, noticed
+        now, total = time.monotonic(), known_total if total is None else total
         if first is None or completed < last:
             first = now, completed
         last = completed
         since, done = first
         elapsed = now - begun
-        if given or elapsed <= NOTICE_S or now - since < MEASURED_S or completed <= done:
+        if noticed or elapsed <= NOTICE_S or now - since < MEASURED_S or completed <= done:
             return
         if completed - done < ENOUGH * (total - done) and elapsed <= LATEST_S:
             return
-        given = True
+        noticed = True
         whole = elapsed + (total - completed) * (now - since) / (completed - done)
         counted = f"{_rough(completed)} of {_rough(total)} {unit} after {elapsed:.0f} s"
         typer.echo(f"{label}: about {in_words(whole)}: {counted}", err=True)

@@ -1,4 +1,4 @@
-"""Proofs that `foucault show` tells of: intervals of a scene's swing, and of what uncertain inputs leave."""
+"""Proofs that `foucault show` prints: intervals of a scene's swing, and of what uncertain inputs leave."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..solver.solve import solve
 from ..solver.uncertain import exact_texts, widths_of
 from ..system.workers import Emit
 
-FIRST = 3  # transits, and passages of each section, that are told of uncertain inputs
+FIRST = 3  # transits, and passages of each section, that are printed for uncertain inputs
 PROVED_DIGITS = 15  # of the highest points from which period and precession follow
 SWING = {"swing_hz": "hz", "period_s": "period", "precession_deg_per_h": "precession", "full_turn_h": "full_turn"}
 MEAN = ("period_s", "precession_deg_per_h", "full_turn_h")  # of uncertain inputs
@@ -28,18 +28,18 @@ def proved_swing(scene: Scene) -> dict[str, Any]:
     """
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "false"})
     swing = solve(scene, level="enclosed", digits=PROVED_DIGITS, sections="highest").swing
-    return {"over_s": scene.run.t_end, **_told(swing, SWING)}
+    return {"over_s": scene.run.t_end, **_interval_texts(swing, SWING)}
 
 
-def _told(swing: Any, names: Iterable[str]) -> dict[str, list[str] | None]:
+def _interval_texts(swing: Any, names: Iterable[str]) -> dict[str, list[str] | None]:
     """Return intervals of what a swing has, as text; None where one is open."""
-    return {name: list(ends(*found)) if (found := getattr(swing, SWING[name], None)) else None for name in names}
+    return {name: list(ends(*interval)) if (interval := getattr(swing, SWING[name], None)) else None for name in names}
 
 
 def swing_line(proved: dict[str, Any]) -> str:
     """Return in a line what is proved of the swing."""
-    told = [f"{name} = {value[0]} to {value[1]}" for name, value in proved.items() if isinstance(value, list)]
-    return f"[proved, over {proved['over_s']} s] " + (", ".join(told) or "no swing is decided")
+    texts = [f"{name} = {value[0]} to {value[1]}" for name, value in proved.items() if isinstance(value, list)]
+    return f"[proved, over {proved['over_s']} s] " + (", ".join(texts) or "no swing is decided")
 
 
 def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
@@ -49,18 +49,18 @@ def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
         InputError: an input, or a width.
         UnreachableError: the box is too wide.
     """
-    asked = scene.run.sections or ()
+    words = scene.run.sections or ()
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
     texts = exact_texts(widths_of(scene, widths))
     with in_background(True, _send_limits, scene, texts) as limits:  # it takes as long as the intervals do
-        ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*asked, "highest"))])
-        tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in asked}}
+        ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*words, "highest"))])
+        tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in words}}
         first = {word: [list(ends(*t)) for t in table.exact("t")[:FIRST]] for word, table in tables.items()}
         return {
             "over_s": scene.run.t_end,
             "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
             "period_s": ranges.period and list(ends(*ranges.period)),
-            **_told(ranges.swing, MEAN[1:]),
+            **_interval_texts(ranges.swing, MEAN[1:]),
             "first_transits_s": first.pop("transit"),
             "first_passages_s": first,
             "possible": len(ranges.possible),
@@ -77,8 +77,8 @@ def _send_limits(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
     near = solve(scene, uncertain=closer, derivatives=True, sections="highest")
     limits = {}
     for name, (far, share) in near.shares().items():
-        of, moves = near.derivative(name), {"moves_period_s": rounded_up(far * 10**CLOSER), "share": share}
-        slopes = {"s_per_unit": of.period or (far, far), "deg_per_h_per_unit": of.precession}
+        derivative, moves = near.derivative(name), {"moves_period_s": rounded_up(far * 10**CLOSER), "share": share}
+        slopes = {"s_per_unit": derivative.period or (far, far), "deg_per_h_per_unit": derivative.precession}
         limits[name] = moves | {word: slope and list(ends(*slope)) for word, slope in slopes.items()}
     emit(limits)
 
@@ -86,16 +86,17 @@ def _send_limits(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
 def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     """Yield what holds for all values of uncertain inputs, and which of them limits the period."""
     box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
-    told = [
+    texts = [
         f"{name} = {ranges[name][0]} to {ranges[name][1]}" if ranges[name] else f"{name} is not decided"
         for name in MEAN
         if any(ranges[name] for name in MEAN)
     ]
-    told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
+    texts += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
     for word, passages in ranges["first_passages_s"].items():
-        told += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
-        told += [] if passages else [f"no passage of {word} is decided"]
-    yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (", ".join(told) or "no transit is decided")
+        texts += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
+        texts += [] if passages else [f"no passage of {word} is decided"]
+    decided = ", ".join(texts) or "no transit is decided"
+    yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] {decided}"
     limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
     if limits:
         yield "which input limits you: what each alone moves the period by, to first order, and its share"

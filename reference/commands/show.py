@@ -98,12 +98,12 @@ def command(
     if as_json:
         emit(document)
         return
-    for line in _told(scene, document):
+    for line in _document_lines(scene, document):
         typer.echo(line)
 
 
-def _told(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
-    """Yield the lines that tell people what a document on a scene holds."""
+def _document_lines(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
+    """Yield the lines that print for people what a document on a scene holds."""
     from ..dataset.sheets import scene_inputs
 
     yield f"{scene.id}: {scene.title}"
@@ -162,16 +162,16 @@ def _derived(scene: Scene) -> dict[str, str]:
 
     start = Start.of(scene.exact, DERIVED_PREC)
     ctx, k = start.ctx, start.k
-    found = {}
+    quantities = {}
     if scene.site.gravity_is == "ellipsoid":  # effective gravity takes the distance out of the equations
-        found["axis_distance_m"] = k.axis_distance * k.length
+        quantities["axis_distance_m"] = k.axis_distance * k.length
     strength = ctx.sqrt(sum(part * part for part in k.pull))
-    found["pivot_gravity_m_s2"] = strength * k.length
+    quantities["pivot_gravity_m_s2"] = strength * k.length
     if strength:
-        found["small_swing_period_s"] = 2 * ctx.pi / ctx.sqrt(strength)
+        quantities["small_swing_period_s"] = 2 * ctx.pi / ctx.sqrt(strength)
     with suppress(UnreachableError):
-        found |= {"rest_y_m": start.rest[1] * k.length, "rest_z_m": start.rest[2] * k.length}
-    return {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in found.items()}
+        quantities |= {"rest_y_m": start.rest[1] * k.length, "rest_z_m": start.rest[2] * k.length}
+    return {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in quantities.items()}
 
 
 def _motion(scene: Scene) -> dict[str, Any]:
@@ -185,7 +185,7 @@ def _motion(scene: Scene) -> dict[str, Any]:
     from ..sweeps.promote import Promoted
     from ..sweeps.request import request
 
-    def left(*_: Any, **__: Any) -> Promoted:
+    def unsolved(*_: Any, **__: Any) -> Promoted:
         return Promoted({}, ([], []), "It takes more digits, for which `show` does not wait.")
 
     try:
@@ -193,12 +193,12 @@ def _motion(scene: Scene) -> dict[str, Any]:
         longest = MOST_SWINGS * 2 * math.pi / start.fastest_rate
         if scene.exact.t_end > longest:
             scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
-        asked = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession", "amplitude"])
-        columns = solve_part(asked, range(1), left).columns
+        sweep = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession", "amplitude"])
+        columns = solve_part(sweep, range(1), unsolved).columns
     except (FoucaultError, ArithmeticError) as error:
         return {"reason": str(error)}
     row = {name: values[0] for name, values in columns.items()}
-    found: dict[str, Any] = {"over_s": scene.run.t_end}
+    motion: dict[str, Any] = {"over_s": scene.run.t_end}
     swing, turn, angle = (float(row[name]) for name in ("swing_hz", "precession_deg_per_h", "max_angle_deg"))
     if not swing > 0:
         return {"reason": row["reason"] or "the bob does not swing to and fro"}
@@ -207,14 +207,14 @@ def _motion(scene: Scene) -> dict[str, Any]:
     off = offset(start, float(k.length) * smallest)
     if off > 1:
         return {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
-    found |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
+    motion |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
     if off <= math.radians(abs(turn)) * seconds / HOUR and not turns_too_far(start, 0.5 / swing):
         error_of_turn = float(row["precession_error_deg_per_h"])
-        found |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
+        motion |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
         if abs(turn) > error_of_turn:
             full = 360 / abs(turn)
-            found |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
-    return found
+            motion |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
+    return motion
 
 
 def _motion_line(motion: dict[str, Any]) -> str:
@@ -225,21 +225,21 @@ def _motion_line(motion: dict[str, Any]) -> str:
 
     names = [name for name in motion if name != "over_s"]
     pairs = zip(names[::2], names[1::2], strict=True)
-    told = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
-    return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(told)
+    texts = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
+    return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(texts)
 
 
 def scene_file(scene: Scene | None) -> str:
     """Return a scene as a TOML file with comments; without one, the defaults with a measured g and a release."""
-    mine = {"id": "mine", "title": "my pendulum", "site": {"gravity_is": "effective"}}
-    given = scene or parse_scene({**mine, "release": {"angle": "5", "azimuth": "0"}})
-    parts = [BEGIN, *_lines(given)]
+    template = {"id": "mine", "title": "my pendulum", "site": {"gravity_is": "effective"}}
+    scene = scene or parse_scene({**template, "release": {"angle": "5", "azimuth": "0"}})
+    parts = [BEGIN, *_lines(scene)]
     for name in Scene.model_fields:
-        if isinstance(table := getattr(given, name), SceneTable):
+        if isinstance(table := getattr(scene, name), SceneTable):
             parts += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
-    if given.uncertain:
+    if scene.uncertain:
         meaning = Scene.model_fields["uncertain"].description
-        widths = (f"{_toml(name)} = {_toml(width)}" for name, width in given.uncertain.items())
+        widths = (f"{_toml(name)} = {_toml(width)}" for name, width in scene.uncertain.items())
         parts += ["", f"[uncertain]  # {meaning}", *widths]
     return "\n".join(parts) + "\n"
 

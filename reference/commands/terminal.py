@@ -123,11 +123,11 @@ def replacements(
         if field in values:
             raise InputError("--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one.")
         values[field] = assignment
-    for option, (field, given) in options.items():
-        if given is not None:
-            if field in values and not (option == "--t-end" and values[field] == f"{field}={given}"):
-                raise InputError(option, given, f"no such option together with --set {values[field]}", "Keep one.")
-            values[field] = f"{field}={given}"
+    for option, (field, text) in options.items():
+        if text is not None:
+            if field in values and not (option == "--t-end" and values[field] == f"{field}={text}"):
+                raise InputError(option, text, f"no such option together with --set {values[field]}", "Keep one.")
+            values[field] = f"{field}={text}"
     return list(values.values())
 
 
@@ -147,8 +147,8 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
         if key.strip() in widths:
             raise InputError("--uncertain", word, f"one width of {key.strip()}")
         widths[key.strip()] = width
-    given = {full_name(key) for key in widths}
-    return {name: width for name, width in scene.uncertain.items() if name not in given} | widths or None
+    overridden = {full_name(key) for key in widths}
+    return {name: width for name, width in scene.uncertain.items() if name not in overridden} | widths or None
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:

@@ -161,11 +161,11 @@ def _table(name: str, text: str, manifest: Manifest) -> Sheet:
         raise ValueError(f"the header must be {','.join(header)}")
     if text.count("\n") != count + 1 or not text.endswith("\n"):
         raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
-    whole = re.compile(",".join(f"(?:{pattern})" for pattern in patterns.values()), re.ASCII)
+    row_pattern = re.compile(",".join(f"(?:{pattern})" for pattern in patterns.values()), re.ASCII)
     rows = []
     for number, line in enumerate(lines, 1):
         cells = tuple(line[:-1].split(","))
-        if not whole.fullmatch(line[:-1]):
+        if not row_pattern.fullmatch(line[:-1]):
             raise ValueError(f"row {number}: {_wrong_cell(cells, patterns)}")
         rows.append(cells)
     return Sheet(header, rows, {})

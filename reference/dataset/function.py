@@ -49,10 +49,10 @@ class FunctionRecord(Part):
         return {**same, "units": units}
 
     @classmethod
-    def of(cls, made: Any, manifest: Manifest) -> FunctionRecord:
+    def of(cls, proved: Any, manifest: Manifest) -> FunctionRecord:
         """Describe a function as it was proved, in the dataset of a manifest."""
-        bounds = {name: made.bounds[name] for name in STATE}
-        return cls.model_validate({**cls.following(manifest), "bounds": bounds, **made.facts})
+        bounds = {name: proved.bounds[name] for name in STATE}
+        return cls.model_validate({**cls.following(manifest), "bounds": bounds, **proved.facts})
 
 
 def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunction]:
@@ -140,8 +140,8 @@ def _turns(function: GoldenFunction, inside: int) -> tuple[Array, Array]:
     begins, widths = function.times[:-1, None], np.diff(function.times)[:, None]
     t = np.append((begins + widths * (np.arange(inside) / inside)).ravel(), function.times[-1])
     vx = np.asarray(function.at(t).vx)
-    known = np.abs(vx) > function.bound["vx"]
-    t, sign = t[known], np.sign(vx[known]).astype(int)
+    certain = np.abs(vx) > function.bound["vx"]
+    t, sign = t[certain], np.sign(vx[certain]).astype(int)
     turn = np.flatnonzero(np.diff(sign))
     low, high, after = t[turn], t[turn + 1], sign[turn + 1]
     for _ in range(HALVINGS):

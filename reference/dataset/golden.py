@@ -115,10 +115,10 @@ class Golden(GridColumns):
         moments = moments_of(t, self.times[-1])
         if not moments.size:
             return States.of(moments, np.empty((6, 0)), {})
-        found = dense(self, moments)
-        rows = found.states[np.searchsorted(found.t, moments.ravel())]
-        rounding = dict(zip(STATE, np.spacing(np.abs(found.states).max(axis=0)).tolist(), strict=True))
-        bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
+        trajectory = dense(self, moments)
+        rows = trajectory.states[np.searchsorted(trajectory.t, moments.ravel())]
+        rounding = dict(zip(STATE, np.spacing(np.abs(trajectory.states).max(axis=0)).tolist(), strict=True))
+        bounds = {name: trajectory.bound_m if name in POSITION else trajectory.bound_m_s for name in STATE}
         return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
 
     @property
@@ -162,8 +162,8 @@ def load(name: str | Path) -> Golden:
         except ValueError as error:
             raise DatasetError(str(files.folder), [f"{FUNCTION[0]}: {error}"]) from None
     else:
-        none = Sheet(TRANSITS_HEADER, [], {})
-        printed = files.tables["grid.csv"], files.tables.get("transits.csv", none)
+        empty = Sheet(TRANSITS_HEADER, [], {})
+        printed = files.tables["grid.csv"], files.tables.get("transits.csv", empty)
         tables = (printed[0], bounds.grid), (printed[1], bounds.transits)
     grid, transits = (PrintedTable(*table) for table in tables)
     return Golden(files.folder, files.manifest, files.scene, grid, transits, function, _sections(files))
@@ -178,9 +178,11 @@ class _Sections(dict[str, PrintedTable]):
 def _sections(files: Files) -> _Sections:
     if (sheet := files.tables.get("sections.csv")) is None or files.manifest.sections is None:
         return _Sections()
-    said, header = files.manifest.sections, sheet.header[1:]
-    rows = {word: [row[1:] for row in sheet.rows if row[0] == word] for word in said.counts}
-    return _Sections({word: PrintedTable(Sheet(header, own, {}), said.bounds) for word, own in rows.items()})
+    record, header = files.manifest.sections, sheet.header[1:]
+    rows = {word: [row[1:] for row in sheet.rows if row[0] == word] for word in record.counts}
+    return _Sections(
+        {word: PrintedTable(Sheet(header, passages, {}), record.bounds) for word, passages in rows.items()}
+    )
 
 
 @dataclass(frozen=True)

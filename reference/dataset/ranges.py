@@ -45,6 +45,8 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
         InputError: the folder cannot be written, or holds something else.
         DatasetError: a table does not hold what was proved; nothing is written then.
     """
+    if not isinstance(ranges, Ranges):
+        raise InputError("ranges", ranges, "what solve(…, uncertain=…) returns", "A Solution is written by write.")
     folder = Path(folder)
     check_target(folder, RANGES)
     texts = _texts(ranges)
@@ -81,10 +83,10 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
         UnreachableError: the proof fails here.
     """
     try:
-        said, texts = _read(folder)
+        printed, texts = _read(folder)
     except DatasetError as error:
         return error.problems
-    again = solve(said.scene, uncertain=_signed(said), engine=said.engine, report=report)
+    again = solve(printed.scene, uncertain=_signed(printed), engine=printed.engine, report=report)
     problems = _misprints(texts, again)
     if recompute and not problems:
         files = _texts(again)
@@ -95,34 +97,34 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
 def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
     """Return ranges and the texts of their files."""
     try:
-        said = json_document(folder / RANGES, "PATH")
+        manifest = json_document(folder / RANGES, "PATH")
     except FileNotFoundError:
         advice = "`foucault generate SCENE --uncertain …` makes them."
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
         texts = {RANGES: (folder / RANGES).read_text(encoding="utf-8")}
-        names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in said else []))
+        names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in manifest else []))
         texts |= {name: (folder / name).read_text(encoding="utf-8") for name in names}
-        if text_of({**said, "seal": _seal(said)}) != texts[RANGES]:
+        if text_of({**manifest, "seal": _seal(manifest)}) != texts[RANGES]:
             raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed"])
-        for name, digest in said["sha256"].items():
+        for name, digest in manifest["sha256"].items():
             if _hash(texts[name]) != digest:
                 raise DatasetError(str(folder), [f"{name}: a byte was changed (sha256 differs)"])
-        name = said["id"].partition("+")[0].removesuffix(f".{said['inputs']}")
-        scene = parse_scene({"id": name, "inputs": said["inputs"], **said["scene"]})
+        scene_id = manifest["id"].partition("+")[0].removesuffix(f".{manifest['inputs']}")
+        scene = parse_scene({"id": scene_id, "inputs": manifest["inputs"], **manifest["scene"]})
         tables = {name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in names}
         passages = {
             word: _zeros([row[1:] for row in tables[SECTIONS_FILE] if row[0] == word], SECTION, possible)
-            for word, possible in said.get("sections", {}).items()
+            for word, possible in manifest.get("sections", {}).items()
         }
-        transits = _zeros(tables[TRANSITS_FILE], TRANSITS, said["possible"])
+        transits = _zeros(tables[TRANSITS_FILE], TRANSITS, manifest["possible"])
         ranges = Ranges(
             scene,
-            {name: width.removeprefix("±") for name, width in said["uncertain"].items()},
+            {name: width.removeprefix("±") for name, width in manifest["uncertain"].items()},
             tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
             Intervals(GRID, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
             *transits,
-            said["proof"]["engine"],
+            manifest["proof"]["engine"],
             passages,
         )
     except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
@@ -208,16 +210,16 @@ def _texts(ranges: Ranges) -> dict[str, str]:
     """Return the files of ranges, sealed."""
     tables = {GRID_FILE: _table(["t"], GRID, _grid_rows(ranges))}
     tables[TRANSITS_FILE] = _table(["k", "direction"], TRANSITS, _zero_rows(ranges.transits, ranges.directions))
-    if named := ranges.sections.items():
-        rows = [[word, *row] for word, found in named for row in _zero_rows(found.table, found.directions)]
+    if sections := ranges.sections.items():
+        rows = [[word, *row] for word, zeros in sections for row in _zero_rows(zeros.table, zeros.directions)]
         tables[SECTIONS_FILE] = _table(["section", "k", "direction"], SECTION, rows)
-    said = _manifest(ranges, tables)
-    return {RANGES: text_of(said | {"seal": _seal(said)}), **tables}
+    manifest = _manifest(ranges, tables)
+    return {RANGES: text_of(manifest | {"seal": _seal(manifest)}), **tables}
 
 
-def _seal(said: dict[str, Any]) -> str:
+def _seal(manifest: dict[str, Any]) -> str:
     """Return the sha256 of the text with an empty seal: it finds accidents."""
-    return _hash(text_of({**said, "seal": ""}))
+    return _hash(text_of({**manifest, "seal": ""}))
 
 
 def _hash(text: str) -> str:
@@ -226,22 +228,22 @@ def _hash(text: str) -> str:
 
 def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
     proof, scene = ranges.proof, ranges.scene
-    sections = scene_inputs(scene)
-    sections["run"] = {name: text for name, text in sections["run"].items() if name != "digits"}  # as widths support
-    made = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
-    named = {word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()}
+    inputs = scene_inputs(scene)
+    inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}  # as widths support
+    run = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
+    sections = {word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()}
     return {
         "format": FORMAT,
         "seal": "",
         "id": ranges_id(ranges),
         "level": scene.run.level,
         "inputs": scene.inputs,
-        "scene": sections,
+        "scene": inputs,
         "uncertain": _signed(ranges),
         "period_s": period_texts(ranges),
         "possible": open_intervals(ranges.possible),
-        **({"sections": named} if named else {}),
+        **({"sections": sections} if sections else {}),
         "counts": {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)},
-        "proof": made | {"radius_m": rounded_up(proof.radius)},
+        "proof": run | {"radius_m": rounded_up(proof.radius)},
         "sha256": {name: _hash(text) for name, text in tables.items()},
     }

@@ -63,9 +63,9 @@ class Making:
     @classmethod
     def of(cls, command: str) -> Making:
         """Read it off a dataset's command, or off the options in the index of what ships."""
-        engine, audit, confirm, nothing, function, bare = OPTIONS.findall(command)[0]
-        made: dict[str, Any] = {"confirm": "none" if nothing else confirm or "whole", "tables": not bare}
-        return cls(engine, audit.strip() == AUDIT, function=bool(function), **made)
+        engine, audit, confirm, no_confirm, function, bare = OPTIONS.findall(command)[0]
+        keywords: dict[str, Any] = {"confirm": "none" if no_confirm else confirm or "whole", "tables": not bare}
+        return cls(engine, audit.strip() == AUDIT, function=bool(function), **keywords)
 
     @property
     def options(self) -> str:
@@ -76,11 +76,11 @@ class Making:
 
     def options_for(self, scene: Scene, name: str) -> str:
         """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
-        said = index().get(name, {}).get("options", self.options)
-        return said if is_of_shipped_scene(scene, name) and Making.of(said) == self else self.options
+        listed = index().get(name, {}).get("options", self.options)
+        return listed if is_of_shipped_scene(scene, name) and Making.of(listed) == self else self.options
 
-    def asked_of(self, scene: Scene) -> dict[str, Any]:
-        """Return what `solve` is asked for of a scene, so that it is made in this way, or refused."""
+    def solve_options(self, scene: Scene) -> dict[str, Any]:
+        """Return the options with which `solve` makes a scene's dataset in this way, or refuses it."""
         proof = {"audit": self.audit, "confirm": self.confirm, "function": self.function}
         return {"engine": self.engine, "uncertain": None} | (proof if scene.run.level == "enclosed" else {})
 
@@ -150,8 +150,8 @@ def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
     """Return what a manifest says of `sections.csv`."""
     named, bounds, end = solution.sections.items(), dict[str, str](), fixed_decimal(solution.times[-1], 2000)
     for _, passages in named if sheet.rows else ():
-        own = column_bounds(passages.table, sheet.decimals)
-        bounds = {column: max(bounds.get(column, "0"), bound, key=Fraction) for column, bound in own.items()}
+        of_section = column_bounds(passages.table, sheet.decimals)
+        bounds = {column: max(bounds.get(column, "0"), bound, key=Fraction) for column, bound in of_section.items()}
     return SectionsRecord(
         decimals=sheet.decimals,
         bounds=bounds,
@@ -196,10 +196,10 @@ def command(scene: Scene, name: str, options: str) -> str:
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level, options]
     parts += [] if run.transits else ["--no-transits"]
     parts += [word for section in run.sections or () for word in ("--section", f"'{section}'")]
-    own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "run.sections=")
+    option_fields = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "run.sections=")
     shipped = shipped_scene(scene)
     changed = changes_in(name) if shipped is scene else changes(scene, shipped)
-    changed = [change for change in changed if not change.startswith(own_option)]
+    changed = [change for change in changed if not change.startswith(option_fields)]
     parts += ["--uncertain", "none"] if shipped is not scene and shipped.uncertain else []
     changed += [f"inputs={scene.inputs}"] if f".{scene.inputs}" in name else []
     return " ".join([*parts, *(word for change in changed for word in ("--set", change))])
@@ -226,11 +226,11 @@ def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
 
 
 def _enclosure(proof: Proof) -> EnclosureRecord:
-    made = proof.enclosure
-    said = {"method": made.method, "prec": made.bits, "order": made.order, "steps": made.steps}
-    said |= {"position_radius_m": made.position_radius, "velocity_radius_m_s": made.velocity_radius}
-    said |= {"transit_radius_s": proof.transit_radius, "agreement_bits": proof.agreement_bits}
-    return EnclosureRecord.model_validate(said)
+    enclosure = proof.enclosure
+    record = {"method": enclosure.method, "prec": enclosure.bits, "order": enclosure.order, "steps": enclosure.steps}
+    record |= {"position_radius_m": enclosure.position_radius, "velocity_radius_m_s": enclosure.velocity_radius}
+    record |= {"transit_radius_s": proof.transit_radius, "agreement_bits": proof.agreement_bits}
+    return EnclosureRecord.model_validate(record)
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:

@@ -82,24 +82,24 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
     Raises:
         DatasetError: they state something else.
     """
-    said = json.loads(contents[MANIFEST])
-    if said["level"] != "enclosed":
+    manifest = json.loads(contents[MANIFEST])
+    if manifest["level"] != "enclosed":
         return
     if ALWAYS[0] not in contents:
-        contents = {**render(solution, said["id"]), **contents}
+        contents = {**render(solution, manifest["id"]), **contents}
     from ..enclosure.printed import check_dataset
 
-    made, files = solution.proof and solution.proof.enclosure, dict[str, Any](contents)
+    enclosure, files = solution.proof and solution.proof.enclosure, dict[str, Any](contents)
     try:
-        check_dataset(files, made and made.proved)
-        if made and FUNCTION[1] in files:
+        check_dataset(files, enclosure and enclosure.proved)
+        if enclosure and FUNCTION[1] in files:
             from ..enclosure.function import check_function
 
-            check_function(files[FUNCTION[0]], files[FUNCTION[1]], made.function, made.proved)
-        if made and said.get("sections"):
+            check_function(files[FUNCTION[0]], files[FUNCTION[1]], enclosure.function, enclosure.proved)
+        if enclosure and manifest.get("sections"):
             from ..enclosure.sections import check_sections
 
-            check_sections(files, made.sections, made.proved)
+            check_sections(files, enclosure.sections, enclosure.proved)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 

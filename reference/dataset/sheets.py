@@ -39,9 +39,9 @@ class Sheet:
         """Return some columns of decimals as integers over a common unit, and the unit, a power of ten."""
         places = [self.header.index(name) for name in columns]
         parted = [[row[i].partition(".") for row in self.rows] for i in places]
-        most = max((len(part) for column in parted for _, _, part in column), default=0)
-        scaled = ((int(whole + part) * 10 ** (most - len(part)) for whole, _, part in column) for column in parted)
-        return [integers(column) for column in scaled], 10**most
+        decimals = max((len(part) for column in parted for _, _, part in column), default=0)
+        scaled = ((int(whole + part) * 10 ** (decimals - len(part)) for whole, _, part in column) for column in parted)
+        return [integers(column) for column in scaled], 10**decimals
 
     def csv(self) -> str:
         """Return the text of the file: one header line, commas, LF."""

@@ -73,7 +73,7 @@ def _claims(manifest: Manifest) -> list[str]:
     """Return what a manifest says of its proof and its cross-checks, for which nothing but the index can vouch."""
     confirmed = f" (confirmation: {Making.of(manifest.command).confirm})" if manifest.enclosure else ""
     claims = {"the proof": manifest.enclosure, f"the cross-checks{confirmed}": manifest.cross_checks}
-    return [name for name, made in claims.items() if made and seals().get(manifest.id) != manifest.seal]
+    return [name for name, evidence in claims.items() if evidence and seals().get(manifest.id) != manifest.seal]
 
 
 def problems_of(folder: Path) -> list[str]:
@@ -143,13 +143,13 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     manifest, end = files.manifest, float(files.scene.exact.t_end)
     making = Making.of(manifest.command)
     tell: Report | None = report and (lambda t: report(t, end))
-    solution = solve(files.scene, **making.asked_of(files.scene), report=tell)
+    solution = solve(files.scene, **making.solve_options(files.scene), report=tell)
     texts = render(solution, manifest.id, tables=making.tables)
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
     fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
-    others = [name for name, record in again.files.items() if record != manifest.files.get(name)]
-    wrong = [f"{name}: {_how_it_differs(files.texts.get(name), texts[name])}" for name in others]
+    changed = [name for name, record in again.files.items() if record != manifest.files.get(name)]
+    wrong = [f"{name}: {_how_it_differs(files.texts.get(name), texts[name])}" for name in changed]
     if wrong or not fields:
         return [*wrong, *lines], []
     runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
@@ -166,8 +166,8 @@ def _how_it_differs(old: str | None, new: Content) -> str:
     if old is None:
         return "recomputing gives this file too"
     # with their ends, which may be all that differs
-    lines, others = (text.splitlines(keepends=True) for text in (old, new))
-    pairs = enumerate(zip_longest(lines, others, fillvalue="nothing"), 1)
+    old_lines, new_lines = (text.splitlines(keepends=True) for text in (old, new))
+    pairs = enumerate(zip_longest(old_lines, new_lines, fillvalue="nothing"), 1)
     differing = [(number, *pair) for number, pair in pairs if pair[0] != pair[1]]
     number, before, after = differing[0]
     shown = repr if before.rstrip() == after.rstrip() else str.rstrip

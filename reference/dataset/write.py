@@ -35,10 +35,10 @@ def check_target(folder: Path, mark: str = MANIFEST) -> None:
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
     names = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
-    others = names - {mark, *ALWAYS, *OPTIONAL}
-    if others or (names and mark not in names):
+    foreign = names - {mark, *ALWAYS, *OPTIONAL}
+    if foreign or (names and mark not in names):
         expected = f"a new or empty folder, or {_OLDER[mark]} and nothing else"
-        advice = f"Nothing was changed{f': {min(others)!r} is there' if others else ''}."
+        advice = f"Nothing was changed{f': {min(foreign)!r} is there' if foreign else ''}."
         raise InputError("--out", str(folder), expected, advice)
     with writable_place(folder):
         pass

@@ -1,4 +1,4 @@
-"""Many scenes solved in double: what goes in, `Rows` and `Wanted`, what comes out, `Outcomes`; rows in plumb axes.
+"""Many scenes solved in double: what goes in, `Rows` and `RunOptions`, what comes out, `Outcomes`; rows in plumb axes.
 
 An engine that can do this declares a `Batch` as `BATCH` in the file `batch.py` of its folder. A row comes out the same,
 bit for bit, whatever rows stand beside it.
@@ -80,8 +80,8 @@ class Rows:
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """Results wanted of each row beside its state at the end.
+class RunOptions:
+    """Which results a run gives of each row beside its state at the end, and whether it is moved.
 
     Attributes:
         transits: count the zeros of xdot in 0 < t <= t_end, all of them located, and judge them.
@@ -101,7 +101,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Outcomes:
-    """Results of n rows, in SI units. A result that was not wanted, or is not there, is 0 if a count and NaN otherwise.
+    """Results of n rows, in SI units. A result that is not asked for, or not there, is 0 if a count and NaN otherwise.
 
     Attributes:
         fate: OK, DOUBTFUL (a transit or a highest point is undecided in double) or STOPPED (the step became too short
@@ -122,7 +122,7 @@ class Outcomes:
         least_fall: smallest -u'' at a highest point, in 1/s².
         largest_angle: largest angle from the plumb line in the whole span, in rad: at a highest point, the release or
             the end.
-        transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not wanted.
+        transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not asked for.
     """
 
     fate: Any
@@ -191,11 +191,11 @@ class Batch(OptionalEngine, ABC):
         """All that decides the digits, as one line: name, orders, tolerance, versions."""
 
     @abstractmethod
-    def prepare(self, wanted: Wanted) -> None:
+    def prepare(self, options: RunOptions) -> None:
         """Compile what such rows without drag need, where it is not done yet."""
 
     @abstractmethod
-    def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
+    def solve(self, rows: Rows, options: RunOptions) -> Outcomes:
         """Solve rows in the calling thread, others free to run meanwhile; a row that fails says so in its fate."""
 
     def compiling_s(self, sections: bool) -> float:
@@ -250,9 +250,9 @@ def moved(numbers: Array, way: int) -> Array:
     return np.where(numbers == 0, 0.0, np.nextafter(numbers, beyond)) if way else numbers
 
 
-def plumb_line(north: Any, up: Any, size: Any, none: Array) -> tuple[Any, Any]:
-    """Return the unit vector up along -c; the vertical where there is no force, `none` 1 instead of 0."""
-    return -north / (size + none), (none - up) / (size + none)
+def plumb_line(north: Any, up: Any, size: Any, vanishes: Array) -> tuple[Any, Any]:
+    """Return the unit vector up along -c; the vertical where there is no force, there `vanishes` is 1, else 0."""
+    return -north / (size + vanishes), (vanishes - up) / (size + vanishes)
 
 
 def turned(north: Any, up: Any, sin: Any, cos: Any) -> tuple[Any, Any]:

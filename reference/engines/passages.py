@@ -42,7 +42,7 @@ class SectionSearch:
     def __init__(self, word: str, form: Form, prec: int) -> None:
         self.word, self.form, self.bits, self.noise = word, form, prec + SPARE_BITS, prec - NOISE_BITS
         self.whole = [[int(to_fraction(x) * (1 << self.bits)) for x in v] for v in (form.a, form.b, [form.d])]
-        self.left, self.found = 0, list[tuple[list[int], int, list[int]]]()
+        self.left, self.passages = 0, list[tuple[list[int], int, list[int]]]()
 
     def take(self, steps: list[TaylorStep], rows: list[list[list[int]]], series: Array) -> None:
         """Find the passages in steps that follow each other; most have none, as doubles show.
@@ -79,7 +79,7 @@ class SectionSearch:
                 s = places.root(low, high, sign)
                 last = (_left_out(row, s / unit) * h.denominator // h.numerator for row in rows)
                 lost = [_shifted(int(x), self.bits - step.bits) + 1 for x in last]
-                self.found.append((self._moment(step, rows, s), -sign, lost))
+                self.passages.append((self._moment(step, rows, s), -sign, lost))
         self.left = right
 
     def _moment(self, step: TaylorStep, rows: list[list[int]], s: int) -> list[int]:
@@ -114,8 +114,8 @@ class Places:
             else:
                 cut += 1
                 if cut == self.bits:  # before a piece is shorter than the distance of two places
-                    told = f"{self.word}: the motion touches this section within the precision."
-                    raise IntegrationError(told, GRAZING)
+                    reason = f"{self.word}: the motion touches this section within the precision."
+                    raise IntegrationError(reason, GRAZING)
                 middle = (low + high) // 2
                 between = self.sign(middle)
                 pieces.append(((to_half @ form[::-1])[::-1], middle, high, between, after))
@@ -217,7 +217,7 @@ def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, tuple[Table, 
     bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)
     tables = {}
     for search in searches:
-        kept = [one for one in search.found if one[0][0] <= last]
+        kept = [passage for passage in search.passages if passage[0][0] <= last]
         values = [(row[0], *(int(x * length) for x in row[1:])) for row, _, _ in kept]
         errors = [(0, 0, 0, 0, *(int(size * length) + 1 for size in lost)) for _, _, lost in kept]
         tables[search.word] = Table(SECTION, bits, values, errors), [direction for _, direction, _ in kept]

@@ -59,7 +59,9 @@ def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS) -> Engine:
     "auto", it is the one with the least expected cost among the installed engines that can.
     """
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
-    return min(serving, key=lambda one: (name not in (one.name, AUTO), one.start_s + one.expected_s(steps, prec)))
+    return min(
+        serving, key=lambda engine: (name not in (engine.name, AUTO), engine.start_s + engine.expected_s(steps, prec))
+    )
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
@@ -179,6 +181,6 @@ class Background:
             self._result.set_exception(error)
 
 
-def slowest(report: Report, others: list[Background]) -> Report:
-    """Return a report that tells the time which all work has reached: the caller's, and others' that is going on."""
-    return lambda t: report(min([t, *(other.reached for other in others if other.at_work)]))
+def slowest(report: Report, background: list[Background]) -> Report:
+    """Return a report that tells the time which all work has reached: the caller's, and that in the background."""
+    return lambda t: report(min([t, *(work.reached for work in background if work.at_work)]))

@@ -128,8 +128,8 @@ class RowRelease:
 
     def after(self, zeros: RowZeros, kind: int) -> RowZeros:
         """Return the zeros of a kind in the span, without that of the release, which it reports at 1e-17 s or so."""
-        none = self.still and kind == TRANSIT
-        least = np.inf if none else self.quiet if self.zero[kind] else 0.0
+        has_none = self.still and kind == TRANSIT
+        least = np.inf if has_none else self.quiet if self.zero[kind] else 0.0
         return zeros[(zeros.times > least) & (zeros.times <= self.end)]
 
 
@@ -143,9 +143,9 @@ class Samples:
     def lost(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> bool:
         """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
         signs = np.concatenate([[release.signs[kind]], zeros.directions])
-        there = signs[np.searchsorted(zeros.times, self.times[1:])]
+        expected = signs[np.searchsorted(zeros.times, self.times[1:])]
         alternate = (signs[:-1] * signs[1:] < 0).all()
-        alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * there > 0).all()
+        alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * expected > 0).all()
         return not (alternate and not self._dips(zeros, at, release, kind)[0].size)
 
     def finer(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> Array:

@@ -17,8 +17,8 @@ _PLACES = (0.11, 0.23, 0.31, 0.17, 0.13, 0.19)  # any state will do: rates that 
 
 def constant_variables(formulation: Formulation, k: Constants) -> list[str]:
     """Return the variables of a formulation whose rates are exactly zero, by the constants of a scene alone."""
-    ones = k.converted(lambda _: 1.0)
-    rates = formulation.derivatives(_PLACES[: len(formulation.variables)], ones, math)
+    unit_constants = k.converted(lambda _: 1.0)
+    rates = formulation.derivatives(_PLACES[: len(formulation.variables)], unit_constants, math)
     return [name for name, rate in zip(formulation.variables, rates, strict=True) if is_zero(rate)]
 
 

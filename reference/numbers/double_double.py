@@ -109,7 +109,7 @@ def sine_and_cosine(degrees: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
     sine = r + r * (s * (s * (_exactly(1, 120) + odd) - _exactly(1, 6)))
     less = s * (s * (_exactly(1, 24) + s * (even - _exactly(1, 720))) - 0.5)  # cosine less 1
     at = near.astype(np.int64) % _TURN
-    sin, cos = (DoubleDouble(known.high[at], known.low[at]) for known in (sines, cosines))
+    sin, cos = (DoubleDouble(table.high[at], table.low[at]) for table in (sines, cosines))
     return sin + (sin * less + cos * sine), cos + (cos * less - sin * sine)
 
 

@@ -91,9 +91,9 @@ class Table(Framed):
 
     def distance(self, other: Table) -> Table:
         """Return the absolute differences of two tables with as many rows, in this table's columns."""
-        others, bits = other.only(self.columns), max(self.bits, other.bits)
+        other, bits = other.only(self.columns), max(self.bits, other.bits)
         up, other_up = bits - self.bits, bits - other.bits
-        rows = zip(self.values, others.values, strict=True)
+        rows = zip(self.values, other.values, strict=True)
         gaps = [tuple(abs((p << up) - (q << other_up)) for p, q in zip(a, b, strict=True)) for a, b in rows]
         return Table(self.columns, bits, gaps)
 
@@ -112,11 +112,11 @@ class Table(Framed):
     def printed(self, decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
         """Return the rows as text, each number rounded to its column's digits after the point."""
         places = [decimals[name] for name in self.columns]
-        units, unit = [10**count for count in places], 1 << self.bits
+        scales, unit = [10**count for count in places], 1 << self.bits
         return [
             tuple(
-                with_decimal_point(rounded(value * ten, unit), count)
-                for value, ten, count in zip(row, units, places, strict=True)
+                with_decimal_point(rounded(value * scale, unit), count)
+                for value, scale, count in zip(row, scales, places, strict=True)
             )
             for row in self.values
         ]
@@ -127,13 +127,13 @@ class Table(Framed):
         It comes as its bound in units of the last printed digit, its column and its text. A number is decided if every
         number within the bound is printed alike.
         """
-        units, unit = [10 ** decimals[name] for name in self.columns], 1 << self.bits
+        scales, unit = [10 ** decimals[name] for name in self.columns], 1 << self.bits
         worst: tuple[Fraction, str, str] | None = None
         for row, errors in zip(self.values, self.errors, strict=True):
-            for name, value, error, ten in zip(self.columns, row, errors, units, strict=True):
-                if rounded((value - error) * ten, unit) != rounded((value + error) * ten, unit):
-                    text = with_decimal_point(rounded(value * ten, unit), decimals[name])
-                    worst = max((Fraction(error * ten, unit), name, text), worst or (Fraction(0), "", ""))
+            for name, value, error, scale in zip(self.columns, row, errors, scales, strict=True):
+                if rounded((value - error) * scale, unit) != rounded((value + error) * scale, unit):
+                    text = with_decimal_point(rounded(value * scale, unit), decimals[name])
+                    worst = max((Fraction(error * scale, unit), name, text), worst or (Fraction(0), "", ""))
         return worst
 
 

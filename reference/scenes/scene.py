@@ -242,12 +242,12 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
         raise InputError(
             error.field, error.got, error.expected, "It is a folder." if os.path.isdir(path) else advice
         ) from None
-    own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
+    file_id = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document:
-        if not is_scene_id(own_name):
+        if not is_scene_id(file_id):
             expected = "an id in the file, or a file's name of letters and digits that can be one"
             raise InputError("id", path.name, expected, 'Add a line such as id = "mine" to it.')
-        document["id"] = own_name
+        document["id"] = file_id
     return _with_values(document, values)
 
 

@@ -73,8 +73,8 @@ class Agreement:
         if published.transits is not None and witness.transits is not None:
             table = published.transits.only(TRANSITS)
             same = {name: places for name, places in decimals.items() if name in TRANSITS}
-            ones, others = (table, published.directions), (witness.transits, witness.directions)
-            lacking, transits = zeros_lacking(ones, others, decimals_of(table.largest(), digits) | same, witness)
+            zeros, witnessed = (table, published.directions), (witness.transits, witness.directions)
+            lacking, transits = zeros_lacking(zeros, witnessed, decimals_of(table.largest(), digits) | same, witness)
             missing.append(lacking)
         latest = max((table.largest()["t"] for table, _ in published.passages.values()), default=Fraction(0))
         decimals = {"t": decimals_for(latest, digits), **decimals}
@@ -113,16 +113,16 @@ def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> i
 
 
 def zeros_lacking(
-    published: Zeros, others: Zeros, decimals: Mapping[str, int], witness: Run
+    published: Zeros, witnessed: Zeros, decimals: Mapping[str, int], witness: Run
 ) -> tuple[int, Table | None]:
-    """Return the bits that a witness lacks to agree on zeros, which are `others` there, and how far these are apart.
+    """Return the bits that a witness lacks to agree on zeros, which are `witnessed` there, and how far these are apart.
 
-    Where directions differ, no distances are told.
+    Where directions differ, there are no distances.
     """
-    (table, directions), (other, signs) = published, others
+    (table, directions), (seen, signs) = published, witnessed
     if directions != signs:
         return witness.plan.number.prec // 2, None
-    apart = table.distance(other)
+    apart = table.distance(seen)
     return bits_lacking(apart.largest(), decimals), apart
 
 

@@ -59,19 +59,19 @@ def solve_enclosed(
     with ExitStack() as meanwhile:
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
-        whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
+        confirming = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
         pays = problem.pilot.steps >= AUDIT_STEPS
         again = in_background(pays, _send_digits, replace(problem, function=False))
         second_proof = meanwhile.enter_context(again) if audit else None
-        report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
+        report = report and slowest(report, [child for child in (confirming, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
         if plan and confirm == "sampled":  # while the audit goes on
             solution = confirmed(problem, solution, confirm, _sampled(plan, solution, report))
         if second_proof is not None:
             solution = audited(solution, second_proof.result(report))
-        if whole is not None:
-            solution = confirmed(problem, solution, confirm, whole.result(report))
-        return solution if whole and not solution.possible else guarded(solution, problem.pilot)
+        if confirming is not None:
+            solution = confirmed(problem, solution, confirm, confirming.result(report))
+        return solution if confirming and not solution.possible else guarded(solution, problem.pilot)
 
 
 def audited(solution: Solution, digits: Any) -> Solution:
@@ -89,8 +89,8 @@ def audited(solution: Solution, digits: Any) -> Solution:
 def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
     tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
-    found = [(part.directions, [parity for *_, parity in part.possible]) for part in solution.sections.values()]
-    return tables, [(solution.directions, [parity for *_, parity in solution.possible]), *found]
+    passages = [(part.directions, [parity for *_, parity in part.possible]) for part in solution.sections.values()]
+    return tables, [(solution.directions, [parity for *_, parity in solution.possible]), *passages]
 
 
 def _send_digits(emit: Emit, problem: ProofTask) -> None:
@@ -158,8 +158,8 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
         if word in witness.passages and not passages.possible:
             missing.append(zeros_lacking(passages[:2], witness.passages[word], section_decimals(solution), witness)[0])
     if solution.zeros is not None and witness.transits is not None and not solution.possible:
-        ones, others = (solution.zeros, solution.directions), (witness.transits, witness.directions)
-        lacking, apart = zeros_lacking(ones, others, transit_decimals(solution), witness)
+        zeros, witnessed = (solution.zeros, solution.directions), (witness.transits, witness.directions)
+        lacking, apart = zeros_lacking(zeros, witnessed, transit_decimals(solution), witness)
         missing.append(lacking)
         late = None if apart is None else apart.largest()["t"]
     return CrossCheck.by(witness, gaps, late), max(missing)

@@ -130,7 +130,7 @@ def run_pilot(
         try:
             coarse = run(_plan(inputs, times, prec, engine, hardware), pace=pace)
             fine = run(_plan(inputs, times, pair[1], engine, hardware))
-            more = [run(_plan(inputs, times, prec + i, engine, hardware)) for i in range(1, samples)]
+            further = [run(_plan(inputs, times, prec + i, engine, hardware)) for i in range(1, samples)]
             tension = coarse.tension
         except OverflowError:
             raise BeyondDoublesError from None
@@ -138,13 +138,13 @@ def run_pilot(
         grid = fine.grid.only(GRID)
         gaps, largest = grid.distance(coarse.grid), grid.largest()
         errors = gaps.largest()
-        for i, other in enumerate(more, 1):
+        for i, other in enumerate(further, 1):
             apart = grid.distance(other.grid).largest()
             errors = {name: max(error, apart[name] * 2**i) for name, error in errors.items()}
         if not _lost(errors, largest, inputs.length, prec):
             drifted = {name: largest[name] * steps / 2**prec for name in largest}
             errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
-            cpu_s = sum(each.cpu_s for each in (coarse, fine, *more))
+            cpu_s = sum(done.cpu_s for done in (coarse, fine, *further))
             return Pilot(prec, errors, largest, tension, cpu_s, steps, coarse.plan.engine)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
@@ -170,9 +170,9 @@ def _lost(errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fra
 
     Nor does one keep it that is exactly zero in few bits: numbers with a fixed point may not show so slow a motion.
     """
-    parts = [tuple(max(of[name] for name in kind) for of in (errors, largest)) for kind in (POSITION, VELOCITY)]
+    pairs = [(max(errors[name] for name in kind), max(largest[name] for name in kind)) for kind in (POSITION, VELOCITY)]
     zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(0)
-    return any(error > size * LOST if size > zero else prec < STILL_PREC for error, size in parts)
+    return any(error > size * LOST if size > zero else prec < STILL_PREC for error, size in pairs)
 
 
 def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], end: Fraction) -> int:

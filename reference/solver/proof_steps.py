@@ -45,7 +45,7 @@ class Feed:
             engine: name of the engine, where it has the bits; "auto" for the fastest.
             steps: about how many steps it takes in double.
         """
-        self._inputs, self._times, self._wanted, self._count = inputs, times, engine, steps
+        self._inputs, self._times, self._engine, self._count = inputs, times, engine, steps
         self.begun = ""
         self._worker: Worker | None = None
         self._steps: Iterator[TaylorStep] = iter(())
@@ -59,21 +59,21 @@ class Feed:
                 the engine that its dataset names, so that `--engine` gives the same bytes again.
         """
         self.stop()
-        engine = fastest(prec, self._wanted, self._count)
+        engine = fastest(prec, self._engine, self._count)
         if self.begun not in ("", engine.name):
             raise EngineChanged(engine.name)
         self.begun, self._run = engine.name, None
         run = engine.name, self._inputs, self._times, prec
         if engine.own_process and engine.expected_s(self._count, prec) >= WORTH_A_PROCESS:
             self._worker = Worker(_send, *run)
-            self._steps = self._taken(chain.from_iterable(self._worker))
+            self._steps = self._only_steps(chain.from_iterable(self._worker))
         else:
-            self._steps = self._taken(_steps_and_run(*run))
+            self._steps = self._only_steps(_steps_and_run(*run))
         return self._steps
 
     def lost(self, bits: int) -> int:
         """Return how many bits a run of so many loses besides those that a proof counts on."""
-        return HEYOKA_BITS if fastest(bits - COEFFICIENT_BITS, self._wanted, self._count).name == "heyoka" else 0
+        return HEYOKA_BITS if fastest(bits - COEFFICIENT_BITS, self._engine, self._count).name == "heyoka" else 0
 
     def finished(self) -> Run:
         """Exhaust the steps and return the run, with its states at `times`."""
@@ -88,7 +88,7 @@ class Feed:
         if self._worker is not None:
             self._worker.stop()
 
-    def _taken(self, items: Iterable[TaylorStep | Run]) -> Iterator[TaylorStep]:
+    def _only_steps(self, items: Iterable[TaylorStep | Run]) -> Iterator[TaylorStep]:
         for item in items:
             if isinstance(item, Run):
                 self._run = item

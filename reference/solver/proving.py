@@ -40,7 +40,7 @@ SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 @dataclass(frozen=True)
 class ProofTask:
-    """A scene to be proved, and what its pilot runs told about it.
+    """A scene to be proved, and what its pilot runs measured.
 
     Attributes:
         scene: the scene, with the digits asked for.
@@ -113,13 +113,13 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     table = partial(Table.of_intervals, bits=bits)
     zeros = separated(enclosed.proved.transits or (), TRANSITS, times[-1], table)
     transits = None if enclosed.proved.transits is None else zeros.table
-    size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
+    size, gap = (max(columns[name] for name in POSITION) for columns in (grid.largest(), gaps))
     transit_radius = None if transits is None else max(transits.bound("t"), default=None)
     proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)
-    found, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
-    sections = {word: separated(passages, SECTION, times[-1], table) for word, passages in found.items()}
-    known = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
-    return Solution(*known, sections=sections)
+    passages, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
+    sections = {word: separated(section, SECTION, times[-1], table) for word, section in passages.items()}
+    fields = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
+    return Solution(*fields, sections=sections)
 
 
 def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
@@ -160,8 +160,8 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
             break
         try:
-            words, wanted = scene.run.sections or (), solution.zeros is not None
-            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, wanted, sections=words))
+            words, with_transits = scene.run.sections or (), solution.zeros is not None
+            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, with_transits, sections=words))
         except (UnreachableError, OverflowError) as error:
             reason = error
             break
@@ -170,7 +170,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             if any(gaps[name] > unit for name, unit in units.items()):
                 raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
             errors = _between_rows(gaps)
-            apart = _transit_gap(event_run, solution, errors["vx"]) if wanted else None
+            apart = _transit_gap(event_run, solution, errors["vx"]) if with_transits else None
             _check_passages(event_run, solution, errors)
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
@@ -186,7 +186,8 @@ def _between_rows(gaps: Mapping[str, Fraction]) -> dict[str, Fraction]:
 
     From one row to the next the swing turns an error in one column into one in the others of its kind.
     """
-    return {name: ESTIMATE_FACTOR * max(gaps[of] for of in kind) for kind in (POSITION, VELOCITY) for name in kind}
+    largest = {kind: max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY)}
+    return {name: ESTIMATE_FACTOR * gap for kind, gap in largest.items() for name in kind}
 
 
 def _check_passages(event_run: Run, solution: Solution, errors: Mapping[str, Fraction]) -> None:
@@ -235,11 +236,11 @@ def _zero_gap(name: str, zeros: Passages[Table], seen: Table, signs: list[int], 
     if len(seen) != len(zeros.directions) and not zeros.possible:
         raise IntegrationError(f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}.")
     bits = max(zeros.table.bits, seen.bits)
-    found, gaps = iter(zip(seen.whole("t", bits), signs, strict=True)), [0]
+    remaining, gaps = iter(zip(seen.whole("t", bits), signs, strict=True)), [0]
     limits = (math.floor((bound + off) * 2**bits) for bound, off in zip(zeros.table.bound("t"), late, strict=True))
     rows = zip(zeros.table.whole("t", bits), zeros.directions, limits, strict=True)
     for k, (t, direction, limit) in enumerate(rows, 1):
-        gap = next((abs(t - x) for x, sign in found if sign == direction and abs(t - x) <= limit), None)
+        gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= limit), None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s.")
         gaps.append(gap)

@@ -119,14 +119,15 @@ class Ranges:
         None if open, and if one may be above the horizontal, where a swing has more than two.
         With derivatives it is what both tell: the transits' intervals, and how far inputs move the scene's own period.
         """
-        swings, found = self._swings, getattr(self.proof, "derivatives", None)
+        swings, derivatives = self._swings, getattr(self.proof, "derivatives", None)
         if swings < 1:
             return None
         low, high = _mean([row[0] for row in self.transits.rows], swings)
-        led = [led for led in found.transits if led.own] if found else []
-        if len(led) < len(self.transits):
+        zeros = [zero for zero in derivatives.transits if zero.own] if derivatives else []
+        if len(zeros) < len(self.transits):
             return low, high
-        (least, most), far = _mean([x.own.t for x in led], swings), sum(moved for moved, _ in self.shares().values())
+        least, most = _mean([zero.own.t for zero in zeros], swings)
+        far = sum(moved for moved, _ in self.shares().values())
         return max(low, least - far), min(high, most + far)
 
     @property
@@ -136,32 +137,32 @@ class Ranges:
         None where this is open, without the section `highest`, and for ranges that were read from a file.
         With derivatives the precession is what both tell: these points, and how far inputs move the scene's own.
         """
-        (wide, led), halves = self._apses, [Fraction(width) for width in self.uncertain.values()]
+        (wide, points), halves = self._apses, [Fraction(width) for width in self.uncertain.values()]
         slopes = [slope for j in range(len(halves)) if (slope := self._precession(j))]
         if wide is None or wide.precession is None or len(slopes) < len(halves):
             return wide
-        own = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (point.own for point in led)]
+        scene_points = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (point.own for point in points)]
         far = sum((half * max(-x.low, x.high) for half, x in zip(halves, slopes, strict=True)), Fraction(0))
-        return wide.near(swing_of(own, self.scene.exact, self.proof.bits), far)
+        return wide.near(swing_of(scene_points, self.scene.exact, self.proof.bits), far)
 
     @cached_property
     def _apses(self) -> tuple[Swing | None, list[Any]]:
         """The swing from the intervals of highest points, and what derivatives tell of these: nothing unless of all."""
-        found = self.sections.get("highest")
-        if found is None or self.proof is None:
+        section = self.sections.get("highest")
+        if section is None or self.proof is None:
             return None, []
-        columns = (found.table.exact(name) for name in ("t", "x", "y", "z"))
-        points, known = _decided([*zip(*columns, strict=True)], found.possible), self.proof.derivatives
-        led = [*known.passages["highest"][: len(points)]] if known else []
-        wide = swing_of(points, self.scene.exact, self.proof.bits, self.proof.lean)
-        return wide, led if all(point.own for point in led) else []
+        columns = (section.table.exact(name) for name in ("t", "x", "y", "z"))
+        intervals, derivatives = _decided([*zip(*columns, strict=True)], section.possible), self.proof.derivatives
+        points = [*derivatives.passages["highest"][: len(intervals)]] if derivatives else []
+        wide = swing_of(intervals, self.scene.exact, self.proof.bits, self.proof.lean)
+        return wide, points if all(point.own for point in points) else []
 
     def _precession(self, j: int) -> Ends | None:
         """Return the derivative of the precession to an input, in degrees an hour; None if open."""
-        wide, led = self._apses
-        if wide is None or wide.precession is None or not led:
+        wide, points = self._apses
+        if wide is None or wide.precession is None or not points:
             return None
-        first, last, swings = led[0], led[-1], Fraction(len(led) - 1, 2)
+        first, last, swings = points[0], points[-1], Fraction(len(points) - 1, 2)
         late = last.times[j].low - first.times[j].high, last.times[j].high - first.times[j].low
         lost = [rate * time / HOUR for rate in wide.precession for time in late]
         low = last.azimuths[j].low - first.azimuths[j].high - max(lost)
@@ -185,26 +186,27 @@ class Ranges:
         Raises:
             InputError: it is not uncertain, or `solve` was not asked for derivatives.
         """
-        found, name = getattr(self.proof, "derivatives", None), full_name(name)
-        if found is None:
+        derivatives, name = getattr(self.proof, "derivatives", None), full_name(name)
+        if derivatives is None:
             advice = "reference.solve(…, uncertain=…, derivatives=True)"
             raise InputError("derivative", name, "ranges that were solved with derivatives", f"Write {advice}.")
-        if name not in found.names:
-            raise unknown("derivative", name, "an uncertain input", found.names, f"There are {', '.join(found.names)}.")
-        j = found.names.index(name)
-        zeros = [led.times[j] for led in found.transits if led.times]
-        ones = len(zeros) == len(self.transits) and zeros
+        names = derivatives.names
+        if name not in names:
+            raise unknown("derivative", name, "an uncertain input", names, f"There are {', '.join(names)}.")
+        j = names.index(name)
+        times = [zero.times[j] for zero in derivatives.transits if zero.times]
+        complete = len(times) == len(self.transits) > 0
         return Derivative(
-            Intervals(GRID, tuple(row[j] for row in found.states)),
-            Intervals(("t",), tuple((x,) for x in zeros) if ones else ()),
-            _mean(zeros, self._swings) if ones and self._swings > 0 else None,
+            Intervals(GRID, tuple(row[j] for row in derivatives.states)),
+            Intervals(("t",), tuple((x,) for x in times) if complete else ()),
+            _mean(times, self._swings) if complete and self._swings > 0 else None,
             self._precession(j),
         )
 
     def shares(self) -> dict[str, tuple[Fraction, float]]:
         """Return by how much each uncertain input alone may move the period, in s, at most, and its share of all."""
-        found = {name: self.derivative(name).period for name in self.uncertain}
-        moved = {name: Fraction(self.uncertain[name]) * max(-x.low, x.high) for name, x in found.items() if x}
+        slopes = {name: self.derivative(name).period for name in self.uncertain}
+        moved = {name: Fraction(self.uncertain[name]) * max(-x.low, x.high) for name, x in slopes.items() if x}
         whole = sum(moved.values())
         return {name: (far, float(far / whole) if whole else 0.0) for name, far in moved.items()}
 

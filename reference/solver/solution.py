@@ -162,8 +162,8 @@ class Solution(GridColumns):
     @cached_property
     def function(self) -> GoldenFunction | None:
         """The golden function, if it was asked for."""
-        made = self.proof and self.proof.enclosure.function
-        return GoldenFunction.of(made.facts, made.bounds, made.data) if made else None
+        proved = self.proof and self.proof.enclosure.function
+        return GoldenFunction.of(proved.facts, proved.bounds, proved.data) if proved else None
 
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, by the golden function; with their bounds.
@@ -193,8 +193,8 @@ def transit_decimals(solution: Solution) -> dict[str, int]:
     """Return those of the transits, empty without any table: as in the grid, and t and ax by their own size."""
     if solution.zeros is None:
         return {}
-    own = decimals_of(solution.zeros.largest(), solution.scene.run.digits)
-    return own | {name: places for name, places in grid_decimals(solution).items() if name in own}
+    decimals = decimals_of(solution.zeros.largest(), solution.scene.run.digits)
+    return decimals | {name: places for name, places in grid_decimals(solution).items() if name in decimals}
 
 
 def section_decimals(solution: Solution) -> dict[str, int]:
@@ -221,16 +221,17 @@ def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
 
 
 def separated(
-    found: Sequence[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
+    zeros: Sequence[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
 ) -> Passages[T]:
     """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
 
     Zeros lie in (0, end], and the ball of a cluster may be a little wider.
     """
-    ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
-    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others)
-    rows = tuple(tuple(getattr(z, name) for name in columns) for z in ones)
-    return Passages(table(columns, rows), [z.direction for z in ones], possible)
+    single = [z for z in zeros if z.kind == "one"]
+    undecided = [z for z in zeros if z.kind != "one"]
+    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in undecided)
+    rows = tuple(tuple(getattr(z, name) for name in columns) for z in single)
+    return Passages(table(columns, rows), [z.direction for z in single], possible)
 
 
 def check_decided(solution: Solution) -> None:

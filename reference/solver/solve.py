@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from .ranges import Ranges
 
 
-class _Asked(TypedDict, total=False):
-    """What may be asked of a scene, whether its inputs are certain or not."""
+class _Options(TypedDict, total=False):
+    """Options of `solve`, whether the inputs of a scene are certain or not."""
 
     level: str | None
     t_end: str | float | None
@@ -42,8 +42,8 @@ class _Asked(TypedDict, total=False):
     derivatives: bool
 
 
-class _Proved(_Asked, total=False):
-    """And of one whose inputs are certain."""
+class _CertainOptions(_Options, total=False):
+    """Options where all inputs are certain."""
 
     digits: int | None
     audit: bool
@@ -52,11 +52,11 @@ class _Proved(_Asked, total=False):
 
 
 @overload
-def solve(scene: AnyScene, *, uncertain: Mapping[str, Any], **asked: Unpack[_Asked]) -> Ranges: ...
+def solve(scene: AnyScene, *, uncertain: Mapping[str, Any], **options: Unpack[_Options]) -> Ranges: ...
 
 
 @overload
-def solve(scene: AnyScene, *, uncertain: None = None, **asked: Unpack[_Proved]) -> Solution: ...
+def solve(scene: AnyScene, *, uncertain: None = None, **options: Unpack[_CertainOptions]) -> Solution: ...
 
 
 def solve(
@@ -106,10 +106,10 @@ def solve(
     """
     proving = {"audit": audit, "confirm": confirm != "none", "function": function}
     if uncertain is not None:
-        for wish, asked in {"digits": digits, **proving}.items():
-            if asked:
+        for name, value in {"digits": digits, **proving}.items():
+            if value:
                 advice = "Intervals have the digits they support."
-                raise InputError(wish, asked, "nothing together with uncertain", advice)
+                raise InputError(name, value, "nothing together with uncertain", advice)
         if level not in (None, "enclosed"):
             raise InputError("level", level, "enclosed, together with uncertain", "Ranges are proved, or refused.")
         level = "enclosed"
@@ -121,9 +121,9 @@ def solve(
     engine = checked(engine)
     if confirm not in CONFIRMATIONS:
         raise InputError("confirm", confirm, in_words(CONFIRMATIONS))
-    for wish, asked in proving.items():
-        if asked and settings.level != "enclosed":
-            raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
+    for name, value in proving.items():
+        if value and settings.level != "enclosed":
+            raise InputError(name, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if uncertain is not None:
         from .uncertain import solve_ranges  # nor that of a box
 
@@ -220,6 +220,6 @@ def _assemble(scene: Scene, published: Run, gap: Agreement, checks: tuple[CrossC
     errors, times, signs, source = gap.errors, published.plan.times, published.directions, Source.of(published)
     grid = published.grid.only(GRID).with_errors(errors)
     transits = None if published.transits is None else with_transit_errors(published, errors, gap.transits)
-    tables = {w: with_passage_errors(published, errors, w, gap.sections.get(w)) for w in published.passages}
+    tables = {word: with_passage_errors(published, errors, word, gap.sections.get(word)) for word in published.passages}
     sections = {word: Passages(table, published.passages[word][1]) for word, table in tables.items()}
     return Solution(scene, times, grid, transits, signs, source, checks, pilot_s, sections=sections)

@@ -36,7 +36,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
     """
     if not isinstance(uncertain, Mapping):
         raise InputError("uncertain", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
-    found: dict[str, Fraction] = {}
+    widths: dict[str, Fraction] = {}
     have = scene.exact.by_name
     for word, text in uncertain.items():
         name, width = full_name(word), str(text).strip()
@@ -45,21 +45,21 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
             raise unknown(field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES)
         if name not in have:
             raise InputError(field_name, text, "an input that this scene has", f"It has {', '.join(have)}.")
-        if name in found:
+        if name in widths:
             raise InputError(field_name, text, f"{name} once", "Give one width for each input.")
         number = next((width.removeprefix(sign).strip() for sign in SIGNS if width.startswith(sign)), "")
         try:
-            found[name] = Fraction(checked_value("site.altitude", number, "decimal"))
+            widths[name] = Fraction(checked_value("site.altitude", number, "decimal"))
         except InputError:
             raise InputError(field_name, text, EXAMPLE) from None
-        if found[name] <= 0:
+        if widths[name] <= 0:
             raise InputError(field_name, text, "a width above 0", "Leave out an input that is certain.")
-    if not found:
+    if not widths:
         raise InputError("--uncertain", "nothing", "an input with its width, length=±0.001", _NAMES)
     low, high = (
-        {name: value + side * found.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)
+        {name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)
     )
-    for name, half in found.items():
+    for name, half in widths.items():
         for end in (low[name], high[name]):
             try:
                 checked_value(name, decimal(end), "decimal")
@@ -71,7 +71,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         if far[0] ** 2 + far[1] ** 2 >= low["pendulum.length"] ** 2:
             reached = f"x up to {decimal(far[0])}, y up to {decimal(far[1])}"
             raise InputError("--uncertain", reached, "a release below the suspension", "Take smaller widths.")
-    return found
+    return widths
 
 
 _NAMES = f"Inputs are {', '.join(UNCERTAIN)}."
@@ -139,6 +139,6 @@ def solve_ranges(
         Intervals(GRID, proof.proved.states),
         *transits,
         feeds[-1].begun,
-        {word: separated(found, SECTION, end, Intervals) for word, found in proof.proved.sections.items()},
+        {word: separated(zeros, SECTION, end, Intervals) for word, zeros in proof.proved.sections.items()},
         proof,
     )

@@ -1,6 +1,6 @@
 """Many scenes at once: `reference.sweep`, in memory or into a folder, on the cores of a machine or a cluster.
 
-- `sweep`: the functions, and what they return; `request`: what was asked, checked.
+- `sweep`: the functions, and what they return; `request`: the request of a sweep, checked.
 - `axes`: rows of exact values, from words or files; `row_constants`: what an engine takes.
 - `part`: rows solved side by side; `estimate`: their errors; `promote`: rows that the solver solves, or solves again.
 - `parquet`: the columns, and files of them; `store`: the folder of a sweep.

@@ -82,8 +82,8 @@ class Table:
         columns = {}
         for key, texts, places in self._placed(rows):
             if key not in TEXTS:
-                different, back = np.unique(places, return_inverse=True)
-                numbers = _numbers([texts[place] for place in different], reading)
+                distinct, back = np.unique(places, return_inverse=True)
+                numbers = _numbers([texts[place] for place in distinct], reading)
                 columns[key] = DoubleDouble(numbers.high[back], numbers.low[back])
         return columns
 
@@ -118,8 +118,8 @@ def _numbers(texts: Sequence[str], reading: Reading) -> DoubleDouble:
     if reading == "binary64":
         low = [0.0] * len(high)
     else:
-        both = zip(texts, high, strict=True)
-        low = [float(_EXACT.subtract(Decimal(text), Decimal(h))) if math.isfinite(h) else 0.0 for text, h in both]
+        pairs = zip(texts, high, strict=True)
+        low = [float(_EXACT.subtract(Decimal(text), Decimal(h))) if math.isfinite(h) else 0.0 for text, h in pairs]
     return DoubleDouble(np.array(high), np.array(low))
 
 

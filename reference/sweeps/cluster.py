@@ -56,8 +56,8 @@ class Scheduler:
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call on some worker; its future may raise `WorkerDied` or `ClusterError`."""
         future: Future[Any] = Future()
-        there = self.client.submit(_called, self.versions, function, *arguments, pure=False, retries=RETRIES)
-        there.add_done_callback(partial(_settle, future))
+        dask_future = self.client.submit(_called, self.versions, function, *arguments, pure=False, retries=RETRIES)
+        dask_future.add_done_callback(partial(_settle, future))
         return future
 
     def check(self) -> None:
@@ -138,10 +138,10 @@ def _called(versions: dict[str, Any], function: Callable[..., Any], *arguments: 
     return function(*arguments)
 
 
-def _settle(future: Future[Any], there: Any) -> None:
+def _settle(future: Future[Any], dask_future: Any) -> None:
     """Give a future the outcome of dask's; what was lost with its worker meanwhile is waited for."""
     try:
-        future.set_result(there.result())
+        future.set_result(dask_future.result())
     except KilledWorker:
         future.set_exception(WorkerDied("its workers died"))
     except distributed.client.FutureCancelledError:

@@ -169,8 +169,8 @@ def prepared(request: Request) -> float:
     """Compile in this thread what the rows need; return the CPU seconds that it took."""
     started = time.thread_time()
     engine = batches()[request.engine]
-    for wanted in (request.wanted, MOVED, *([PASSAGES] if request.sections else [])):
-        engine.prepare(wanted)
+    for options in (request.run_options, MOVED, *([PASSAGES] if request.sections else [])):
+        engine.prepare(options)
     return time.thread_time() - started
 
 

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import LEAST_BEND, OK, STOPPED, XDOT, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import LEAST_BEND, OK, STOPPED, XDOT, Batch, Outcomes, Rows, RunOptions
 from ..model.sections import direction_of
 from ..numbers.precision import Array
 from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
@@ -35,8 +35,8 @@ SWAYS = 2.0 / 3.0  # over cos² of a cone's angle, of Ω/ω sin² of it: how far
 LATE = 0.25  # of half a swing or turn: transits and highest points that may be as far off have no frequency
 HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
-MOVED, MOVED_BACK = (Wanted(transits=False, apsides=False, moved=way) for way in (1, -1))
-PASSAGES = Wanted(apsides=False, times=True, form=True)
+MOVED, MOVED_BACK = (RunOptions(transits=False, apsides=False, moved=way) for way in (1, -1))
+PASSAGES = RunOptions(apsides=False, times=True, form=True)
 
 
 @dataclass(frozen=True)
@@ -203,10 +203,10 @@ def passages(engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors
 
     The rows are those with its form; run and errors are of those without.
     """
-    found = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
-    error, undecided = _of_zeros(rows, found, errors.position, errors.velocity, direction_of(word) != 0)
-    columns, unknown = passages_listed(word, error, found.transit_row, found.transit_t, found.transit_direction)
-    return columns, (found.fate != OK) | ~np.isfinite(rows.form).all(axis=(1, 2)) | undecided | unknown
+    zeros = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
+    error, undecided = _of_zeros(rows, zeros, errors.position, errors.velocity, direction_of(word) != 0)
+    columns, unknown = passages_listed(word, error, zeros.transit_row, zeros.transit_t, zeros.transit_direction)
+    return columns, (zeros.fate != OK) | ~np.isfinite(rows.form).all(axis=(1, 2)) | undecided | unknown
 
 
 def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any) -> tuple[dict[str, Any], Any]:
@@ -225,8 +225,8 @@ def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any)
     with np.errstate(divide="ignore", invalid="ignore"):
         interval = np.where(alike > 1, (end - start) / (alike - 1), np.nan)
         apart = np.where(error < LATE * interval / 2, 2 * error / (alike - 1), np.nan)
-        columns, numbers = section_columns([word]), (count, start, error, interval, apart)
-        return _stated({column.name: each for column, each in zip(columns, numbers, strict=True)}, columns)
+        columns, arrays = section_columns([word]), (count, start, error, interval, apart)
+        return _stated({column.name: values for column, values in zip(columns, arrays, strict=True)}, columns)
 
 
 def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
@@ -244,14 +244,15 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
     n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
     sine, speed = np.linalg.norm(np.cross(n, down), axis=1) + position / length, np.linalg.norm(v, axis=1)
     at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
-    turn, some, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
+    turn, has_apsides, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
     across = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
     offset = np.abs((turn * down).sum(axis=1)) * across
     spun = np.abs((np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1))
     upright = np.fmax(np.cos(run.largest_angle), np.fmin(GOLDEN, rows.rate**2 / (rows.rate**2 + spun**2)))
-    near = np.where(some, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
-    round_ = ~some & (4 * position >= LEAST_BEND * length * lean)  # of two squares, each twice its relative error
-    return np.asarray(some & at_end | near | round_)
+    near = np.where(has_apsides, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
+    # of two squares, each twice its relative error
+    round_ = ~has_apsides & (4 * position >= LEAST_BEND * length * lean)
+    return np.asarray(has_apsides & at_end | near | round_)
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
@@ -287,11 +288,11 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
 def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[str, Any], Any]:
     """Return columns, each error an ulp of its numbers larger, and where a number has none: there neither stands."""
     unknown: Any = False
-    for name in {column.error for column in described if column.error}:
-        own = [column.name for column in described if column.error == name]
-        error = columns[name] + np.spacing(np.max(np.abs([columns[value] for value in own]), axis=0))
+    for error_name in {column.error for column in described if column.error}:
+        names = [column.name for column in described if column.error == error_name]
+        error = columns[error_name] + np.spacing(np.max(np.abs([columns[name] for name in names]), axis=0))
         none = ~np.isfinite(error)
-        unknown = unknown | none & np.isfinite([columns[value] for value in own]).any(axis=0)
-        columns |= {value: np.where(none, np.nan, columns[value]) for value in own}
-        columns[name] = np.where(none, np.nan, error)
+        unknown = unknown | none & np.isfinite([columns[name] for name in names]).any(axis=0)
+        columns |= {name: np.where(none, np.nan, columns[name]) for name in names}
+        columns[error_name] = np.where(none, np.nan, error)
     return columns, unknown

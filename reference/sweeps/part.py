@@ -50,7 +50,7 @@ class Tally:
     promoted_s: float = 0.0
 
     def __add__(self, other: Tally) -> Tally:
-        return Tally(**{name: own + vars(other)[name] for name, own in vars(self).items()})
+        return Tally(**{name: value + vars(other)[name] for name, value in vars(self).items()})
 
 
 @dataclass
@@ -86,7 +86,7 @@ class Part:
         places = part.unknown
         for key, values in table.numbers(part.columns["row"][places], inputs).items():
             part.columns[key][places] = values.high
-        if request.wanted.times:
+        if request.run_options.times:
             part.transits = {column.name: column.empty(0) for column in TRANSIT_COLUMNS}
         return part
 
@@ -118,12 +118,12 @@ class Part:
         """List transits in the order of their rows, in place of those that are listed for some rows."""
         stays = ~np.isin(self.transits["row"], list(replaced))
         added = dict(zip(self.transits, (rows, times, directions), strict=True))
-        both = {
+        columns = {
             name: np.concatenate([listed[stays], np.asarray(added[name], listed.dtype)])
             for name, listed in self.transits.items()
         }
-        order = np.argsort(both["row"], kind="stable")
-        self.transits = {name: values[order] for name, values in both.items()}
+        order = np.argsort(columns["row"], kind="stable")
+        self.transits = {name: values[order] for name, values in columns.items()}
 
 
 def solve_part(request: Request, numbers: range, promote: Promote = promoted) -> Part:
@@ -151,21 +151,21 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
 def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promote) -> None:
     """Solve rows whose values are right one by one."""
     sound = _finite(rows)
-    more: dict[int, str] = {}  # places of rows that the solver has to solve, and why
+    reasons: dict[int, str] = {}  # places of rows that the solver has to solve, and why
     for place in places[~sound].tolist():
         try:
             request.scene_of(int(part.columns["row"][place]))
-            more[place] = "A number of the scene is beyond the range of binary64."
+            reasons[place] = "A number of the scene is beyond the range of binary64."
         except InputError as error:
             part.fail(place, Status.INVALID, str(error))
         except FoucaultError as error:
             part.fail(place, Status.UNREACHABLE, str(error))
     rows, places = rows[sound], places[sound]
     if request.promotes:
-        more |= dict.fromkeys(places.tolist(), "")
+        reasons |= dict.fromkeys(places.tolist(), "")
     elif len(places):
-        more |= _side_by_side(request, part, places, rows)
-    for place, reason in sorted(more.items()):
+        reasons |= _side_by_side(request, part, places, rows)
+    for place, reason in sorted(reasons.items()):
         if reason == STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
         else:
@@ -187,23 +187,23 @@ def _promote(request: Request, part: Part, place: int, reason: str, promote: Pro
         part.fail(place, status, f"{reason} {result.failure}".strip())
     else:
         part.fill(place, {**result.values, "status": Status.OK.value, "reason": None})
-    if request.wanted.times:
+    if request.run_options.times:
         times, directions = result.times
         part.list_transits([row], np.full(len(times), row), times, directions)
 
 
 def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict[int, str]:
     """Solve rows side by side; return those that are in doubt, or not good enough, and why."""
-    wanted = request.wanted
-    more: dict[int, str] = {}
+    options = request.run_options
+    reasons: dict[int, str] = {}
     for engine, chosen in _shared(request.engine, rows):
         of_engine, at = rows[chosen], places[chosen]
-        run = engine.solve(of_engine, wanted)
+        run = engine.solve(of_engine, options)
         errors, lost = judged(engine, of_engine, run)
         columns, unknown = columns_of(of_engine, run, errors)
         part.fill(at, {**columns, "status": Status.OK.value})
         part.columns["engine"][at] = engine.name
-        if wanted.times:
+        if options.times:
             listed = part.columns["row"][at][run.transit_row]
             part.list_transits([], listed, run.transit_t, run.transit_direction)
         stopped = (run.fate == STOPPED) | lost
@@ -213,12 +213,12 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
             columns, undecided = passages(engine, word, sought, run, errors)
             part.fill(at, columns)
             unsure |= undecided
-        unsure |= errors.undecided if wanted.transits else False
+        unsure |= errors.undecided if options.transits else False
         if request.tolerance is not None:
             unsure = unsure | ~(errors.position <= request.tolerance)
-        more |= dict.fromkeys(at[unsure].tolist(), DOUBTFUL_REASON)
-        more |= dict.fromkeys(at[stopped].tolist(), STOPPED_REASON)
-    return more
+        reasons |= dict.fromkeys(at[unsure].tolist(), DOUBTFUL_REASON)
+        reasons |= dict.fromkeys(at[stopped].tolist(), STOPPED_REASON)
+    return reasons
 
 
 def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:

@@ -65,8 +65,8 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     its time has no bound, and its angle that of the grid, `position` in m. One so soon after the release that no digit
     tells it, as the exact inputs do, counts as the release. On a cone, which has none, release and end tell the angle.
     """
-    found, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
-    decided, points = found and not found.possible, found.table if found else Table(SECTION, 0, [])
+    section, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
+    decided, points = section and not section.possible, section.table if section else Table(SECTION, 0, [])
     length, turn = solution.scene.exact.length, (0, axes.turn[0].high, axes.turn[1].high)
     states = [
         DoubleDouble.of(q / length for q in (grid.exact(name)[0], *points.exact(name), grid.exact(name)[-1]))
@@ -82,8 +82,8 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     across, azimuth = np.hypot(x, p), np.arctan2(p, x)
     run.largest_angle[0] = np.arctan2(across, -u).max()
     t, soon = np.append(0.0, points["t"]), SOON / rows.rate
-    untold = rows.rising[0] > 0 and abs(motion.v[2][0]) < soon * fall[0] and not (t[1:2] < 2 * soon).any()
-    high = slice(0 if untold else 1, -1)
+    unresolved = rows.rising[0] > 0 and abs(motion.v[2][0]) < soon * fall[0] and not (t[1:2] < 2 * soon).any()
+    high = slice(0 if unresolved else 1, -1)
     t, azimuth = t[high.start :], azimuth[high]
     bent = fall > LEAST_BEND * (rows.rate * across) ** 2
     if decided and len(t) and bent[high].all():
@@ -126,13 +126,13 @@ def promoted(
         level: a level instead of the request's.
         digits: digits instead of the request's.
     """
-    wished = level or request.level
+    level = level or request.level
     if doubtful:
-        wished = max(wished, LEAST_LEVEL, key=LEVELS.index)
+        level = max(level, LEAST_LEVEL, key=LEVELS.index)
     digits = digits or request.digits or DIGITS
     try:
-        settings = {"run.level": wished, "run.transits": request.wanted.transits}
-        solution = _solved(request.scene_of(row).with_values(settings), digits, request.wanted.apsides)
+        settings = {"run.level": level, "run.transits": request.run_options.transits}
+        solution = _solved(request.scene_of(row).with_values(settings), digits, request.run_options.apsides)
     except FoucaultError as error:
         return Promoted({}, ([], []), str(error))
     undecided = [word for word in request.sections if solution.sections[word].possible]
@@ -143,7 +143,7 @@ def promoted(
 
 
 def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
-    """Return a scene solved, with its highest points where its swing is wanted and they can be told.
+    """Return a scene solved, with its highest points where its swing is wanted and has them.
 
     A cone has none. With drag they take more digits.
     """

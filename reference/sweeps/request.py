@@ -1,4 +1,4 @@
-"""A sweep as it was asked for: the scene, what varies, what is wanted, and how the rows are cut into parts.
+"""The request of a sweep: the scene, what varies, which quantities, and how the rows are cut into parts.
 
 `request` checks what a user asks for before any work, and chooses the engine and the size of parts.
 """
@@ -17,7 +17,7 @@ from pydantic import PositiveInt
 from pydantic.dataclasses import dataclass as checked
 
 from ..engines import AUTO
-from ..engines.batch_interface import Batch, Wanted
+from ..engines.batch_interface import Batch, RunOptions
 from ..engines.registry import batches
 from ..errors import InputError, unknown
 from ..model.sections import direction_of
@@ -86,10 +86,10 @@ class Request:
         return self.level != "computed" or self.digits is not None
 
     @property
-    def wanted(self) -> Wanted:
-        """The results wanted of the engine."""
+    def run_options(self) -> RunOptions:
+        """Which results the engine gives of each row."""
         want = set(self.want)
-        return Wanted(
+        return RunOptions(
             transits=bool(want & {TRANSITS, FREQUENCY, TIMES}),
             apsides=bool(want & {PRECESSION, FREQUENCY, AMPLITUDE} or self.sections),
             times=TIMES in want,
@@ -207,7 +207,7 @@ def request(
     return Request(
         scene=scene,
         table=table,
-        want=_wanted(want),
+        want=_quantities(want),
         level=level,
         digits=digits,
         tolerance=tolerance,
@@ -227,7 +227,7 @@ def _check_release(scene: Scene, keys: Iterable[str]) -> None:
             raise InputError("--over", key, expected, "Or take a scene with the other kind.")
 
 
-def _wanted(words: Sequence[str]) -> tuple[str, ...]:
+def _quantities(words: Sequence[str]) -> tuple[str, ...]:
     known = (*WANTS, TIMES, ALL)
     for word in words:
         if word not in known:
@@ -246,11 +246,11 @@ def _row_s(engine: Batch, scene: Scene) -> float:
 
 def worth_compiling(request: Request) -> str:
     """Return from how many rows it pays to compile an engine that would be cheaper for each, or "" if there is none."""
-    taken_s = _row_s(batches()[request.engine], request.scene)
-    if request.promotes or taken_s * request.table.count < WORTH_A_LINE_S:
+    row_s = _row_s(batches()[request.engine], request.scene)
+    if request.promotes or row_s * request.table.count < WORTH_A_LINE_S:
         return ""
     for other in batches().values():
-        once_s, gained_s = other.compiling_s(bool(request.sections)), taken_s - _row_s(other, request.scene)
+        once_s, gained_s = other.compiling_s(bool(request.sections)), row_s - _row_s(other, request.scene)
         drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
         if once_s and gained_s > 0 and other.installed and (other.drag or not drag):
             rows = float(f"{once_s / gained_s:.1g}")
@@ -269,9 +269,11 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
     """
     engines = batches()
     if name == AUTO:
-        can = [engine for engine in engines.values() if engine.installed and (engine.drag or not scene.exact.drag)]
+        serving = [engine for engine in engines.values() if engine.installed and (engine.drag or not scene.exact.drag)]
         sections = bool(scene.run.sections)
-        return min(can, key=lambda one: one.load_s + one.compiling_s(sections) + count * _row_s(one, scene))
+        return min(
+            serving, key=lambda engine: engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
+        )
     if name not in engines:
         raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
     engines[name].check_installed()

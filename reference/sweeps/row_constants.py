@@ -183,8 +183,8 @@ def _rest_position(k: Constants) -> Vector:
         size = square_root(north * north + up * up)
         north, up = north / size, up / size
     even = np.abs(k.centrifugal[0].high) < _EVEN * np.sqrt(k.pull[1].high ** 2 + k.pull[2].high ** 2)
-    known = np.where(even & (np.abs(step.high) <= _CLOSE), 0.0, np.nan)
-    return 0, north + known, up
+    settled = even & (np.abs(step.high) <= _CLOSE)
+    return 0, north + np.where(settled, 0.0, np.nan), up
 
 
 def _balanced(n: Vector, k: Constants) -> Any:

@@ -110,7 +110,7 @@ class Store:
 
     @property
     def _kinds(self) -> tuple[str, ...]:
-        return (ROWS, TRANSITS) if self.request.wanted.times else (ROWS,)
+        return (ROWS, TRANSITS) if self.request.run_options.times else (ROWS,)
 
     def path(self, part: int, kind: str = ROWS) -> Path:
         """Return the file of a part."""

@@ -40,7 +40,7 @@ class Swept(Framed):
     """A sweep that is done: its columns as arrays, in memory or read from its folder.
 
     Attributes:
-        request: what was asked for.
+        request: the sweep: the scene, what varies, what is computed.
         store: its folder, if it has one.
         solved: its rows, if it has none.
         tally: counts by status and costs; of the rows that were computed now, where a folder was gone on with.
@@ -64,8 +64,8 @@ class Swept(Framed):
 
     def __repr__(self) -> str:
         """Return the scene, and how many rows there are of each status."""
-        found = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return f"Swept({self.request.scene.id}: {counted(len(self), 'row')}, {found}; {self.request.engine})"
+        counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
+        return f"Swept({self.request.scene.id}: {counted(len(self), 'row')}, {counts}; {self.request.engine})"
 
     def to_pandas(self) -> Any:
         """Return the rows as a pandas.DataFrame: the values of the fields, then the columns.
@@ -78,8 +78,8 @@ class Swept(Framed):
     @cached_property
     def counts(self) -> dict[str, int]:
         """How many rows there are of each status."""
-        found = sum(map(Counter, self._statuses()), Counter[str]())
-        return dict(sorted(found.items()))
+        counts = sum(map(Counter, self._statuses()), Counter[str]())
+        return dict(sorted(counts.items()))
 
     @property
     def first_bad(self) -> int:
@@ -134,7 +134,7 @@ class Swept(Framed):
         Raises:
             InputError: they were not.
         """
-        if not self.request.wanted.times:
+        if not self.request.run_options.times:
             raise unknown("transits", "transits", "a sweep with --want transit-times", (), "Sweep again with it.")
         return self.store.read(kind=TRANSITS) if self.store is not None else self.solved.transits
 
@@ -192,12 +192,12 @@ def sweep(
     file, folder = (Path(path) if path is not None else None for path in (rows, out))
     if workers is not None and workers < 1:
         raise InputError("workers", workers, "a whole number from 1, or None for one a core")
-    wanted = tuple(want.split(",")) if isinstance(want, str) else want
-    options = {"want": wanted, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
-    given = {"run.t_end": t_end, "run.sections": sections}
-    scene = as_scene(scene).with_values({key: value for key, value in given.items() if value is not None})
-    asked = asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options)
-    return run(asked, folder, workers, cluster, report)
+    quantities = tuple(want.split(",")) if isinstance(want, str) else want
+    options = {"want": quantities, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
+    run_values = {"run.t_end": t_end, "run.sections": sections}
+    scene = as_scene(scene).with_values({key: value for key, value in run_values.items() if value is not None})
+    request = asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options)
+    return run(request, folder, workers, cluster, report)
 
 
 def asked_for(
@@ -210,15 +210,15 @@ def asked_for(
     """
     if out is not None and options.get("engine", AUTO) == AUTO and (out / PLAN).exists():
         options["engine"] = Store.opened(out).request.engine  # a sweep goes on as it began
-    asked = request(scene, over, rows, **options)
-    count = asked.table.count
+    checked = request(scene, over, rows, **options)
+    count = checked.table.count
     if out is None:
         if count > MOST_IN_MEMORY:
             raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
-        return replace(asked, rows_per_part=min(asked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
+        return replace(checked, rows_per_part=min(checked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
     if options.get("audit") is None:
-        return replace(asked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
-    return asked
+        return replace(checked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
+    return checked
 
 
 def load_sweep(folder: str | Path) -> Swept:
@@ -236,7 +236,7 @@ def load_sweep(folder: str | Path) -> Swept:
 
 
 def run(
-    asked: Request,
+    request: Request,
     out: Path | None,
     workers: int | None = None,
     cluster: str | None = None,
@@ -244,24 +244,24 @@ def run(
 ) -> Swept:
     """Do what of a sweep is not done yet, and audit it; arguments and errors as those of `sweep`."""
     started = time.perf_counter()
-    store, parts = None, list(range(asked.parts))
+    store, parts = None, list(range(request.parts))
     if out is not None:
-        store = Store.begun(out, asked)
+        store = Store.begun(out, request)
         parts = store.missing()
-        report(asked.table.count - sum(len(asked.rows_of(part)) for part in parts))
+        report(request.table.count - sum(len(request.rows_of(part)) for part in parts))
     in_memory: dict[int, Part] = {}
     save = store.save if store is not None else in_memory.__setitem__
     tally, compile_s = Tally(), 0.0
     if parts:
-        with _workers(asked, out, workers, cluster, len(parts)) as executor:
-            tally = drive(asked, parts, executor, save, report)
+        with _workers(request, out, workers, cluster, len(parts)) as executor:
+            tally = drive(request, parts, executor, save, report)
         compile_s = executor.compile_s
     audit, audit_from = None, time.process_time()
-    if asked.audit:
-        audit = audited(asked, lambda part: store.read(parts=[part]) if store else in_memory[part].columns)
+    if request.audit:
+        audit = audited(request, lambda part: store.read(parts=[part]) if store else in_memory[part].columns)
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
     audit_s, wall_s = time.process_time() - audit_from, time.perf_counter() - started
-    swept = Swept(asked, store, solved, tally, audit, compile_s, audit_s, wall_s)
+    swept = Swept(request, store, solved, tally, audit, compile_s, audit_s, wall_s)
     if store is not None:
         document = asdict(audit) if audit is not None else None
         write_json(store.folder / SUMMARY, {"rows": len(swept), "counts": swept.counts, "audit": document})
@@ -269,11 +269,11 @@ def run(
 
 
 def _workers(
-    asked: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
+    request: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
 ) -> AbstractContextManager[Executor]:
     if cluster is not None:
         needed("distributed", "cluster", "--cluster", cluster, "which sends the rows to its workers")
         from .cluster import on_cluster
 
-        return on_cluster(asked, out, cluster)
-    return on_this_machine(asked, out, min(workers or usable_cores(), parts))
+        return on_cluster(request, out, cluster)
+    return on_this_machine(request, out, min(workers or usable_cores(), parts))

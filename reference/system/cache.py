@@ -25,7 +25,7 @@ from .workspace import replace_file, workspace
 
 KEEP = 40  # entries of one kind at most; the least recently used are deleted first
 _ROOM = bytes(1 << 18)  # a disk without room for this much is full
-_SAID = "FOUCAULT_CACHE_SAID"  # tells child processes, too, that the line was printed
+_PRINTED = "FOUCAULT_CACHE_SAID"  # tells child processes, too, that the line was printed
 
 
 def root() -> Path:
@@ -114,8 +114,8 @@ def _distrust(folder: Path) -> str:
 
 def _say(why: str) -> None:
     """Say once, in this process and its children, why the cache cannot be used."""
-    if not os.environ.get(_SAID):
-        os.environ[_SAID] = "1"
+    if not os.environ.get(_PRINTED):
+        os.environ[_PRINTED] = "1"
         print(f"foucault: the cache is not used, which costs time only: {why}.", file=sys.stderr)
 
 

@@ -19,7 +19,7 @@ from ..errors import InputError
 MAX_BYTES = 1 << 16  # of a TOML file
 MAX_JSON_BYTES = 1 << 30  # the plan of a sweep may list millions of rows
 MAX_DEPTH = 32  # words of a dotted key; a scene has two. The parser's time and memory grow with the square
-_SAID = 200  # characters of the parser's message that are quoted
+_QUOTED = 200  # characters of the parser's message that are quoted
 
 _WORD = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')"""
 _DEEP_KEY = re.compile(rf"(?<![\w\\-]){_WORD}(?:[ \t]*\.[ \t]*{_WORD}){{{MAX_DEPTH}}}", re.ASCII)
@@ -126,5 +126,5 @@ def _reason(error: Exception) -> str:
     if isinstance(error, RecursionError):
         return "Its lists or tables are nested too deeply."
     if isinstance(error, UnicodeDecodeError | tomllib.TOMLDecodeError | json.JSONDecodeError):
-        return f"{str(error)[:_SAID]}."
+        return f"{str(error)[:_QUOTED]}."
     return f"A whole number has at most {sys.get_int_max_str_digits()} digits."

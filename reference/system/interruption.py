@@ -37,14 +37,14 @@ def held() -> Iterator[None]:
     In the main thread their handlers wait as well, whichever thread a signal reaches: an exception out of one of them
     can leave a lock of Python's `threading` taken, for which another thread then waits without end.
     """
-    came: list[int] = []
-    with _replaced(lambda number, _: came.append(number), callable) as handlers:
+    received: list[int] = []
+    with _replaced(lambda number, _: received.append(number), callable) as handlers:
         before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
         try:
             yield
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    for number in came[:1]:
+    for number in received[:1]:
         handlers[number](number, None)
 
 
@@ -61,22 +61,22 @@ def terminable() -> Iterator[list[int]]:
         The numbers of the signals that have come, then those of alarms. The exception that arrives does not always
         tell: code in C that is interrupted while it is imported raises an ImportError instead.
     """
-    came: list[int] = []
+    received: list[int] = []
 
     def stop(number: int, _: FrameType | None) -> None:
-        came.append(number)
+        received.append(number)
         if not _ends(sys.exc_info()[1]):  # else what was begun is being cleared away
             if signal.getsignal(signal.SIGALRM) is stop:
                 signal.setitimer(signal.ITIMER_REAL, AGAIN_S, AGAIN_S)
-            raise KeyboardInterrupt if came[0] == signal.SIGINT else SystemExit(128 + came[0])
+            raise KeyboardInterrupt if received[0] == signal.SIGINT else SystemExit(128 + received[0])
 
     usual_hook = sys.unraisablehook
-    sys.unraisablehook = lambda lost: None if came and _ends(lost.exc_value) else usual_hook(lost)
+    sys.unraisablehook = lambda lost: None if received and _ends(lost.exc_value) else usual_hook(lost)
     with _replaced(stop, (signal.SIG_DFL, signal.default_int_handler).__contains__):
         try:
-            yield came
+            yield received
         finally:
-            if came:
+            if received:
                 signal.setitimer(signal.ITIMER_REAL, 0)
             sys.unraisablehook = usual_hook
 

@@ -18,7 +18,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from reference.engines.batch_interface import Rows, Wanted
+from reference.engines.batch_interface import Rows, RunOptions
 from reference.engines.heyoka.batch import BATCH as HEYOKA
 from reference.engines.octet.batch import BATCH as OCTET
 from reference.engines.octet.rows import RESULTS, outcomes, packed
@@ -88,13 +88,13 @@ def not_integration(count: int) -> float:
     rows = many_rows(count)
     columns = columns_of(load_scene("paris").exact)
     columns["latitude"] = DoubleDouble(np.linspace(-90, 90, count), np.zeros(count))
-    run = OCTET.solve(rows[:1], Wanted())
+    run = OCTET.solve(rows[:1], RunOptions())
     several = type(run)(*(np.repeat(getattr(run, name), count, axis=0) for name in vars(run)))
 
     def once() -> None:
         own = row_constants(columns, "ellipsoid", count)
         for moved in (0, 1):
-            outcomes(own, packed(own, Wanted(moved=moved)), results, (results[:0, 0],) * 3)
+            outcomes(own, packed(own, RunOptions(moved=moved)), results, (results[:0, 0],) * 3)
         errors(own, several, several)
 
     with np.errstate(all="ignore"):
@@ -104,23 +104,23 @@ def not_integration(count: int) -> float:
 def main(count: int = 181, pairs: int = 5) -> None:
     """Print all ratios."""
     rows = many_rows(count)
-    bare, transits, whole = Wanted(False, False), Wanted(apsides=False), Wanted()
+    bare, transits, whole = RunOptions(False, False), RunOptions(apsides=False), RunOptions()
     first = cpu_s(lambda: OCTET.prepare(whole))
     print(f"{count} rows, {pairs} pairs; octet compiled or read in {first:.2f} CPU s")
     silent, located = ScalarLoop(False), ScalarLoop(True)
 
-    def octet(wanted: Wanted) -> Callable[[], object]:
-        return lambda: OCTET.solve(rows, wanted)
+    def octet(options: RunOptions) -> Callable[[], object]:
+        return lambda: OCTET.solve(rows, options)
 
-    def heyoka(wanted: Wanted) -> Callable[[], object]:
-        return lambda: HEYOKA.solve(rows, wanted)
+    def heyoka(options: RunOptions) -> Callable[[], object]:
+        return lambda: HEYOKA.solve(rows, options)
 
     def default(engine: Any) -> Callable[[], object]:
         return lambda: judged(engine, rows, engine.solve(rows, whole))
 
-    for wanted in (bare, transits, whole, MOVED):
-        HEYOKA.solve(rows[:8], wanted)
-        OCTET.solve(rows[:8], wanted)
+    for options in (bare, transits, whole, MOVED):
+        HEYOKA.solve(rows[:8], options)
+        OCTET.solve(rows[:8], options)
 
     def with_events() -> None:
         located.solve(rows)

@@ -25,7 +25,7 @@ import numpy as np
 from octet import SPAN, ScalarLoop, cpu_s, many_rows
 
 from compare.methods.library import BOOST, compiler
-from reference.engines.batch_interface import Rows, Wanted
+from reference.engines.batch_interface import Rows, RunOptions
 from reference.engines.heyoka.batch import BATCH as HEYOKA
 from reference.engines.octet.batch import BATCH as OCTET
 from reference.engines.registry import engines
@@ -188,13 +188,13 @@ def ensemble(rows: Rows, loop: ScalarLoop) -> None:
 
 def own(rows: Rows) -> list[Peer]:
     """Return octet, and heyoka in all its forms."""
-    OCTET.prepare(Wanted())
-    silent, located, whole, bare = ScalarLoop(False), ScalarLoop(True), Wanted(), Wanted(False, False)
-    for wanted in (bare, whole):
-        HEYOKA.solve(rows[:8], wanted)
+    OCTET.prepare(RunOptions())
+    silent, located, whole, bare = ScalarLoop(False), ScalarLoop(True), RunOptions(), RunOptions(False, False)
+    for options in (bare, whole):
+        HEYOKA.solve(rows[:8], options)
 
-    def batch(engine: Any, wanted: Wanted) -> tuple[float, Any]:
-        seconds, run = timed(lambda: engine.solve(rows, wanted))
+    def batch(engine: Any, options: RunOptions) -> tuple[float, Any]:
+        seconds, run = timed(lambda: engine.solve(rows, options))
         return seconds, run.state[:, :3]
 
     return [

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from random_rows import rows_of
 
-from reference.engines.batch_interface import OK, Batch, Outcomes, Rows, Wanted
+from reference.engines.batch_interface import OK, Batch, Outcomes, Rows, RunOptions
 from reference.engines.registry import engines
 from reference.model.algebra import add, cross, dot, scale, subtract
 from reference.scenes.inputs import Inputs
@@ -55,7 +55,7 @@ def truth(inputs: Inputs, times: tuple[Fraction, ...] = ()) -> Any:
 def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Comparison:
     """Solve scenes in a batch engine and in limbs, and compare."""
     rows = rows_of(many)
-    run = batch.solve(rows, Wanted(times=True))
+    run = batch.solve(rows, RunOptions(times=True))
     estimate = judged(batch, rows, run)[0] if estimates else None
     found = Comparison(rows=len(many))
     for i, inputs in enumerate(many):

@@ -42,7 +42,7 @@ def made_again(name: str) -> dict[str, str | bytes]:
     scene_id, doubles, _ = name.partition(".binary64")
     scene = load_scene(scene_id, ["inputs=binary64"] if doubles else [])
     making = making_of(scene, name, default_folder(scene, name))
-    return render(reference.solve(scene, **making.asked_of(scene)), name, tables=making.tables)
+    return render(reference.solve(scene, **making.solve_options(scene)), name, tables=making.tables)
 
 
 def shipped(name: str) -> dict[str, str | bytes]:

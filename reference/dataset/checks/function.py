@@ -53,7 +53,7 @@ def contradicted(files: Files, times: list[float], table: Table, apart: Mapping[
     if files.function is None:
         return []
     record, function = files.function
-    at, found = function.at(times), []
+    at, sentences = function.at(times), []
     for name in STATE:
         limit = Fraction(record.bounds[name]) + apart[name]
         for t, value, whole in zip(times, getattr(at, name).tolist(), table.whole(name, table.bits), strict=True):
@@ -61,5 +61,5 @@ def contradicted(files: Files, times: list[float], table: Table, apart: Mapping[
             gap = Fraction(abs((n << table.bits) - whole * d), d << table.bits)
             if gap > limit:
                 text = f"{FUNCTION[0]}: t = {t:.17g}: {name} is off by {float(gap):.2g}"
-                found.append(f"{text}, its bound is {record.bounds[name]}")
-    return found
+                sentences.append(f"{text}, its bound is {record.bounds[name]}")
+    return sentences

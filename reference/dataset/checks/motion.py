@@ -86,8 +86,8 @@ def _run(files: Files, prec: int, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
     times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
     plan = limbs.plan(inputs, prec, tuple(times), files.scene.run.transits)
-    said = files.manifest.sections
-    words = tuple(word for word, possible in said.possible.items() if not possible) if said else ()
+    sections = files.manifest.sections
+    words = tuple(word for word, possible in sections.possible.items() if not possible) if sections else ()
     return run(replace(plan, sections=words), report and (lambda t: report(t, float(inputs.t_end))))
 
 
@@ -101,14 +101,14 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
             return None
         outside, differing = _outside_intervals(files, fine.plan, fine.transits)
         sheet, count = files.tables.get("transits.csv"), files.manifest.counts.transits
-        found = [fine.directions[k] for k in outside]
-        listed = [direction for (direction,) in sheet.numbers(("direction",))] if sheet else found
-        if listed != found or count != len(found):
+        expected = [fine.directions[k] for k in outside]
+        listed = [direction for (direction,) in sheet.numbers(("direction",))] if sheet else expected
+        if listed != expected or count != len(expected):
             where = "transits.csv" if sheet else MANIFEST
-            differing.append(f"{where}: {count} transits are not the motion's, which are {len(found)}")
-        elif found:
-            both = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
-            kinds.append(("transits", both[0], both[1]))
+            differing.append(f"{where}: {count} transits are not the motion's, which are {len(expected)}")
+        elif expected:
+            tables = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
+            kinds.append(("transits", tables[0], tables[1]))
     if sheet := files.tables.get("sections.csv"):
         if any(coarse.passages[word][1] != directions for word, (_, directions) in fine.passages.items()):
             return None
@@ -173,8 +173,8 @@ def _off(files: Files, kind: Kind, table: Table, apart: Mapping[str, Fraction]) 
     """Return a sentence for every printed number that is further from a run than its bound and the runs' distance."""
     off, word = [], {"grid": "t =", "transits": "transit", "sections": "passage of"}[kind]
     sheet = files.tables[f"{kind}.csv"]
-    printed, ten = sheet.integers(table.columns)
-    unit = ten << table.bits
+    printed, scale = sheet.integers(table.columns)
+    unit = scale << table.bits
     for i, name in enumerate(table.columns):
         of_rows = [files.manifest.bound(kind, name)] * len(sheet.rows)
         if name == "t":
@@ -182,7 +182,7 @@ def _off(files: Files, kind: Kind, table: Table, apart: Mapping[str, Fraction]) 
         limits = {bound: int((bound + apart[name]) * unit) for bound in set(of_rows)}
         rows = zip(sheet.rows, printed[i] << table.bits, table.values, of_rows, strict=True)
         for row, number, values, bound in rows:
-            gap = abs(number - values[i] * ten)
+            gap = abs(number - values[i] * scale)
             if gap > limits[bound]:
                 where = f"{kind}.csv: {word} {row[0]}: {name} is off by {gap / unit:.2g}"
                 off.append(f"{where}, its bound is {float(bound):.2g}")

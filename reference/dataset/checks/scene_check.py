@@ -75,15 +75,15 @@ def _doubles(files: Files, kind: str) -> Iterator[str]:
     for name in NUMBERS[kind]:
         i, j = plain.header.index(name), count + NUMBERS[kind].index(name)
         column = Fraction(0) if (kind, name) == ("grid", "t") else files.manifest.bound(kind, name)  # type: ignore[arg-type]
-        for row, other in zip(plain.rows, doubles.rows, strict=True):
+        for row, double_row in zip(plain.rows, doubles.rows, strict=True):
             bound = Fraction(row[-1]) if kind == "transits" and name == "t" else column
-            value, double = Fraction(row[i]), float(other[i])
-            if double.hex() != other[j] or not float(value - bound) <= double <= float(value + bound):
-                yield f"{kind}.binary64.csv: {name} = {other[i]} is not the double nearest to {row[i]}"
-            elif f"{double:.16e}" != other[i]:
-                yield f"{kind}.binary64.csv: {name} = {other[i]} is not written with the digits of {double!r}"
-    for row, other in zip(plain.rows, doubles.rows, strict=True):
-        if any(row[i] != other[i] for i, name in enumerate(plain.header) if name not in NUMBERS[kind]):
+            value, double = Fraction(row[i]), float(double_row[i])
+            if double.hex() != double_row[j] or not float(value - bound) <= double <= float(value + bound):
+                yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not the double nearest to {row[i]}"
+            elif f"{double:.16e}" != double_row[i]:
+                yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not written with the digits of {double!r}"
+    for row, double_row in zip(plain.rows, doubles.rows, strict=True):
+        if any(row[i] != double_row[i] for i, name in enumerate(plain.header) if name not in NUMBERS[kind]):
             yield f"{kind}.binary64.csv: row {row[0]} has another direction, number or bound than {kind}.csv"
 
 
@@ -158,7 +158,7 @@ def problems(files: Files) -> Iterator[str]:
         return
     vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
     counts, possible, sought = manifest.counts, manifest.possible, scene.run.transits and not vanishes
-    made = manifest.model_copy(
+    expected = manifest.model_copy(
         update={
             **following(scene, run.formulation, run.number, files.tables.get("grid.csv")),
             "level": scene.run.level,
@@ -169,15 +169,15 @@ def problems(files: Files) -> Iterator[str]:
             "transits": completeness(scene, vanishes, bool(possible)),
         }
     )
-    for place, *both in differences(manifest.model_dump(), made.model_dump()):
-        old, new = (shortened(str(value), LONGEST_VALUE) for value in both)
+    for place, *values in differences(manifest.model_dump(), expected.model_dump()):
+        old, new = (shortened(str(value), LONGEST_VALUE) for value in values)
         yield f"{MANIFEST}: {place} = {old} does not follow from the scene and the tables, which give {new}"
-    if (manifest.scene, manifest.notes) != (made.scene, made.notes):  # what is checked below needs them whole
+    if (manifest.scene, manifest.notes) != (expected.scene, expected.notes):  # what is checked below needs them whole
         return
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    said = OPTIONS.search(manifest.command)
-    options = said and (said[0] if manifest.level == "enclosed" else f"{ENGINE} {said[1]}")
+    match = OPTIONS.search(manifest.command)
+    options = match and (match[0] if manifest.level == "enclosed" else f"{ENGINE} {match[1]}")
     if (
         not options
         or (FUNCTION[0] in manifest.files) != Making.of(options).function
@@ -215,17 +215,17 @@ def _possible(files: Files) -> Iterator[str]:
 
 def _sections(files: Files) -> Iterator[str]:
     """Check that `sections.csv` has the scene's sections in order, their rows counted, with bounds of their digits."""
-    said, sheet = files.manifest.sections, files.tables.get("sections.csv")
-    if said is None:
+    record, sheet = files.manifest.sections, files.tables.get("sections.csv")
+    if record is None:
         return
     words = files.scene.run.sections or ()
-    if not tuple(said.counts) == tuple(said.possible) == words:
+    if not tuple(record.counts) == tuple(record.possible) == words:
         yield f"{MANIFEST}: sections are not those of the scene: {', '.join(words)}"
-    numbered = [(word, str(k)) for word, count in said.counts.items() for k in range(1, count + 1)]
+    numbered = [(word, str(k)) for word, count in record.counts.items() for k in range(1, count + 1)]
     if sheet and [row[:2] for row in sheet.rows] != numbered:
         yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
-    for name, bound in said.bounds.items():
-        if Fraction(bound) * 10 ** said.decimals[name] < Fraction(1, 2):
+    for name, bound in record.bounds.items():
+        if Fraction(bound) * 10 ** record.decimals[name] < Fraction(1, 2):
             yield f"{MANIFEST}: sections.bounds.{name} = {bound} is less than half a unit of the last digit"
 
 
@@ -241,18 +241,18 @@ def _bounds(manifest: Manifest) -> Iterator[str]:
 def _evidence(manifest: Manifest) -> Iterator[str]:
     """Check the level against what stands behind it: other runs, or a proof, as close as the bounds say."""
     checks, bounds, run, proof = manifest.cross_checks, manifest.bounds, manifest.run, manifest.enclosure
-    others = [check for check in checks if check.formulation != run.formulation]
-    if manifest.level == "confirmed" and not others:
+    confirming = [check for check in checks if check.formulation != run.formulation]
+    if manifest.level == "confirmed" and not confirming:
         yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
     same_run = [(check.formulation, check.number) == (run.formulation, run.number) for check in checks]
     if manifest.level == "self_consistent" and all(same_run):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
     if proof is not None:
-        close = [check for check in others if not any(_too_far(check, manifest))]
+        close = [check for check in confirming if not any(_too_far(check, manifest))]
         seen = manifest.transits != "complete" or any(check.transit_s for check in close)  # a sample sees no transits
-        said = Making.of(manifest.command).confirm
-        if not {"whole": close and seen, "sampled": any(not check.transit_s for check in close), "none": True}[said]:
-            yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {said}"
+        confirm = Making.of(manifest.command).confirm
+        if not {"whole": close and seen, "sampled": any(not check.transit_s for check in close), "none": True}[confirm]:
+            yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {confirm}"
         radii = proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s
         for name, radius in zip(_BOUNDED, radii, strict=True):
             if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):

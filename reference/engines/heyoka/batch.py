@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from ..batch_interface import Batch, Outcomes, Rows, Wanted
+from ..batch_interface import Batch, Outcomes, Rows, RunOptions
 
 TOLERANCE = 2.0**-52  # of a run, the relative error of a step: order 20
 MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
@@ -27,21 +27,21 @@ class HeyokaBatch(Batch):
         """Return version and tolerances."""
         return f"heyoka {version('heyoka')}, tolerances {TOLERANCE!r} and {MOVED_TOLERANCE!r}"
 
-    def prepare(self, wanted: Wanted) -> None:
+    def prepare(self, options: RunOptions) -> None:
         """Compile what such rows need in the calling thread."""
         from .loop import prepare
 
-        prepare(wanted, _tolerance(wanted))
+        prepare(options, _tolerance(options))
 
-    def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
+    def solve(self, rows: Rows, options: RunOptions) -> Outcomes:
         """Solve rows, one after the other."""
         from .loop import solve
 
-        return solve(rows, wanted, _tolerance(wanted))
+        return solve(rows, options, _tolerance(options))
 
 
-def _tolerance(wanted: Wanted) -> float:
-    return MOVED_TOLERANCE if wanted.moved else TOLERANCE
+def _tolerance(options: RunOptions) -> float:
+    return MOVED_TOLERANCE if options.moved else TOLERANCE
 
 
 BATCH = HeyokaBatch()

@@ -111,10 +111,10 @@ def march(
     while stepper.time < end:
         mark, counts = stepper.mark(), (len(states), len(zeros))
         stepper.advance(limit)
-        found = sorted(stepper.zeros, key=lambda zero: zero.t)
-        directions = [zero.direction for zero in found]
+        step_zeros = sorted(stepper.zeros, key=lambda zero: zero.t)
+        directions = [zero.direction for zero in step_zeros]
         steps.append(_Step(mark, *counts, stepper.time, *stepper.last_of_x(), directions))
-        zeros += found
+        zeros += step_zeros
         stepper.sample(times, states)
         if len(steps) > AT_ONCE or retries or stepper.time >= end:
             if (wrong := _first_contradiction(steps, stepper.numbers)) is not None:
@@ -143,17 +143,17 @@ def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int,
     series = x.astype(float) * k
     ends = np.sign([*series[:, 0], float(polyval(1, x[-1] * k))])
     changes = np.count_nonzero(np.diff(signs_of(forms(series, abs(series)), ends[:-1], ends[1:])), axis=1)
-    found = np.array([len(step.directions) for step in steps])
+    crossings = np.array([len(step.directions) for step in steps])
     first = np.array([step.directions[0] if step.directions else 0 for step in steps])
-    for i in map(int, np.flatnonzero((changes != found) | (found > 1) | (first + ends[:-1] * found != 0))):
+    for i in map(int, np.flatnonzero((changes != crossings) | (crossings > 1) | (first + ends[:-1] * crossings != 0))):
         signs = [ends[i], *steps[i].directions, ends[i + 1]]
         if ends[i] == 0 or any(b != -a for a, b in pairwise(signs[:-1])):
             return i, "two crossings in a row have the same direction"
         if signs[-1] != signs[-2]:
             return i, "the sign of xdot at the step's ends does not fit the crossings between"
-        if (count := _counted(x[i] * k, numbers, *ends[i : i + 2])) != found[i]:
+        if (count := _counted(x[i] * k, numbers, *ends[i : i + 2])) != crossings[i]:
             times = "too closely to be counted" if count is None else f"{count} times"
-            return i, f"xdot comes to zero {times}, and {found[i]} crossings were found"
+            return i, f"xdot comes to zero {times}, and {crossings[i]} crossings were found"
     return None
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.constants import Constants
 from ...numbers.precision import DOUBLE, Array
-from ..batch_interface import STOPPED, XDOT, Outcomes, PlumbAxes, Rows, Wanted, moved, turned
+from ..batch_interface import STOPPED, XDOT, Outcomes, PlumbAxes, Rows, RunOptions, moved, turned
 from ..row_zeros import (
     HEIGHT,
     MODEL,
@@ -109,47 +109,47 @@ def _lent(*kind: Any) -> Iterator[Integrator]:
     free.append(integrator)
 
 
-def _sought(wanted: Wanted) -> tuple[int, ...]:
-    is_sought = {TRANSIT: wanted.transits or wanted.times, HEIGHT: wanted.apsides}
+def _sought(options: RunOptions) -> tuple[int, ...]:
+    is_sought = {TRANSIT: options.transits or options.times, HEIGHT: options.apsides}
     return tuple(kind for kind, sought in is_sought.items() if sought)
 
 
-def prepare(wanted: Wanted, tolerance: float) -> None:
+def prepare(options: RunOptions, tolerance: float) -> None:
     """Compile what such rows without drag need in the calling thread."""
-    for sought in {_sought(wanted), ()}:
-        with _lent(sought, wanted.form and bool(sought), False, tolerance):
+    for sought in {_sought(options), ()}:
+        with _lent(sought, options.form and bool(sought), False, tolerance):
             pass
 
 
-def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
+def solve(rows: Rows, options: RunOptions, tolerance: float) -> Outcomes:
     """Solve rows to a relative error of a step; see `Batch.solve`."""
     outcomes, axes = Outcomes.empty(len(rows)), PlumbAxes.of(rows)
     numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
-    numbers, drags = moved(numbers, wanted.moved), moved(rows.drag[:, 0], wanted.moved)
-    forms = axes.forms(rows).T if wanted.form else [XDOT] * len(rows)
-    found: list[RowZeros] = []
+    numbers, drags = moved(numbers, options.moved), moved(rows.drag[:, 0], options.moved)
+    forms = axes.forms(rows).T if options.form else [XDOT] * len(rows)
+    transits: list[RowZeros] = []
     with np.errstate(all="ignore"):
         for row in range(len(rows)):
             n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
             k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
             state = [*n, *np.cross(n, V)]
             release = RowRelease.of(rows, axes, row, RowMotion.of(state, k), forms[row])
-            found.append(_solve(outcomes, row, release, k, state, wanted, tolerance))
+            transits.append(_solve(outcomes, row, release, k, state, options, tolerance))
         x, p, u, vx, vp, vu = outcomes.state.T
         sin, cos = axes.sin.high, axes.cos.high
         at_end = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))  # in the Earth's axes
         outcomes.state[:] = np.transpose(at_end) * rows.length[:, :1]
-    if not wanted.times:
+    if not options.times:
         return outcomes
-    return outcomes.with_transits([zeros.times for zeros in found], [zeros.directions for zeros in found])
+    return outcomes.with_transits([zeros.times for zeros in transits], [zeros.directions for zeros in transits])
 
 
 def _solve(
-    outcomes: Outcomes, row: int, release: RowRelease, k: Constants, state: Any, wanted: Wanted, tolerance: float
+    outcomes: Outcomes, row: int, release: RowRelease, k: Constants, state: Any, options: RunOptions, tolerance: float
 ) -> RowZeros:
     """Solve a row, its state at the end left in these axes and over l; return its transits."""
-    sought, kind, form = _sought(wanted), (bool(k.drag), tolerance), release.forms[TRANSIT]
-    with _lent(sought, wanted.form, *kind) as first:
+    sought, kind, form = _sought(options), (bool(k.drag), tolerance), release.forms[TRANSIT]
+    with _lent(sought, options.form, *kind) as first:
         first.begin(k, state, form)
         most = LEAST_STEPS + STEPS_PER_SWING * release.end * release.rate / (2 * np.pi)
         last, steps, stopped = first.to_end(release, int(most))

@@ -173,7 +173,7 @@ class Stepper:
             return True
 
         options = {"callback": progress if report or pace else None, "max_delta_t": self._longest}
-        given = {name: value for name, value in options.items() if value is not None}
-        states, steps = self.numbers.propagated(self._ta, times, **given)
+        keywords = {name: value for name, value in options.items() if value is not None}
+        states, steps = self.numbers.propagated(self._ta, times, **keywords)
         self.steps += steps
         return states

@@ -61,10 +61,10 @@ def empty_zeros() -> Zeros:
 @compiled
 def seek(z: Zeros, f: Array, length: Array, time: Array, order: int) -> None:
     """Find which lanes have one zero of the polynomial f on the step, and where about; at time 0 all are in doubt."""
-    r, none = load(length, 0), spread(0.0)
+    r, zero = load(length, 0), spread(0.0)
     h, middle = r * spread(0.25), r * spread(0.5)
     high = middle + h
-    v = s = b = v3 = s3 = b3 = vm = total = third = none
+    v = s = b = v3 = s3 = b3 = vm = total = third = zero
     for k in range(order - 1, -1, -1):
         a = load(f, LANES * k)
         b, s, v = fma(s, b, h), fma(v, s, h), fma(a, v, h)
@@ -78,8 +78,8 @@ def seek(z: Zeros, f: Array, length: Array, time: Array, order: int) -> None:
     known = _known(v, s, b, third, h, noise, slack) * _known(v3, s3, b3, third, h, noise, slack)
     before, after = load(z.before, 0), load(z.after, 0)
     known = known * at_least(magnitude(vm), noise) * at_least(magnitude(after), noise)
-    early, late = at_least(none, before * vm), at_least(none, vm * after)
-    known = known * (spread(1.0) - early * late) * (spread(1.0) - at_least(none, load(time, 0)))
+    early, late = at_least(zero, before * vm), at_least(zero, vm * after)
+    known = known * (spread(1.0) - early * late) * (spread(1.0) - at_least(zero, load(time, 0)))
     low, top = keep(z, early, late, known, known, r)
     s = where(late, s3, s)
     step = where(late, v3, v) / s
@@ -110,18 +110,18 @@ def _known(v: Any, s: Any, b: Any, third: Any, h: Any, noise: Any, slack: Any) -
 @inlined
 def _between(place: Any, low: Any, high: Any) -> Any:
     """Return a place moved into its interval; its low end where it is not a number."""
-    none = spread(0.0)
-    return none - larger(none - larger(place, low), none - high)
+    zero = spread(0.0)
+    return zero - larger(zero - larger(place, low), zero - high)
 
 
 @compiled
 def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> None:
     """Refine the zeros that were found; those whose last correction is large are in doubt."""
-    low, high, place, none = load(z.low, 0), load(z.high, 0), load(z.place, 0), spread(0.0)
-    moved = slope = none
+    low, high, place, zero = load(z.low, 0), load(z.high, 0), load(z.place, 0), spread(0.0)
+    moved = slope = zero
     for _ in range(NEWTON_STEPS):
         # even and odd powers apart: half the chain of dependent operations
-        even = even_slope = odd = odd_slope = none
+        even = even_slope = odd = odd_slope = zero
         square = place * place
         for k in range(order - 2, -1, -2):
             even_slope, even = fma(even, even_slope, square), fma(load(f, LANES * k), even, square)
@@ -141,16 +141,16 @@ def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> N
 @compiled
 def seek_highest(z: Zeros, g: Array, length: Array, order: int) -> None:
     """Find which lanes have a highest point on the step; `doubt` is where a sign is lost in rounding."""
-    r, none, one = load(length, 0), spread(0.0), spread(1.0)
+    r, zero, one = load(length, 0), spread(0.0), spread(1.0)
     middle = r * spread(0.5)
-    vm = total = none
+    vm = total = zero
     for k in range(order - 1, -1, -1):
         a = load(g, LANES * k)
         vm, total = fma(a, vm, middle), fma(magnitude(a), total, r)
     noise, before, after = total * spread(NOISE), load(z.before, 0), load(z.after, 0)
-    rising, high = at_least(before, none), at_least(vm, none)
+    rising, high = at_least(before, zero), at_least(vm, zero)
     known = at_least(magnitude(vm), noise) * at_least(magnitude(after), noise)
-    late = high * (one - at_least(after, none))
+    late = high * (one - at_least(after, zero))
     low, top = keep(z, rising * (one - high), late, one, known, r)
     left, right = where(late, vm, before), where(late, after, vm)
     store(z.place, 0, fma(low, top - low, left / (left - right)))

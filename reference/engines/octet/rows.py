@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...numbers.precision import Array
-from ..batch_interface import CLOSE_PAIR, OK, Outcomes, PlumbAxes, Rows, Wanted, moved, plumb_line, turned
+from ..batch_interface import CLOSE_PAIR, OK, Outcomes, PlumbAxes, Rows, RunOptions, moved, plumb_line, turned
 from ..batch_interface import LEAST_BEND as LEAST
 
 # of a row's numbers: state and constants in its unit of time, unit and span in s, what the release says of zeros
@@ -23,10 +23,10 @@ _ENGINES = Path(__file__).parents[1]
 SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]  # of the kernel
 
 
-def packed(rows: Rows, wanted: Wanted) -> Array:
+def packed(rows: Rows, options: RunOptions) -> Array:
     """Return the numbers of rows, shape (rows, COLUMNS).
 
-    Constants and state are moved by an ulp as `wanted.moved` says.
+    Constants and state are moved by an ulp as `options.moved` says.
     """
     axes = PlumbAxes.of(rows)
     (x, p, down), (east, v, s), (turn_p, turn_u) = axes.n, axes.V, axes.turn
@@ -35,7 +35,7 @@ def packed(rows: Rows, wanted: Wanted) -> Array:
     size, speed = axes.size, axes.speed
     numbers = np.zeros((len(rows), COLUMNS))
     for column, value in enumerate((x, p, u, w, v, s, turn_p, turn_u, size)):
-        numbers[:, column] = moved(value.high, wanted.moved)
+        numbers[:, column] = moved(value.high, options.moved)
     rate = np.sqrt(size.high) + speed
     mantissa, exponent = np.frexp(np.where(rate > 0, rate, 1.0 / rows.t_end[:, 0]))
     unit = np.ldexp(1.0, (mantissa == 0.5) - exponent)  # a power of two: times the rate at most 1
@@ -43,9 +43,9 @@ def packed(rows: Rows, wanted: Wanted) -> Array:
     numbers[:, PULL] *= unit * unit
     numbers[:, UNIT], numbers[:, END : END + 2] = unit, rows.t_end
     numbers[:, ZEROS_X], numbers[:, RISING] = rows.zeros_at_release, rows.rising
-    numbers[:, SEEKS_X] = (wanted.transits or wanted.times) & ~rows.still
-    numbers[:, SEEKS_U] = wanted.apsides & (size.high > 0)
-    if wanted.form:
+    numbers[:, SEEKS_X] = (options.transits or options.times) & ~rows.still
+    numbers[:, SEEKS_U] = options.apsides & (size.high > 0)
+    if options.form:
         numbers[:, FORM:] = axes.forms(rows).T
         numbers[:, [FORM, FORM + 1, FORM + 2, FORM + 6]] *= unit[:, None]
     with np.errstate(divide="ignore"):
@@ -73,11 +73,11 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     result.least_ax[:] = np.where(crossed, r[LEAST_SLOPE] * length / (unit * unit), np.nan)
     result.least_bend[:] = np.where(r[APSIDES] > 0, r[LEAST_BEND], np.nan)
     result.apsides[:] = np.where(result.least_bend >= LEAST, r[APSIDES], 0)
-    some = result.apsides > 0
-    result.least_fall[:] = np.where(some, r[LEAST_FALL] / (unit * unit), np.nan)
-    result.apsis_first[:], result.apsis_last[:] = np.where(some, r[A_FIRST : A_LAST + 1], np.nan)
+    has_apsides = result.apsides > 0
+    result.least_fall[:] = np.where(has_apsides, r[LEAST_FALL] / (unit * unit), np.nan)
+    result.apsis_first[:], result.apsis_last[:] = np.where(has_apsides, r[A_FIRST : A_LAST + 1], np.nan)
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
-    result.turn[:] = np.where(some, last - first + np.pi * r[HALF_TURNS], np.nan)
+    result.turn[:] = np.where(has_apsides, last - first + np.pi * r[HALF_TURNS], np.nan)
     result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
     result.state[result.fate != OK] = np.nan
     return replace(result, transit_row=moments[0], transit_t=moments[1], transit_direction=moments[2])

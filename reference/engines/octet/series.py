@@ -56,20 +56,20 @@ def _next_order(c: Series, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> N
     x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
     w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
     # what comes last in the chain of dependent operations is added last
-    none = spread(0.0)
-    xdot = w + fma(ou * p, none - op, u)
+    zero = spread(0.0)
+    xdot = w + fma(ou * p, zero - op, u)
     udot = fma(s, op, x)
     store(c.xdot, at, xdot)
     store(c.udot, at, udot)
     store(c.x, to, xdot * share)
-    store(c.p, to, fma(v, none - ou, x) * share)
+    store(c.p, to, fma(v, zero - ou, x) * share)
     store(c.u, to, udot * share)
     store(c.tension, to, fma(op * x, s, spread(3.0)) * (less * pull))
-    store(c.w, to, (fma(ou * v, none - op, s) - lx) * share)
+    store(c.w, to, (fma(ou * v, zero - op, s) - lx) * share)
     if k == 0:
         # λ less its value at rest, without cancellation
         excess = fma(fma(w * w, v, v), s, s)
-        excess = fma(fma(excess, (none - op) - op, w), none - pull, u)
+        excess = fma(fma(excess, (zero - op) - op, w), zero - pull, u)
         store(c.v, to, (ou * (op - w) - lp) * share)
         store(c.s, to, (fma(excess, op, w) - lu) * share)
     else:
@@ -123,17 +123,17 @@ def step_length(c: Series, order: int) -> Any:
 
     The height u is left out: what its tail lacks is put right when n is put back on the sphere.
     """
-    scale, none = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE), spread(0.0)
+    scale, zero = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE), spread(0.0)
     last = log2_of(_size(c, order) / scale) * spread(1.0 / order)
     other = log2_of(_size(c, order - 1) / scale) * spread(1.0 / (order - 1))
-    return exp2_of(none - larger(larger(last, other), spread(-LONGEST)))
+    return exp2_of(zero - larger(larger(last, other), spread(-LONGEST)))
 
 
 @compiled
 def sum_series(state: Array, c: Series, length: Array, order: int) -> None:
     """Write the state at the end of the step, put back on the sphere."""
-    r, none = load(length, 0), spread(0.0)
-    x = p = u = w = v = s = none
+    r, zero = load(length, 0), spread(0.0)
+    x = p = u = w = v = s = zero
     for k in range(order, -1, -1):
         at = LANES * k
         x, p, u = fma(load(c.x, at), x, r), fma(load(c.p, at), p, r), fma(load(c.u, at), u, r)
@@ -141,7 +141,7 @@ def sum_series(state: Array, c: Series, length: Array, order: int) -> None:
     half = fma(fma(x * x, p, p), u, u - spread(2.0)) * spread(-0.5)
     x, p, u = fma(x, half, x), fma(p, half, p), fma(u, half, u - spread(1.0))
     down = u - spread(1.0)
-    outward = none - fma(fma((w - load(state, LANES * TURN_P)) * x, v, p), s, down)
+    outward = zero - fma(fma((w - load(state, LANES * TURN_P)) * x, v, p), s, down)
     store(state, LANES * X, x)
     store(state, LANES * P, p)
     store(state, LANES * U, u)

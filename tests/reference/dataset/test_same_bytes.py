@@ -174,7 +174,7 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
         assert "--engine" in err and "numba" in err and "The engine heyoka does without." in err
     scene = load_scene("conical")
     with pytest.raises(InputError, match="numba"):
-        reference.solve(scene, **making_of(scene, "conical", tmp_path).asked_of(scene))
+        reference.solve(scene, **making_of(scene, "conical", tmp_path).solve_options(scene))
     assert not list(tmp_path.iterdir())
 
 

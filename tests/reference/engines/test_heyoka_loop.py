@@ -7,7 +7,7 @@ import pytest
 from random_rows import random_kinds, rows_of
 from small_scenes import make_scene
 
-from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Wanted
+from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, RunOptions
 from reference.engines.heyoka import loop
 from reference.engines.heyoka.batch import BATCH
 from reference.engines.octet.batch import BATCH as OCTET
@@ -38,9 +38,9 @@ def losing(monkeypatch, kind, lost):
 @pytest.mark.parametrize("place", [0, 3, -1])
 def test_a_zero_that_is_lost_leaves_a_doubt(monkeypatch, paris, kind, place):
     rows = rows_of([paris.with_values(["run.t_end=120"]).exact])
-    assert BATCH.solve(rows, Wanted()).fate.tolist() == [OK]
+    assert BATCH.solve(rows, RunOptions()).fate.tolist() == [OK]
     losing(monkeypatch, kind, lambda found: [np.flatnonzero(found.times > 1e-3)[place]])
-    assert BATCH.solve(rows, Wanted()).fate.tolist() == [DOUBTFUL]
+    assert BATCH.solve(rows, RunOptions()).fate.tolist() == [DOUBTFUL]
 
 
 @pytest.mark.parametrize("kind", [TRANSIT, HEIGHT], ids=["transit", "highest point"])
@@ -48,7 +48,7 @@ def test_a_zero_that_is_lost_leaves_a_doubt(monkeypatch, paris, kind, place):
 def test_any_two_that_are_lost_together_leave_a_doubt(monkeypatch, name, kind):
     """Far apart or close, with samples between them or another zero beside them."""
     rows = rows_of([make_scene(**SITE, release={"x": "0", **RELEASES[name]}).exact])
-    run = BATCH.solve(rows, Wanted(times=True))
+    run = BATCH.solve(rows, RunOptions(times=True))
     assert run.fate.tolist() == [OK]
     gaps = np.diff(run.transit_t)
     closest = (gaps[1:] + gaps[:-1] if name == "three together" else gaps).min()
@@ -56,15 +56,15 @@ def test_any_two_that_are_lost_together_leave_a_doubt(monkeypatch, name, kind):
     assert len(run.transit_t) > 40
     for first in range(40):
         losing(monkeypatch, kind, lambda _, first=first: [first, first + 1])
-        assert BATCH.solve(rows, Wanted(times=True)).fate.tolist() == [DOUBTFUL], first
+        assert BATCH.solve(rows, RunOptions(times=True)).fate.tolist() == [DOUBTFUL], first
 
 
-@pytest.mark.parametrize("wanted", [Wanted(times=True), Wanted(False, False, moved=1)], ids=["run", "moved"])
-def test_a_row_is_the_same_alone_and_after_others(wanted):
+@pytest.mark.parametrize("options", [RunOptions(times=True), RunOptions(False, False, moved=1)], ids=["run", "moved"])
+def test_a_row_is_the_same_alone_and_after_others(options):
     rows = rows_of(list(random_kinds(20261124, 10)))
-    together = BATCH.solve(rows, wanted)
+    together = BATCH.solve(rows, options)
     for row in range(len(rows)):
-        alone = BATCH.solve(rows[row : row + 1], wanted)
+        alone = BATCH.solve(rows[row : row + 1], options)
         for name in ("state", "t_first", "t_last", "turn", "largest_angle", "least_ax", "steps"):
             assert np.array_equal(getattr(alone, name)[0], getattr(together, name)[row], equal_nan=True), name
         own = together.transit_row == row
@@ -74,7 +74,7 @@ def test_a_row_is_the_same_alone_and_after_others(wanted):
 def test_a_plane_that_passes_north_south_leaves_no_doubt(paris):
     words = (["run.t_end=20000", f"site.latitude={latitude}"] for latitude in (-87, -66))
     rows = rows_of([paris.with_values(two).exact for two in words])
-    own, other = (engine.solve(rows, Wanted()) for engine in (BATCH, OCTET))
+    own, other = (engine.solve(rows, RunOptions()) for engine in (BATCH, OCTET))
     assert own.fate.tolist() == [OK, OK]
     assert own.transits.tolist() == other.transits.tolist()
 
@@ -83,13 +83,13 @@ def test_steps_without_end_stop_a_row_alone(monkeypatch, paris):
     rows = rows_of([paris.with_values([f"run.t_end={t}"]).exact for t in (60, 600)])
     monkeypatch.setattr(loop, "LEAST_STEPS", 50)
     monkeypatch.setattr(loop, "STEPS_PER_SWING", 0)
-    assert BATCH.solve(rows, Wanted()).fate.tolist() == [OK, STOPPED]
+    assert BATCH.solve(rows, RunOptions()).fate.tolist() == [OK, STOPPED]
 
 
 def test_octet_says_the_same_of_every_row():
     rows = rows_of(list(random_kinds(20261124, 20)))
-    wanted = Wanted(times=True)
-    own, other = BATCH.solve(rows, wanted), OCTET.solve(rows, wanted)
+    options = RunOptions(times=True)
+    own, other = BATCH.solve(rows, options), OCTET.solve(rows, options)
     for name in ("fate", "transits", "close_pairs", "apsides", "transit_row", "transit_direction"):
         assert np.array_equal(getattr(own, name), getattr(other, name)), name
     for name in ("state", "t_first", "t_last", "apsis_first", "apsis_last", "turn", "largest_angle", "transit_t"):

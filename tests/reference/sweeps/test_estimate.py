@@ -13,7 +13,7 @@ from against_limbs import compare
 from random_rows import KINDS, random_kinds, rows_of
 from scipy.integrate import solve_ivp
 
-from reference.engines.batch_interface import CLOSE_PAIR, PlumbAxes, Wanted
+from reference.engines.batch_interface import CLOSE_PAIR, PlumbAxes, RunOptions
 from reference.engines.registry import batches
 from reference.engines.row_zeros import MODEL, RowMotion
 from reference.model.constants import Constants
@@ -63,7 +63,7 @@ def test_an_angle_next_to_the_top_is_as_uncertain_as_its_cosine(engine, paris):
     angles = [Fraction(words) for words in ("179.9", "179.97", "179.99", "179.993", "179.997", "179.9991")]
     upright = replace(paris.exact, latitude=Fraction(90), rotation_rate=Fraction(0), t_end=Fraction(1, 2))
     rows = rows_of([replace(upright, position=None, angles=(angle, *[Fraction(0)] * 3)) for angle in angles])
-    run = batches()[engine].solve(rows, Wanted())
+    run = batches()[engine].solve(rows, RunOptions())
     error = np.abs(np.degrees(run.largest_angle) - [float(angle) for angle in angles])
     assert (error <= judged(batches()[engine], rows, run)[0].angle).all()
 

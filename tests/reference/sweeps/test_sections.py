@@ -14,7 +14,7 @@ from random_rows import KINDS, random_kinds, rows_of
 from sampled import one_in
 
 from reference import load_scene, solve, sweep
-from reference.engines.batch_interface import Wanted
+from reference.engines.batch_interface import RunOptions
 from reference.engines.registry import batches, engines, run
 from reference.sweeps import promote
 from reference.sweeps.estimate import judged, passages
@@ -51,7 +51,7 @@ def mean_interval(times, directions):
 def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, engine, tally):
     many, words, truth = drawn
     solver, rows = batches()[engine], rows_of(many)
-    base = solver.solve(rows, Wanted())
+    base = solver.solve(rows, RunOptions())
     errors, _ = judged(solver, rows, base)
     undecided, worst, count = 0, 0.0, 0
     for word in words:

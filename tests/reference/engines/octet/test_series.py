@@ -14,7 +14,7 @@ import numba
 from random_rows import KINDS, random_inputs, rows_of
 from sampled import one_in
 
-from reference.engines.batch_interface import Wanted
+from reference.engines.batch_interface import RunOptions
 from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.march import empty_march
 from reference.engines.octet.rows import UNIT, packed
@@ -38,7 +38,7 @@ def coefficients():
 
     def of(many):
         rows, m = rows_of(many), empty_march()
-        numbers = packed(rows, Wanted()).T
+        numbers = packed(rows, RunOptions()).T
         m.state.reshape(-1, LANES)[:, : len(many)] = numbers
         fill(m, ORDER)
         x, p, u = (array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u))
