@@ -25,7 +25,7 @@ from ..explanation.causes import Cause, causes_of, fitted_number
 from ..explanation.explain import KnownScene
 from ..explanation.families import Fit, fits_of
 from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
-from ..explanation.gate import Evidence, may_be_told
+from ..explanation.gate import Evidence, supported_causes
 from ..explanation.programs import Program
 from ..explanation.readings import Reading
 from ..explanation.stepped import LONGEST, Steps, step_cause
@@ -215,7 +215,7 @@ class JointCase(Case):
         known, clean = tuple(cause.id for cause in read), clean_share(case, program.kind)
         spacing = float(times[1] - times[0])
         evidence = Evidence(left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known)
-        causes = tuple(may_be_told(read, evidence))
+        causes = tuple(supported_causes(read, evidence))
         return Explanation(causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m)
 
 
