@@ -239,7 +239,7 @@ def swing_errors(truth: Array, error: Array, rest: tuple[float, float]) -> Swing
         return SwingErrors(*np.empty((2, 0)))
     parts = np.array_split(np.arange(len(truth)), max(1, min(BLOCKS, len(truth) // ROWS)))
     samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
-    fits = [_fit(truth[part], error[part], rest) for part in samples]
+    fits = [_fit(truth[sample], error[sample], rest) for sample in samples]
     return SwingErrors(*np.array(fits).T)
 
 

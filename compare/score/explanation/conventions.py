@@ -135,8 +135,7 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     released = any(is_release(row, release, rows.noise) for row in (first, last))
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
-    units = [(1.0, "")]
-    units += [(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()]
+    units = [(1.0, ""), *((1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items())]
     units += [(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")]
     units += [(1 / length, "is in cord lengths (x/l)")]
     ways = [*AXES_SAID]
