@@ -60,7 +60,7 @@ def golden_of(
     ships = shipping(scene)
     if ships is not None and ships.manifest.digits >= digits and not ships.manifest.alone:
         fits = {*(scene.run.sections or ())} <= ships.sections.keys()
-        if fits and not (grid and ships.scene.exact.grid[: len(own := scene.exact.grid)] != own):
+        if fits and not (grid and ships.scene.exact.grid[: len(times := scene.exact.grid)] != times):
             return ships
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     parts = problem.model_dump(mode="json", include={"inputs", "pendulum", "site", "release", "run"})
@@ -132,9 +132,9 @@ def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | 
 
     exact = [Fraction(t) for t in times.tolist()]
     grid = [Fraction(float(t)) for t in _shortened(scene, float(times[-1])).exact.grid]  # as the runs take them
-    wanted = scene if transits else scene.with_values(["run.transits=false"])
+    problem = scene if transits else scene.with_values(["run.transits=false"])
     try:
-        solution = roughly(wanted, {*exact, *grid}, report)
+        solution = roughly(problem, {*exact, *grid}, report)
     except (ArithmeticError, FoucaultError):
         return None
     row = {t: i for i, t in enumerate(solution.times)} if solution else {}
@@ -188,8 +188,8 @@ def solves(golden: Golden, scene: Scene) -> bool:
     return same and spans and (other.run.transits or not scene.run.transits)
 
 
-def _same_problem(one: Scene, other: Scene) -> bool:
-    return all(getattr(one, part) == getattr(other, part) for part in ("pendulum", "site", "release"))
+def _same_problem(scene: Scene, other: Scene) -> bool:
+    return all(getattr(scene, part) == getattr(other, part) for part in ("pendulum", "site", "release"))
 
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:

@@ -91,12 +91,12 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
             raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
         stream.seek(0)
         with np.load(stream, allow_pickle=False) as arrays:
-            found = {word: arrays[word] for word in chosen}
+            loaded = {word: arrays[word] for word in chosen}
     except InputError:
         raise
     except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
-    return _of_arrays(found, name, naming)
+    return _of_arrays(loaded, name, naming)
 
 
 def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:

@@ -27,7 +27,7 @@ class Deviation:
 
     Attributes:
         id: a stable word.
-        text: of a reading, what is told; else the end of the sentence "Your file …" or "Your program …".
+        text: of a reading, its sentence; else the end of the sentence "Your file …" or "Your program …".
         size_m: the distance in m by which it moves the bob, on top of what stands before it; 0 if none is known.
         stage: of a program's: gravity, model, input, release, frame, clock or integrator.
         value: a fitted number, in its unit.

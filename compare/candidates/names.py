@@ -71,16 +71,16 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         InputError: its unit contradicts `units`.
     """
     text = unquoted(word)
-    for name, said in _parts(text) if len(text) <= LONGEST else ():
-        found = _column(name)
-        if found is None:
+    for name, suffix in _parts(text) if len(text) <= LONGEST else ():
+        named = _column(name)
+        if named is None:
             continue
-        (column, sign, rank), unit = found, said
-        rank = 2 if said == text else rank  # it is called by its unit
-        if said.lower() in DIRECTIONS and column != "t":
-            turned, sign = DIRECTIONS[said.lower()]
+        (column, sign, rank), unit = named, suffix
+        rank = 2 if suffix == text else rank  # it is called by its unit
+        if suffix.lower() in DIRECTIONS and column != "t":
+            turned, sign = DIRECTIONS[suffix.lower()]
             column, unit, rank = f"{column[:-1]}{turned}", "", 2
-        if said.lower() in ("t", "time") and column != "t":
+        if suffix.lower() in ("t", "time") and column != "t":
             unit = ""  # x(t)
         default = units.get(column, "")
         size = size_of(unit or default, column) if unit or default else Fraction(1)
@@ -232,10 +232,10 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
     meanings = [meaning(word, of_units) for word in words]
     places: dict[str, int] = {}
     factors: dict[str, Fraction] = {}
-    said, renamed, converted = [], [], []
+    conventions, renamed, converted = [], [], []
     for name in ("t", *COLUMNS) if len(needed) > 1 else needed:
-        ranked = [(word.rank, i, word) for i, word in enumerate(meanings) if word is not None and word.column == name]
-        best = [(i, word) for rank, i, word in ranked if rank == min(ranked)[0]]
+        ranked = [(meant.rank, i, meant) for i, meant in enumerate(meanings) if meant and meant.column == name]
+        best = [(i, meant) for rank, i, meant in ranked if rank == min(ranked)[0]]
         if len(best) > 1:
             same = ", ".join(words[i].strip() for i, _ in best)
             raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
@@ -243,23 +243,23 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
             got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
             what_to_do = "" if where == "--columns" else advice(needed)
             raise InputError(where, got, f"one column {name}", what_to_do)
-        for i, word in best:
-            if word.factor is None:
+        for i, meant in best:
+            if meant.factor is None:
                 column = f"{where}: {words[i].strip()}"
-                raise InputError(column, word.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
-            places[name], factors[name] = i, word.factor
-            if word.rank == 2:
-                renamed.append(f"{unquoted(words[i])} as {'-' if word.factor < 0 else ''}{name}")
-            if abs(word.factor) != 1:
-                converted.append(f"{name} from {word.unit}")
+                raise InputError(column, meant.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
+            places[name], factors[name] = i, meant.factor
+            if meant.rank == 2:
+                renamed.append(f"{unquoted(words[i])} as {'-' if meant.factor < 0 else ''}{name}")
+            if abs(meant.factor) != 1:
+                converted.append(f"{name} from {meant.unit}")
     if renamed:
-        others = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
-        others = [word for word in others if word not in SKIPPED]
-        unread = f"; not read: {', '.join(others)}" if others else ""
-        said.append(Deviation("columns", f"{', '.join(renamed)}{unread}"))
+        unread = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
+        unread = [word for word in unread if word not in SKIPPED]
+        remark = f"; not read: {', '.join(unread)}" if unread else ""
+        conventions.append(Deviation("columns", f"{', '.join(renamed)}{remark}"))
     if converted:
-        said.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
-    return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(said))
+        conventions.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
+    return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(conventions))
 
 
 def given(count: int, naming: Naming) -> Layout:
@@ -286,8 +286,8 @@ def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | Non
         return None
     made = layout([*names, *["-"] * (count - len(names))], needed, naming, "--columns")
     text = f"no header: the columns are taken as {', '.join(names)} (--columns names others)"
-    said = (Deviation("no_header", text),) if len(needed) > 1 else ()
-    return replace(made, conventions=(*said, *made.conventions))
+    no_header = (Deviation("no_header", text),) if len(needed) > 1 else ()
+    return replace(made, conventions=(*no_header, *made.conventions))
 
 
 def advice(needed: Sequence[str]) -> str:

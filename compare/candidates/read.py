@@ -226,8 +226,9 @@ class ColumnReader:
             self.header.add(self.line, text, False)
             return False
         made = self.header.layout(text, spelled, self.line)
-        said = (*made.conventions, *([DECIMAL_COMMA] if spelled.decimal_comma else []))
-        self.spelled, self.layout, self.fields = spelled, replace(made, conventions=said), len(spelled.fields(text))
+        conventions = (*made.conventions, *([DECIMAL_COMMA] if spelled.decimal_comma else []))
+        self.layout = replace(made, conventions=conventions)
+        self.spelled, self.fields = spelled, len(spelled.fields(text))
         self.respelled = spelled != Spelling(spelled.separator)
         return True
 

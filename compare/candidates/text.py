@@ -150,8 +150,8 @@ class Header:
         for way, named in ways:  # of another number of columns
             if set(self.needed) <= named and (not is_comment or len(named) == len(way)):
                 return way
-        few = max(min(FEW, len(self.needed)), count // 2) if is_comment else 0
-        return next((way for way, named in fitting if len(named) >= few), None)
+        enough = max(min(FEW, len(self.needed)), count // 2) if is_comment else 0
+        return next((way for way, named in fitting if len(named) >= enough), None)
 
     def refuse(self, expected: str) -> InputError:
         """Return the error for a text without rows."""

@@ -93,11 +93,11 @@ class Runnable:
                     return read_stream(output, experiment.title, naming=naming)
 
             try:
-                first = Laboratory(score.candidate, score.scene, score.allowed_m, score.explanation, run)
+                laboratory = Laboratory(score.candidate, score.scene, score.allowed_m, score.explanation, run)
             except UNSOLVED:
                 return score
-            found, told = first.measured(possible(score.scene, self.command))
+            experiments, explanation = laboratory.measured(possible(score.scene, self.command))
             move(MOST_RUNS)
         if self.out is not None:
-            write_file(self.out / DOCUMENT, json_text(found.document()), "--out")
-        return replace(score, experiments=found, explanation=told)
+            write_file(self.out / DOCUMENT, json_text(experiments.document()), "--out")
+        return replace(score, experiments=experiments, explanation=explanation)

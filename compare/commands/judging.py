@@ -58,10 +58,10 @@ def suite_files(folder: Path, option: str = "--suite") -> dict[str, tuple[Path |
         if path.suffix.lower() not in SUFFIXES or not path.is_file():
             continue
         of_transits = path.stem.endswith(TRANSITS)
-        others = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
-        if of_transits in others:
-            raise InputError(option, f"{others[of_transits].name} and {path.name}", "one file for a scene")
-        others[of_transits] = path
+        files = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
+        if of_transits in files:
+            raise InputError(option, f"{files[of_transits].name} and {path.name}", "one file for a scene")
+        files[of_transits] = path
     if not by_scene:
         expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
         raise InputError(option, str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
@@ -134,11 +134,12 @@ class Judging:
                 return read_stream(output, plain(name), naming=self.naming), timing
 
         outcome = self.outcome(name, scene.id, trial)
-        told = None if outcome.score is None else outcome.score.explanation
-        if not experiments or told is None or not (told.causes or told.corrected_m > told.allowed_m):
+        score = outcome.score
+        if not experiments or score is None or score.explanation is None:
             return outcome
-        assert outcome.score is not None
-        return replace(outcome, score=program.experimented(outcome.score, self.naming))
+        explanation = score.explanation
+        off = explanation.causes or explanation.corrected_m > explanation.allowed_m
+        return replace(outcome, score=program.experimented(score, self.naming)) if off else outcome
 
     def approximation(self, scene: Scene, word: str, transits: str | None) -> Outcome:
         """Judge the motion of an approximation at the scene's grid times."""
@@ -191,26 +192,26 @@ class Judging:
         Exit status 1 where one disagrees.
         """
         scene = truth.scene if isinstance(truth, Ranges) else truth
-        word = "" if section is None else _one_section(section, transits, scene)
+        word = "" if section is None else _section_word(section, transits, scene)
         if not files and transits is None:
             raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
         times, tolerance = self.times(transits), self.options["tolerance"]
-        found: list[Measured | PassageScore] = []
+        scores: list[Measured | PassageScore] = []
         for rows in [self._read(file) for file in files or ()] or [None]:
             with stoppable("nothing was written"), progress() as show:
                 label = "the truth" if truth is scene else "the proof"
                 report: Any = show(f"{label} of {scene.id}", float(scene.exact.t_end))
                 if isinstance(truth, Ranges):
-                    found.append(measured(rows, times, truth, tolerance or 0.0, str(transits), report, word or None))
+                    scores.append(measured(rows, times, truth, tolerance or 0.0, str(transits), report, word or None))
                 else:
                     assert times is not None
-                    found.append(score_passages(str(transits), times, scene, word, tolerance, announce, report))
+                    scores.append(score_passages(str(transits), times, scene, word, tolerance, announce, report))
         if as_json:
-            emit(found[0].document() if len(found) == 1 else {"rows": [one.document() for one in found]})
+            emit(scores[0].document() if len(scores) == 1 else {"rows": [score.document() for score in scores]})
         else:
-            for line in (line for one in found for line in one.lines()):
+            for line in (line for score in scores for line in score.lines()):
                 typer.echo(line)
-        if any(one.verdict == APART for one in found):
+        if any(score.verdict == APART for score in scores):
             raise typer.Exit(1)
 
     def times(self, name: str | Path | None) -> Array | None:
@@ -236,7 +237,7 @@ def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
     return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), Intervals((), ()), [], (), "")
 
 
-def _one_section(section: str, transits: str | None, scene: Scene) -> str:
+def _section_word(section: str, transits: str | None, scene: Scene) -> str:
     """Return the word of the one section that transits are passages of, as scenes write it."""
     if transits is None:
         refuse({"--section": section}, "without --transits")

@@ -65,17 +65,17 @@ def plot(
     from ..report.folder import write_file
     from ..report.motion_pictures import motion_picture, panels
 
-    wanted = listed(what, "--what")
-    for word in wanted or ():
+    requested = listed(what, "--what")
+    for word in requested or ():
         chosen("--what", word, PICTURES)
     target = out or Path(f"{'stdin' if source == '-' else Path(source).stem}.svg")
     check_target(target, "--out")
     motion = _motion(source, t_end, set_)
-    there = list(panels(motion))
-    missing = next((word for word in wanted or () if word not in there), None)
+    available = list(panels(motion))
+    missing = next((word for word in requested or () if word not in available), None)
     if missing is not None:
-        raise InputError("--what", missing, f"what there is of {source}: {in_words(there)}")
-    write_file(target, motion_picture(motion, wanted or there, target), "--out")
+        raise InputError("--what", missing, f"what there is of {source}: {in_words(available)}")
+    write_file(target, motion_picture(motion, requested or available, target), "--out")
     typer.echo(f"{target}: the picture")
 
 

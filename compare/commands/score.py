@@ -168,9 +168,9 @@ def command(
             Judging(naming, {"tolerance": tolerance}).hold(candidates, transits, section, ranges or read_as, as_json)
             return
     else:
-        others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
-        others |= {"--section": section, "--t-end": t_end, "--columns": columns}
-        refuse(others | {"--uncertain": uncertain, "--set": set_ or None}, "together with --suite")
+        unused = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
+        unused |= {"--section": section, "--t-end": t_end, "--columns": columns}
+        refuse(unused | {"--uncertain": uncertain, "--set": set_ or None}, "together with --suite")
     if covers is not None and not 0 < covers <= 1:
         raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
     if [*(candidates or ()), transits].count("-") > 1:

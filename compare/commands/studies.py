@@ -81,9 +81,9 @@ def study(
     unused = OF_APPROXIMATIONS if approximations else OF_PRECISIONS if precisions is not None else OF_METHODS
     scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}, unused))
     if approximations:
-        others: dict[str, object] = {"--methods": methods, "--precisions": precisions, "--run": run, "--name": name}
-        others |= {"--candidates": candidates, "--cpu": cpu, "--settings": settings, "--limit": limit}
-        refuse({**others, "--no-formulations": no_formulations}, "together with --approximations")
+        options: dict[str, object] = {"--methods": methods, "--precisions": precisions, "--run": run, "--name": name}
+        options |= {"--candidates": candidates, "--cpu": cpu, "--settings": settings, "--limit": limit}
+        refuse({**options, "--no-formulations": no_formulations}, "together with --approximations")
         _study_approximations(scene, out, as_json)
         return
     if not run:

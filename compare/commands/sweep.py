@@ -139,10 +139,10 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
     chosen = {word.strip("-"): value for word, value in options.items() if value is not None and word not in ON_SCENE}
     if "want" in chosen:
         chosen["want"] = [word.strip() for word in chosen["want"].split(",")]
-    asked = asked_for(scene, out=out, **chosen)
-    if "run.t_end" in asked.table.values:
+    request = asked_for(scene, out=out, **chosen)
+    if "run.t_end" in request.table.values:
         refuse({"--t-end": options["--t-end"]}, "together with --over run.t_end")
-    return asked
+    return request
 
 
 def _judge(swept: Swept) -> None:

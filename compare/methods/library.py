@@ -23,7 +23,7 @@ from pathlib import Path
 
 SYSTEM = ("/usr/local/include", "/usr/include", "/opt/homebrew/include")
 
-own_process = False  # set in a process that was started to run methods
+isolated = False  # set in a process that was started to run methods
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def captured() -> Iterator[bytearray]:
     when the context has ended.
     """
     output = bytearray()
-    if not own_process:
+    if not isolated:
         yield output
         return
     with tempfile.TemporaryFile() as handle:

@@ -172,7 +172,7 @@ def available(method: Method) -> str | None:
     return f"not installed ({', '.join(absent)}){advice}"
 
 
-def outcome(problem: Problem, states: Array, *, reason: str = "", **told: Any) -> Outcome:
+def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any) -> Outcome:
     """Return the outcome of a run in binary64.
 
     Args:
@@ -180,7 +180,7 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **told: Any) -
         states: of the problem's variables at its first output times, shape (rows, variables); a run with fewer rows
             than times has stopped early; rows from the first NaN or infinity on are left out.
         reason: the library's own, if it gave one.
-        told: what else the run tells of itself: `steps`, `rhs_evaluations` and `cpu_s` of `Outcome`.
+        fields: of `Outcome`, if the library reports them: `steps`, `rhs_evaluations` and `cpu_s`.
     """
     rows = leading(np.isfinite(states).all(axis=1))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
@@ -189,7 +189,7 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **told: Any) -
         status, reason = Status.NOT_FINITE, reason or f"the state is not finite after t = {reached_t:g} s"
     elif rows < len(problem.times):
         status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
-    return Outcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **told)
+    return Outcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **fields)
 
 
 def leading(flags: npt.ArrayLike) -> int:
@@ -219,7 +219,7 @@ def external(command: str, *, name: str = "external") -> Method:
         id=name,
         title=command,
         setting="step",
-        ladder=(),  # a study is told the settings
+        ladder=(),  # a study is given the settings
         source="the user's",
         licence="the user's",
         prepare=lambda problem, value: _prepare(problem, value, command),

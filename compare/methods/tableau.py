@@ -145,8 +145,8 @@ def _products(arguments: Sequence[Term], order: int, stages: int) -> Iterator[Te
         yield Term(0, Fraction(1), (Fraction(1),) * stages)
     for i, first in enumerate(arguments):
         if first.order <= order:
-            for others in _products(arguments[i:], order - first.order, stages):
-                yield Term(order, first.exact * others.exact, tuple(map(mul, first.stages, others.stages)))
+            for product in _products(arguments[i:], order - first.order, stages):
+                yield Term(order, first.exact * product.exact, tuple(map(mul, first.stages, product.stages)))
 
 
 def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:

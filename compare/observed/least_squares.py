@@ -84,11 +84,11 @@ def gauss_newton(
     if not math.isfinite(least):
         return start, math.inf
     for _ in range(steps):
-        made = slopes()
-        if not np.isfinite(made).all():
+        jacobian = slopes()
+        if not np.isfinite(jacobian).all():
             break
-        change = best_change(made, left)
-        foreseen = float(np.linalg.norm(left - made @ change))
+        change = best_change(jacobian, left)
+        foreseen = float(np.linalg.norm(left - jacobian @ change))
         numbers = numbers + change[: len(numbers)]
         left, slopes = model(numbers)
         size = float(np.linalg.norm(left))
@@ -144,7 +144,7 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     exponent, constant = statistics.linear_regression(at, values)
     off = [v - constant - exponent * u for u, v in points]
     spread = len(points) * statistics.pvariance(at)
-    error, within = math.sqrt(sum(one**2 for one in off) / (len(points) - 2) / spread), max(map(abs, off))
+    error, within = math.sqrt(sum(residual**2 for residual in off) / (len(points) - 2) / spread), max(map(abs, off))
     low, high = min(at), max(at)
     return PowerLaw(math.exp(constant), exponent, error, math.exp(within), len(points), math.exp(low), math.exp(high))
 

@@ -90,9 +90,9 @@ def section(prefix: str, place: str, *rows: Check) -> list[Check]:
     return [replace(row, id=prefix + row.id, place=place + s + row.place) for row, s in zip(rows, spaces, strict=True)]
 
 
-def largest_gap(values: Sequence[Value], others: Sequence[Value]) -> Any:
+def largest_gap(first: Sequence[Value], second: Sequence[Value]) -> Any:
     """Return the largest relative difference of two formulas' values at the same points."""
-    pairs = zip(values, others, strict=True)
+    pairs = zip(first, second, strict=True)
     return max(distance(a, b) / max(size(a), size(b), MP.mpf("1e-3")) for a, b in pairs)
 
 

@@ -49,12 +49,12 @@ def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) 
         if report is not None:
             report(count, len(tables))
         measured.append([vars(row) for row in rows()])
-    *good, errors, quantities = measured
+    *ranges, errors, quantities = measured
     return {
         "scene": scene.id,
         "t_end": t_end,
         "rows": errors,
-        "limits": [row for of_one in good for row in of_one],
+        "limits": [row for rows in ranges for row in rows],
         "quantities": quantities,
     }
 
@@ -155,7 +155,7 @@ def _quantities(report: dict[str, Any]) -> Table:
 
 def _about() -> Html:
     columns = {"id": "", "description": "prose", "source": "prose", "leaves out": "prose"}
-    return Table(columns, [(one.id, one.title, one.where, one.drops) for one in APPROXIMATIONS.values()]).html()
+    return Table(columns, [(each.id, each.title, each.where, each.drops) for each in APPROXIMATIONS.values()]).html()
 
 
 def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:

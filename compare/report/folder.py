@@ -59,8 +59,8 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
             reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
             expected = "a new folder, or one that an earlier run wrote"
             raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
-        wanted = folder.absolute()
-        place = next(path for path in (wanted, *wanted.parents) if path.exists())
+        absolute = folder.absolute()
+        place = next(path for path in (absolute, *absolute.parents) if path.exists())
         with tempfile.TemporaryFile(dir=place):
             pass
 

@@ -34,7 +34,7 @@ def path(axes: Any, motion: Motion) -> None:
     """Draw the path from above: the whole of it, or some swings spread over the span, or the rows alone."""
     size = float(np.nanmax(np.abs(np.concatenate([motion.rows, motion.line])[:, :2]))) or 1.0
     scale, unit = length_unit(size)
-    line, rows = _line(motion) * scale, _few(motion.rows, LINE) * scale
+    line, rows = _line(motion) * scale, _thinned(motion.rows, LINE) * scale
     first = POINTS + 1 if motion.swings else len(line)
     axes.plot(line[first:, 0], line[first:, 1], color=COLOURS[1], linewidth=0.7)
     axes.plot(line[:first, 0], line[:first, 1], color=BLUE, linewidth=1.1 if motion.swings else 0.8)
@@ -69,7 +69,7 @@ def plane(axes: Any, motion: Motion) -> None:
     steps = (np.diff(motion.plane) + 90) % 180 - 90
     smooth = np.abs(steps).max() < 60
     angle = np.unwrap(motion.plane, period=180) if smooth else motion.plane
-    t, angle = _few(motion.plane_t, DOTS), _few(angle, DOTS)
+    t, angle = _thinned(motion.plane_t, DOTS), _thinned(angle, DOTS)
     seconds, word = time_unit(float(motion.t[-1]))
     _dots(axes, t * seconds, angle, BLUE)
     if np.ptp(angle) < _SMALL:
@@ -88,7 +88,7 @@ def transits(axes: Any, motion: Motion) -> None:
     seconds, word = time_unit(float(motion.t[-1]))
     for direction, colour in ((1, COLOURS[1]), (-1, BLUE)):
         mine = motion.directions == direction
-        t, x = _few(motion.transit_t[mine], DOTS // 2), _few(motion.transit_x[mine], DOTS // 2)
+        t, x = _thinned(motion.transit_t[mine], DOTS // 2), _thinned(motion.transit_x[mine], DOTS // 2)
         _dots(axes, t * seconds, x * scale, colour)
     count = len(motion.transit_t)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
@@ -133,7 +133,7 @@ def motion_svgs(motion: Motion) -> list[str]:
 
 def thumbnail(motion: Motion) -> str:
     """Return the path, from above or on its sphere, as a small SVG element without words."""
-    points = _few(_line(motion) if len(motion.line) else motion.rows, THUMB_POINTS)
+    points = _thinned(_line(motion) if len(motion.line) else motion.rows, THUMB_POINTS)
     right, up = _seen(points / motion.length)[:2] if motion.wide else points[:, :2].T
     size = 1.0 if motion.wide else float(np.nanmax(np.hypot(right, up))) or 1.0
     places = np.column_stack([right, -up]) * (0.46 * THUMB / size) + THUMB / 2
@@ -177,10 +177,10 @@ def _shown(motion: Motion) -> str:
 
 def _line(motion: Motion) -> Array:
     """Return the points of the line; single swings are short enough."""
-    return motion.line if motion.swings else _few(motion.line, LINE)
+    return motion.line if motion.swings else _thinned(motion.line, LINE)
 
 
-def _few(values: Array, most: int) -> Array:
+def _thinned(values: Array, most: int) -> Array:
     """Return at most `most` rows, evenly spread, the first and the last among them."""
     if len(values) <= most:
         return values

@@ -30,19 +30,19 @@ class Curve:
     Attributes:
         method: id of the method.
         formulation: of the equations of motion.
-        own: whether this is the method's own formulation, the first that it is run with.
+        usual: whether this is the method's usual formulation, the first that it is run with.
         rows: from the loosest setting to the tightest, failed ones included.
     """
 
     method: str
     formulation: str
-    own: bool
+    usual: bool
     rows: tuple[Row, ...]
 
     @property
     def label(self) -> str:
-        """The method's id, with the formulation in brackets where it is not the method's own."""
-        return self.method if self.own else f"{self.method} ({self.formulation})"
+        """The method's id, with the formulation in brackets where it is not the method's usual one."""
+        return self.method if self.usual else f"{self.method} ({self.formulation})"
 
     @property
     def kind(self) -> str:
@@ -64,13 +64,13 @@ def rows_of(document: dict[str, Any]) -> list[Row]:
 
 
 def curves(rows: Sequence[Row]) -> list[Curve]:
-    """Group rows by method and formulation, in order of appearance; a method's first formulation is its own."""
+    """Group rows by method and formulation, in order of appearance; a method's first formulation is its usual one."""
     usual = {row.method: row.formulation for row in reversed(rows)}
-    found = []
+    result = []
     for (method, formulation), group in grouped(rows, lambda row: (row.method, row.formulation)).items():
         ladder = sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)
-        found.append(Curve(method, formulation, usual[method] == formulation, tuple(ladder)))
-    return found
+        result.append(Curve(method, formulation, usual[method] == formulation, tuple(ladder)))
+    return result
 
 
 def error_of(row: Row, bound_m: float) -> float:
@@ -159,10 +159,10 @@ def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
     costs = sorted((digits_of(row, bound_m), cost_of(row)) for row in measured)
     if not costs:
         return ""
-    (least, cost), *others = costs
+    (least, cost), *finer = costs
     text = f"{curve.label}: {least:.0f} digits over {t_end:g} s cost {seconds(cost)}"
-    text += "".join(f", {digits:.0f} digits {seconds(cpu_s)}" for digits, cpu_s in others)
-    if others:
+    text += "".join(f", {digits:.0f} digits {seconds(cpu_s)}" for digits, cpu_s in finer)
+    if finer:
         (fewer, less), (more, dearer) = costs[-2:]
         if more - fewer > 1:
             further = seconds((dearer - less) / (more - fewer))
@@ -176,7 +176,7 @@ def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
     for _, group in groupby(reached, key=lambda target: target[1][0]):
         alike = list(group)
         (first_m, costs), (last_m, _) = alike[0], alike[-1]
-        if len(alike) > 1 and all(others == costs for _, others in alike):
+        if len(alike) > 1 and all(costs_there == costs for _, costs_there in alike):
             yield _sentence(rows, f"From {tidy(first_m)} m to {tidy(last_m)} m", costs, bound_m)
         else:
             yield from (_sentence(rows, f"At {tidy(error_m)} m", costs, bound_m) for error_m, costs in alike)

@@ -102,7 +102,7 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     """
     best = front(rows, bound_m)
     on_front = {row.key for row in best}
-    shown = [curve for curve in curves(rows) if curve.own or any(row.key in on_front for row in curve.rows)]
+    shown = [curve for curve in curves(rows) if curve.usual or any(row.key in on_front for row in curve.rows)]
     lines = ladders(shown, cost_of, partial(error_of, bound_m=bound_m))
     if not lines:
         return None
@@ -141,7 +141,7 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
 
     The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
     """
-    lines = ladders([curve for curve in curves(rows) if curve.own], cost_of, partial(error_of, bound_m=bound_m))
+    lines = ladders([curve for curve in curves(rows) if curve.usual], cost_of, partial(error_of, bound_m=bound_m))
     coarse = [line for line in lines if line.family != Family.MANY_DIGITS] or lines
     families = [family for family in Family if any(line.family == family for line in coarse)]
     if not families:
@@ -197,7 +197,7 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
     """
     laws = costs_of_digits(rows, bound_m)
     families = Family.MANY_DIGITS, Family.HEYOKA
-    shown = [curve for curve in curves(rows) if curve.own and family_of(curve.method) in families]
+    shown = [curve for curve in curves(rows) if curve.usual and family_of(curve.method) in families]
     if not any(curve.kind == "precision" and curve.measured for curve in shown):
         return None
 
@@ -238,7 +238,7 @@ def _known(axes: Any, bound_m: float) -> None:
 
 def right_hand_sides(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
-    shown = [curve for curve in curves(rows) if curve.own]
+    shown = [curve for curve in curves(rows) if curve.usual]
     lines = ladders(shown, attrgetter("rhs_evaluations"), partial(error_of, bound_m=bound_m))
     evaluations = "evaluations of the right-hand side"
     return _single(lines, bound_m, ("evaluations", evaluations, f"Error against {evaluations}"))
@@ -246,7 +246,7 @@ def right_hand_sides(rows: Sequence[Row], bound_m: float) -> str | None:
 
 def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw the error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
-    shown = [curve for curve in curves(rows) if curve.own and curve.kind == "tolerance"]
+    shown = [curve for curve in curves(rows) if curve.usual and curve.kind == "tolerance"]
     coarse = [curve for curve in shown if family_of(curve.method) != Family.MANY_DIGITS]
     words = ("tolerance", "relative tolerance asked for", "Error achieved against the tolerance asked for")
     lines = ladders(coarse, attrgetter("setting"), partial(error_of, bound_m=bound_m))
@@ -256,7 +256,7 @@ def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
 def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against CPU seconds of formulations of the same equations with one method; None without such rows."""
     every = curves(rows)
-    compared = {curve.method for curve in every if not curve.own}
+    compared = {curve.method for curve in every if not curve.usual}
     curves_compared = [curve for curve in every if curve.method in compared]
     lines = ladders(curves_compared, cost_of, partial(error_of, bound_m=bound_m), attrgetter("formulation"))
     words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")

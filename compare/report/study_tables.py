@@ -88,7 +88,8 @@ def failures(rows: Sequence[Row]) -> Html | None:
     if not failed:
         return None
     cells = []
-    for (label, status, reason), group in grouped(failed, lambda one: (one[0], one[1].status, one[1].reason)).items():
+    by_reason = grouped(failed, lambda pair: (pair[0], pair[1].status, pair[1].reason))
+    for (label, status, reason), group in by_reason.items():
         reached = {f"{row.reached_t:g}" for _, row in group if row.reached_t is not None}
         settings = ", ".join(setting(row) for _, row in group)
         cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
@@ -111,7 +112,7 @@ def advice(statuses: Collection[Status]) -> list[str]:
 def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
     listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
-    of_method = {order.method: order for order in reversed(orders(rows, bound_m))}  # in its own formulation, the first
+    of_method = {order.method: order for order in reversed(orders(rows, bound_m))}  # in its usual formulation
     body = [
         (
             method.id, method.title, method.order or ABSENT, observed(of_method.get(method.id)),

@@ -118,8 +118,8 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
 
 def _main_lines(outcome: Outcome) -> list[str]:
     """Return the lines for people without details, which are indented."""
-    first, *others = outcome.lines
-    return [first, *(line for line in others if not line.startswith("  "))]
+    first, *further = outcome.lines
+    return [first, *(line for line in further if not line.startswith("  "))]
 
 
 def _cells(outcome: Outcome) -> tuple[str, ...]:

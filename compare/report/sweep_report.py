@@ -113,10 +113,10 @@ def text(swept: Swept, out: Path | None) -> str:
     else:
         lines.append(f"{out}: {counted(swept.request.parts, 'part')} in Parquet")
     if swept.audit is not None:
-        found = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
-        found += f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
+        audit = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
+        audit += f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
         lines.append(
-            f"{counted(swept.audit.rows, 'row')} solved again in 28 digits: {found}, CPU {swept.audit_s:.2f} s"
+            f"{counted(swept.audit.rows, 'row')} solved again in 28 digits: {audit}, CPU {swept.audit_s:.2f} s"
         )
     return "\n".join([*lines, total, cost])
 

@@ -1,4 +1,4 @@
-"""Tell what changed since a baseline: the rows of an earlier version, or the JSON document of their score.
+"""Say what changed since a baseline: the rows of an earlier version, or the JSON document of their score.
 
 Both versions are explained down to a tenth of what lies between them, or to the tolerance if that is less. What one
 explanation has and the other has not is what changed.
@@ -17,7 +17,7 @@ from reference import InputError
 from reference.system.documents import json_document
 
 from .document import document, explained
-from .since import Since, changes, left_of, untold_m
+from .since import Since, changes, left_of, unexplained_m
 from .verdict import REFUSED, WHOLE, Score
 
 SHARE = 0.1  # of a change: what is smaller is no part of it
@@ -37,10 +37,10 @@ def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> 
     Raises:
         InputError: the document is none of a score, or one of another problem.
     """
-    rows = old if isinstance(old, Score) else None
+    score = old if isinstance(old, Score) else None
     try:
-        said = document(old) if isinstance(old, Score) else _row(old, new)
-        return None if said is None or said["verdict"] == REFUSED else _since(new, rows, said, explains)
+        baseline = document(old) if isinstance(old, Score) else _row(old, new)
+        return None if baseline is None or baseline["verdict"] == REFUSED else _since(new, score, baseline, explains)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError("baseline", f"{type(error).__name__} {error}", EXPECTED, "Make it anew.") from None
 
@@ -79,29 +79,29 @@ def _row(old: Mapping[str, Any], new: Score) -> Mapping[str, Any] | None:
     return max(fitting, key=lambda row: bool(row["candidate"] == new.candidate.name), default=None)
 
 
-def _since(new: Score, rows: Score | None, said: Mapping[str, Any], explains: bool) -> Since:
-    """Return what changed since a document, and since the rows that it is of if they are there."""
-    before, after = float(said["max_error_m"]), _until(new, float(said["covered_s"][1]))
-    apart, level = abs(after - before), min(before, float(said["tolerance_m"]))
-    if rows is not None:
-        before, apart, level = _until(rows, float(new.errors.t[-1])), _apart(new, rows), 0.0
-    agreed = str(said["grade" if new.as_model else "verdict"]).startswith("agrees")
-    worse = tuple(_worse(new, said, after - before, agreed))
+def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains: bool) -> Since:
+    """Return what changed since the document of a baseline, and since its rows if its score is there."""
+    before, after = float(baseline["max_error_m"]), _until(new, float(baseline["covered_s"][1]))
+    apart, level = abs(after - before), min(before, float(baseline["tolerance_m"]))
+    if old is not None:
+        before, apart, level = _until(old, float(new.errors.t[-1])), _apart(new, old), 0.0
+    agreed = str(baseline["grade" if new.as_model else "verdict"]).startswith("agrees")
+    worse = tuple(_worse(new, baseline, after - before, agreed))
     better = not worse and (before - after > new.allowed_m or (new.passes and not agreed))
     changed = apart > max(new.errors.bound_m, ROUNDED * new.input_floor_m)
-    told, left_m = tuple[str, ...](), None
+    texts, left_m = tuple[str, ...](), None
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
     if changed and explains and new.candidate.positions:
-        files = [(score.candidate, score.scene) for score in (new, rows) if score is not None]
+        files = [(score.candidate, score.scene) for score in (new, old) if score is not None]
         from .explanation.explain import explain
 
         both = [explain(file.t, file.columns, scene, allowed) for file, scene in files]
-        now, then = explained(both[0], []), said if rows is None else explained(both[1], [])
+        now, then = explained(both[0], []), baseline if old is None else explained(both[1], [])
         left = left_of(then, before), left_of(now, after)
-        told = tuple(changes(then, now, left, math.inf if rows is None else WOBBLE * apart))
-        left_m = max(left) + untold_m(then, now) if told else None
-    name, complete = str(said["candidate"]), left_m is not None and left_m <= allowed
-    return Since(name, before, after, apart if changed else 0.0, worse, better, told, left_m, complete)
+        texts = tuple(changes(then, now, left, math.inf if old is None else WOBBLE * apart))
+        left_m = max(left) + unexplained_m(then, now) if texts else None
+    name, complete = str(baseline["candidate"]), left_m is not None and left_m <= allowed
+    return Since(name, before, after, apart if changed else 0.0, worse, better, texts, left_m, complete)
 
 
 def _until(score: Score, end: float) -> float:
@@ -120,16 +120,17 @@ def _apart(new: Score, old: Score) -> float:
     return float(np.linalg.norm(gaps, axis=0).max())
 
 
-def _worse(new: Score, said: Mapping[str, Any], more: float, agreed: bool) -> Iterator[str]:
+def _worse(new: Score, baseline: Mapping[str, Any], more: float, agreed: bool) -> Iterator[str]:
     """Yield what became worse by more than the tolerance."""
     if more > new.allowed_m:
         yield f"{more:.3g} m more, {more / new.allowed_m:.2g} tolerances"
     if agreed and not new.passes:
         yield "it agreed before"
-    end, last = float(said["covered_s"][1]), float(new.errors.t[-1])
+    end, last = float(baseline["covered_s"][1]), float(new.errors.t[-1])
     if last < end * (1 - WHOLE):
         yield f"it ends at t = {last:.6g} s, and ended at {end:.6g} s"
-    if new.transits is not None and said["transits"]:
-        before, off = (len(said["transits"][key]) for key in ("missed_at", "extra_at")), len(new.transits.missed)
-        if (off := off + len(new.transits.extra)) > (had := sum(before)):
-            yield f"{off} transits are missed or extra, and {had} were"
+    if new.transits is not None and baseline["transits"]:
+        before = sum(len(baseline["transits"][key]) for key in ("missed_at", "extra_at"))
+        now = len(new.transits.missed) + len(new.transits.extra)
+        if now > before:
+            yield f"{now} transits are missed or extra, and {before} were"

@@ -68,9 +68,9 @@ def explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[
     """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
     corrected = explanation.corrected_m
     return {
-        "conventions": [*readings, *(_said("your file", convention) for convention in explanation.conventions)],
+        "conventions": [*readings, *(_as_document("your file", convention) for convention in explanation.conventions)],
         "model": None if explanation.model is None else vars(explanation.model),
-        "causes": [_said("your program", cause) | _fitted(cause) for cause in explanation.causes],
+        "causes": [_as_document("your program", cause) | _fitted(cause) for cause in explanation.causes],
         "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
         "slip": explanation.slip or None,
         "diagnosis": diagnosis(explanation),
@@ -96,7 +96,7 @@ def diagnosis(explanation: Explanation) -> dict[str, Any] | None:
     }
 
 
-def _said(subject: str, deviation: Deviation) -> dict[str, Any]:
+def _as_document(subject: str, deviation: Deviation) -> dict[str, Any]:
     return {"id": deviation.id, "text": f"{subject} {deviation.text}", "size_m": deviation.size_m}
 
 

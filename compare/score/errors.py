@@ -187,7 +187,7 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
     slopes = np.column_stack(rates([*truth.states.T], constants_in_double(golden.scene.exact)))
     later = slopes * t_low[:, None]
     # which leaves out a t_low²/2 (doubled, as a changes meanwhile), and rounds v, v t_low and two sums with it
-    speeds, pulls = (np.linalg.norm(part, axis=1) for part in np.hsplit(slopes, 2))
+    speeds, pulls = (np.linalg.norm(half, axis=1) for half in np.hsplit(slopes, 2))
     left_out = float((pulls * t_low**2 + 2 * EPSILON * speeds * np.abs(t_low)).max())
     components = {}
     for i, name in enumerate(COLUMNS):
@@ -196,9 +196,9 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
             # the difference of doubles that agree so far is exact
             components[name] = candidate.columns[name] - truth.states[:, i] + low
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
-    amplitude = max(float(part.max()) for part in amplitudes) or float(golden.scene.exact.length)
+    amplitude = max(float(distances.max()) for distances in amplitudes) or float(golden.scene.exact.length)
     velocities = (golden.vx, golden.vy, golden.vz), truth.states.T[3:]
-    speed = max(float(np.linalg.norm(part, axis=0).max()) for part in velocities)
+    speed = max(float(np.linalg.norm(velocity, axis=0).max()) for velocity in velocities)
     if candidate.positions:
         position = np.linalg.norm([components[name] for name in "xyz" if name in components], axis=0)
     else:
@@ -239,7 +239,7 @@ def swing_errors(truth: Array, error: Array, rest: tuple[float, float]) -> Swing
         return SwingErrors(*np.empty((2, 0)))
     parts = np.array_split(np.arange(len(truth)), max(1, min(BLOCKS, len(truth) // ROWS)))
     samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
-    fits = [_fit(truth[part], error[part], rest) for part in samples]
+    fits = [_fit(truth[sample], error[sample], rest) for sample in samples]
     return SwingErrors(*np.array(fits).T)
 
 

@@ -50,8 +50,8 @@ def floor_of_what_ships(scene: Scene, until: float) -> float | None:
     It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the latter's x and
     y; z follows from the sphere. None where they do not ship.
     """
-    one, other = (scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64"))
-    golden, rounded = shipping(one), with_function(other)
+    decimal, binary64 = (scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64"))
+    golden, rounded = shipping(decimal), with_function(binary64)
     if golden is None or rounded is None:
         return None
     rows = slice(0, int(np.searchsorted(golden.t, until)) + 1)
@@ -59,9 +59,9 @@ def floor_of_what_ships(scene: Scene, until: float) -> float | None:
     truth = by_function(rounded, golden.t[rows])
     assert truth is not None
     x, y, z = truth.states.T[:3] + later * truth.states.T[3:]
-    dx, dy, length = golden.x[rows] - x, golden.y[rows] - y, float(one.exact.length)
+    dx, dy, length = golden.x[rows] - x, golden.y[rows] - y, float(decimal.exact.length)
     with np.errstate(divide="ignore", invalid="ignore"):
-        dz = (length * float(one.exact.length - other.exact.length) - x * dx - y * dy) / z
+        dz = (length * float(decimal.exact.length - binary64.exact.length) - x * dx - y * dy) / z
     dz = np.where(np.abs(z) > STEEP * length, dz, golden.z[rows] - z)
     return float(np.sqrt(dx**2 + dy**2 + dz**2).max())
 

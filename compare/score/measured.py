@@ -15,7 +15,7 @@ from reference.solver.uncertain import solve_ranges
 
 from ..candidates.candidate import Candidate
 
-TOLD = 5  # of the numbers outside, those that are listed: the farthest of each column first
+LISTED = 5  # of the numbers outside, those in the lines for people: the farthest of each column first
 ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing
 SWING = 7.0  # times sqrt(l/g): a period, and some
 TRANSIT = "transit"
@@ -66,15 +66,15 @@ class Measured:
         """Yield the lines for people, the verdict first."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
         parts = [counted(self.rows, "row")] if self.rows else []
-        zero, of = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
-        parts += [] if self.transits is None else [f"{counted(self.transits, zero)}{of}"]
+        zero, section = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
+        parts += [] if self.transits is None else [f"{counted(self.transits, zero)}{section}"]
         scene, what = self.ranges.scene.id, " and ".join(parts)
         if not self.outside:
             yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved"
         else:
             numbers = counted(len(self.outside), "number")
             yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
-        for column, t, got, low, high, by in self.outside[:TOLD]:
+        for column, t, got, low, high, by in self.outside[:LISTED]:
             at, unit = (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m") if column in STATE else ("", "s")
             yield f"  {column}{at}: {got:.10g}, proved {low:.10g} to {high:.10g} {unit} ({by:.2g} outside)"
         for note in self.notes:
@@ -120,7 +120,7 @@ def measured(
         InputError: no row or transit lies within the scene's span, or the proof decides nothing at any of the times.
         UnreachableError: the box is too wide.
     """
-    end, asked = ranges.scene.exact.t_end, ranges.scene.run.sections or ()
+    end, sections = ranges.scene.exact.t_end, ranges.scene.run.sections or ()
     times = [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
     zeros = [] if transits is None else sorted(_decimal(t) for t in transits if t > 0)
     kept, seen = [t for t in times if t <= end], [t for t in zeros if t <= end]
@@ -132,31 +132,31 @@ def measured(
         inputs, last = ranges.scene.exact, max([*kept, *seen])
         # a swing beyond the last one, so that a transit is not cut off
         swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
-        wanted = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not last else [])})
+        grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not last else [])})
         sought = {"run.transits": str(bool(seen and not section)).lower(), "run.sections": section or ""}
         scene = ranges.scene.with_values(sought)
         box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
-        ranges = solve_ranges(scene, box, report=report, times=wanted)
+        ranges = solve_ranges(scene, box, report=report, times=grid)
     if seen and not _intervals(ranges, section):
         none = f"none: {section or 'xdot'} has no single zeros in this scene"
         raise InputError(name, "transits", none, "Give positions instead.")
     free, word = _intervals(ranges, section), section or TRANSIT
     decided = [t for t in seen if not _undecided(t, free)]
     if seen and not decided and not kept:
-        (low, high) = next(ends for ends, one in free if not one and ends[0] <= seen[0] <= ends[1])
+        (low, high) = next(ends for ends, single in free if not single and ends[0] <= seen[0] <= ends[1])
         advice = f"The proof leaves {float(low):g} to {float(high):g} s open. Take smaller widths, or another section."
         raise InputError(f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice)
     off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
     off += _zeros(decided, free, word)
-    first = {column: max(z.by for z in off if z.column == column) for column in {z.column for z in off}}
+    farthest = {number.column: number.by for number in sorted(off, key=lambda number: number.by)}
     notes = list(candidate.notes if candidate else ())
     if late:
         notes.append(f"after {float(end):g} s {counted(late, 'time')} left out")
     if open_ := len(seen) - len(decided):
         notes.append(f"{counted(open_, 'time')} left out, at which the proof does not decide {word}")
-    if TRANSIT in first and asked:
-        notes.append(f"for passages of {asked[0]} write --section '{asked[0]}'")
-    off.sort(key=lambda z: (z.by < first[z.column], z.column not in STATE, -z.by))
+    if TRANSIT in farthest and sections:
+        notes.append(f"for passages of {sections[0]} write --section '{sections[0]}'")
+    off.sort(key=lambda number: (number.by < farthest[number.column], number.column not in STATE, -number.by))
     count = len(decided) if transits is not None else None
     return Measured(name, ranges, len(kept), count, tuple(off), tuple(notes), section)
 
@@ -176,17 +176,17 @@ def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, toler
 
 def _intervals(ranges: Ranges, section: str | None) -> Intervals:
     """Return the intervals of transits, or of a section's passages, and whether each has just one."""
-    found = ranges.sections.get(section) if section else None
-    if section and not found:
+    passages = ranges.sections.get(section) if section else None
+    if section and not passages:
         return []
-    table, possible = (found.table, found.possible) if found else (ranges.transits, ranges.possible)
-    ones = [(ends, True) for ends in table.exact("t")] if len(table) else []
-    return [*ones, *(((low, high), False) for low, high, _ in possible)]
+    table, possible = (passages.table, passages.possible) if passages else (ranges.transits, ranges.possible)
+    single = [(ends, True) for ends in table.exact("t")] if len(table) else []
+    return [*single, *(((low, high), False) for low, high, _ in possible)]
 
 
 def _undecided(t: Fraction, free: Intervals) -> bool:
     """Return whether a time lies in an interval that may hold zeros, and in none that holds just one."""
-    inside = [one for (low, high), one in free if low <= t <= high]
+    inside = [single for (low, high), single in free if low <= t <= high]
     return bool(inside) and not any(inside)
 
 
@@ -198,11 +198,11 @@ def _zeros(times: Sequence[Fraction], free: Intervals, word: str) -> Iterator[Ou
         return max(ends[0] - t, t - ends[1], Fraction(0))
 
     for t in times:
-        ends, one = min(free or every, key=lambda interval: gap(t, interval[0]))
+        ends, single = min(free or every, key=lambda interval: gap(t, interval[0]))
         if not free or gap(t, ends):
             yield Outside(word, *map(float, (t, t, *ends, gap(t, ends))))
-        elif one:
-            free.remove((ends, one))
+        elif single:
+            free.remove((ends, single))
 
 
 def _exact(candidate: Candidate, name: str, k: int) -> Fraction:

@@ -11,7 +11,7 @@ from .explanation.case import AS_IF
 STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
 SAME = 1e-9  # relative difference of two inputs that count as one
 STEP = "step"
-Told = Mapping[str, Any]  # a convention or a cause, as in the document
+Document = Mapping[str, Any]  # of a score, or of a convention or cause in it
 
 
 @dataclass(frozen=True)
@@ -57,62 +57,62 @@ class Since:
         return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in self.worse)}"
 
 
-def _told(said: Mapping[str, Any]) -> Iterator[Told]:
-    """Yield what a document says for certain of its candidate: of the file, of the program."""
-    for one in (*said["conventions"], *said["causes"]):
-        if one["text"].startswith("your ") and not one["id"].startswith(AS_IF):
-            yield one
-    if said["slip"]:
-        yield {"id": "slip", "text": f"your program has a slip ({said['slip'].rstrip('.')})", "size_m": 0.0}
+def _known(document: Document) -> Iterator[Document]:
+    """Yield the conventions and causes that are certain of a document's candidate, and its slip."""
+    for deviation in (*document["conventions"], *document["causes"]):
+        if deviation["text"].startswith("your ") and not deviation["id"].startswith(AS_IF):
+            yield deviation
+    if document["slip"]:
+        yield {"id": "slip", "text": f"your program has a slip ({document['slip'].rstrip('.')})", "size_m": 0.0}
 
 
-def left_of(said: Mapping[str, Any], error_m: float) -> float:
+def left_of(document: Document, error_m: float) -> float:
     """Return what the causes of a document leave in m; all of its error where none is known."""
-    return float((said["corrected"] or {"max_error_m": error_m})["max_error_m"])
+    return float((document["corrected"] or {"max_error_m": error_m})["max_error_m"])
 
 
-def untold_m(then: Told, now: Told) -> float:
+def unexplained_m(then: Document, now: Document) -> float:
     """Return how far in m numbers that only one of two documents has may move the bob, their cause not known."""
-    here, there = ([one for one in said["causes"] if one["id"].startswith(AS_IF)] for said in (then, now))
-    pairs = [(one, there) for one in here] + [(one, here) for one in there]
-    return float(sum(one["size_m"] for one, others in pairs if not any(_is_same(one, other) for other in others)))
+    here, there = ([cause for cause in document["causes"] if cause["id"].startswith(AS_IF)] for document in (then, now))
+    pairs = [(cause, there) for cause in here] + [(cause, here) for cause in there]
+    return float(sum(cause["size_m"] for cause, causes in pairs if not any(_is_same(cause, other) for other in causes)))
 
 
-def changes(then: Told, now: Told, left: tuple[float, float], most: float) -> Iterator[str]:
+def changes(then: Document, now: Document, left: tuple[float, float], most: float) -> Iterator[str]:
     """Yield what came and what went; a number that changed has come.
 
     Args:
         then: the document of the baseline.
         now: that of the candidate.
-        left: what the causes of each leave in m: a smaller one may be in it untold.
-        most: how far in m one may move the bob.
+        left: what the causes of each leave in m: a smaller one may be hidden in it.
+        most: how far in m a cause may move the bob.
     """
-    before, after = list(_told(then)), list(_told(now))
-    came = [one for one in after if not any(_is_same(one, other) for other in before)]
-    went = [one for one in before if _kind(one) not in map(_kind, after)]
-    for when, ones, hidden in (("now", came, left[0]), ("no longer", went, left[1])):
-        for one in ones:
-            if 0 < one["size_m"] <= hidden or one["size_m"] > most:
+    before, after = list(_known(then)), list(_known(now))
+    came = [deviation for deviation in after if not any(_is_same(deviation, other) for other in before)]
+    went = [deviation for deviation in before if _kind(deviation) not in map(_kind, after)]
+    for when, deviations, hidden in (("now", came, left[0]), ("no longer", went, left[1])):
+        for deviation in deviations:
+            if 0 < deviation["size_m"] <= hidden or deviation["size_m"] > most:
                 continue
-            if one["id"] == "off_the_sphere" and STEP in map(_kind, ones):
+            if deviation["id"] == "off_the_sphere" and STEP in map(_kind, deviations):
                 continue  # a step takes the bob off the sphere
-            text = one["text"].partition(" (--set")[0]  # which is advice for a verdict
+            text = deviation["text"].partition(" (--set")[0]  # which is advice for a verdict
             text = text.replace("your program", f"it {when}", 1).replace("your file", f"its file {when}", 1)
-            yield text if _kind(one) != STEP else f"the step ({text})" if when == "now" else "the step"
+            yield text if _kind(deviation) != STEP else f"the step ({text})" if when == "now" else "the step"
 
 
-def _kind(one: Told) -> str:
+def _kind(deviation: Document) -> str:
     """Return the word for a thing of which a program has one: a step, a gravity."""
     kinds = {"integrator_": STEP, "gravity_": "site.gravity"}
-    return next((kind for begin, kind in kinds.items() if one["id"].startswith(begin)), str(one["id"]))
+    return next((kind for begin, kind in kinds.items() if deviation["id"].startswith(begin)), str(deviation["id"]))
 
 
-def _is_same(one: Told, other: Told) -> bool:
-    """Return whether two explanations tell the same."""
-    value, was = one.get("value"), other.get("value")
-    if (value is None or was is None) and _kind(one) == _kind(other) == STEP:
-        return bool(1 / STEPS < one["size_m"] / other["size_m"] < STEPS)
+def _is_same(deviation: Document, other: Document) -> bool:
+    """Return whether two conventions or causes say the same."""
+    value, was = deviation.get("value"), other.get("value")
+    if (value is None or was is None) and _kind(deviation) == _kind(other) == STEP:
+        return bool(1 / STEPS < deviation["size_m"] / other["size_m"] < STEPS)
     if value is None or was is None:
-        return bool(one["text"] == other["text"])
-    doubt = sum(part.get("uncertainty") or 0.0 for part in (one, other)) + SAME * abs(value)
-    return bool(one["id"] == other["id"] and abs(value - was) <= doubt)
+        return bool(deviation["text"] == other["text"])
+    doubt = sum(each.get("uncertainty") or 0.0 for each in (deviation, other)) + SAME * abs(value)
+    return bool(deviation["id"] == other["id"] and abs(value - was) <= doubt)

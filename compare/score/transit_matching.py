@@ -182,9 +182,10 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
     """Return the reason why a candidate's transits cannot be judged, or None."""
     if isinstance(golden, Golden):
         transits = golden.manifest.transits
+    elif golden.zeros is not None:
+        transits = "complete"
     else:
-        asked = golden.scene.run.transits
-        transits = "complete" if golden.zeros is not None else "xdot is identically zero" if asked else "not asked for"
+        transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
     return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None

@@ -207,9 +207,9 @@ def lines(score: Score) -> Iterator[str]:
     yield entry("reference", score.golden.level, f"within {errors.bound_m:.2g} m at these times")
     if score.experiments is not None:
         yield from score.experiments.lines()
-    told = score.explanation
-    if told is not None and (score.experiments is None or told.causes or told.conventions):
-        yield from told.lines()
+    explanation = score.explanation
+    if explanation is not None and (score.experiments is None or explanation.causes or explanation.conventions):
+        yield from explanation.lines()
     for convention in score.candidate.conventions:
         yield f"Reading: {convention.text}."
     for note in score.notes:

@@ -62,8 +62,8 @@ def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[S
     rows = []
     for value in sweep_values(scene, over):
         truth = ReferenceMotion(varied(scene, over, value), t)
-        found = [row for motion in chosen for row in truth.largest(motion, [t])]
-        rows += [SweepRow(**vars(row), over=over, value=value) for row in found]
+        largest = [row for motion in chosen for row in truth.largest(motion, [t])]
+        rows += [SweepRow(**vars(row), over=over, value=value) for row in largest]
     return rows
 
 
@@ -81,12 +81,12 @@ def limits(scene: Scene, chosen: Sequence[Motion], over: str, t_end: float) -> l
         return _time_limits(scene, chosen, t_end)
     rows, limit_rows = sweep(scene, chosen, over, t_end), []
     for motion in chosen:
-        of_one = [row for row in rows if row.approximation == motion.id]
-        nowhere = all(row.error_m is None for row in of_one)
-        outcome = (of_one[0].status, of_one[0].reason) if nowhere else (Status.OK, "")
+        of_motion = [row for row in rows if row.approximation == motion.id]
+        nowhere = all(row.error_m is None for row in of_motion)
+        outcome = (of_motion[0].status, of_motion[0].reason) if nowhere else (Status.OK, "")
         for name, quantity, limit in LIMITS:
-            errors = [getattr(row, quantity) for row in of_one]
-            good = _below(over, [row.value for row in of_one], errors, limit)
+            errors = [getattr(row, quantity) for row in of_motion]
+            good = _below(over, [row.value for row in of_motion], errors, limit)
             limit_rows.append(LimitRow(motion.id, over, UNITS[over], name, good, *outcome))
     return limit_rows
 

@@ -108,7 +108,7 @@ def campaign(
 
 def measured(emit: Emit, measurement: Measurement[Item, Result], items: Sequence[Item]) -> None:
     """Measure items one after the other, in a child process, and send each result."""
-    library.own_process = True
+    library.isolated = True
     for item in items:
         emit(measurement.measure(item))
 
@@ -145,8 +145,8 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
     """Yield the result of each item; after a hang or a crash a new process goes on with the next one."""
     remaining = list(items)
     while remaining:
-        own = {name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not os.environ.get(name)}
-        worker = Worker(measured, measurement, remaining, env=own)
+        env = {name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not os.environ.get(name)}
+        worker = Worker(measured, measurement, remaining, env=env)
         starting_s, patience_s = STARTING_S, measurement.patience_s
         try:
             while remaining:

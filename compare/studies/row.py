@@ -189,11 +189,11 @@ def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
     return groups
 
 
-def difference(one: Column, other: Column) -> Array:
-    """Return one - other as doubles, shape (rows,); where a number is exact, it is subtracted exactly."""
-    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
-        return np.asarray(one - other)  # the difference of doubles that agree so far is exact
-    return np.array([float(Fraction(p) - Fraction(q)) for p, q in zip(one, other, strict=True)])
+def difference(a: Column, b: Column) -> Array:
+    """Return a - b as doubles, shape (rows,); where a number is exact, it is subtracted exactly."""
+    if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+        return np.asarray(a - b)  # the difference of doubles that agree so far is exact
+    return np.array([float(Fraction(p) - Fraction(q)) for p, q in zip(a, b, strict=True)])
 
 
 def _column(outcome: Outcome, name: str) -> Column:

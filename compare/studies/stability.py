@@ -182,12 +182,12 @@ class _Cells(Measurement[Item, Cell]):
             kind, number = METHODS[method].setting, METHODS[method].number
         precision = f"{number}, {formulation}" if formulation else number
         used = None if kind == "step" else setting  # a step depends on the scene's rates
-        asked = digits_asked(method, setting)
-        return Cell(scene, method, precision, status, None, asked, None, reason, setting=used, kind=kind)
+        requested = digits_requested(method, setting)
+        return Cell(scene, method, precision, status, None, requested, None, reason, setting=used, kind=kind)
 
     def _judged(self, item: Item, row: Row, traits: Character, amplitude: float) -> Cell:
         """Return the cell of a run, whose error in m is judged as a part of the amplitude in m."""
-        requested = digits_asked(item[0], item[2])
+        requested = digits_requested(item[0], item[2])
         digits = None if row.error_m is None else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
         status = row.status
         if status == Status.EXTRAPOLATED:
@@ -198,7 +198,7 @@ class _Cells(Measurement[Item, Cell]):
         return replace(cell, digits=digits, cpu_s=row.cpu_s, steps=row.steps, setting=row.setting, load=row.load)
 
 
-def digits_asked(method: str, setting: float) -> float:
+def digits_requested(method: str, setting: float) -> float:
     """Return the digits that a method is asked for by a setting; of a fixed step, those that its order gives."""
     if method not in METHODS:
         return users_program.DIGITS

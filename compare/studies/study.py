@@ -29,7 +29,7 @@ from .users_program import FILE, file_row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
 PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
-TOLD_APART = 0.25  # standard error up to which an order is told from its neighbours: twice that is half an order
+DISTINGUISHED = 0.25  # standard error up to which an order is told from its neighbours: twice that is half an order
 ABOVE_LEAST = 10.0  # errors within this factor of a method's least are taken for rounding, or for the reference's bound
 Files = Mapping[str, tuple[Candidate, float | None]]  # by name: what a file holds, and the CPU seconds that are stated
 
@@ -185,7 +185,7 @@ def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
 
 
 def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -> ObservedOrder:
-    laws = [law for law in _laws(rows, bound_m) if law.standard_error <= TOLD_APART]
+    laws = [law for law in _laws(rows, bound_m) if law.standard_error <= DISTINGUISHED]
     law = max(laws, key=lambda law: (law.points, -law.standard_error), default=None)
     observed = () if law is None else (-law.exponent, law.standard_error, law.points)
     return ObservedOrder(method, formulation, METHODS[method].order or 0, *observed)

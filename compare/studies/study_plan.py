@@ -90,8 +90,8 @@ def _runs(
     runs = {name: runs_of(METHODS[name]) for name in methods or METHODS}
     without = [name for name in methods or () if not runs[name]]
     if without:
-        others = ", ".join(name for name, method in METHODS.items() if runs_of(method))
-        raise InputError(field, ", ".join(without), expected, f"{these}: {others}.")
+        declaring = ", ".join(name for name, method in METHODS.items() if runs_of(method))
+        raise InputError(field, ", ".join(without), expected, f"{these}: {declaring}.")
     return runs
 
 

@@ -66,16 +66,16 @@ def plane_alphas(p: Point) -> Vector:
     x, y, vx, vy, l2, s, c, far = p.x, p.y, p.vx, p.vy, p.length**2, sin(p.phi), cos(p.phi), p.N + p.altitude
     below = l2 - x**2 - y**2
     half = below ** MP.mpf("1.5")
-    zero = 2 * x * y * vx * vy + (l2 - y**2) * vx**2 + (l2 - x**2) * vy**2
-    one = -2 * vx * s * y * l2 - 2 * vx * c * half + 2 * vx * s * y**3 - 2 * vy * s * x**3
-    one += 2 * vx * s * y * x**2 - 2 * vx * c * x**2 * sqrt(below) - 2 * vy * c * x * y * sqrt(below)
-    one += 2 * l2 * far * c * vx - 2 * far * c * x**2 * vx - 2 * far * c * y**2 * vx
-    one += 2 * l2 * s * x * vy - 2 * s * x * y**2 * vy
-    two = -2 * x**2 * y**2 + y**2 * l2 + 2 * c**2 * y**4 + c**2 * x**4 + x**2 * l2 + c**2 * l2**2 - x**4 - y**4
-    two += far**2 * c**2 * l2 - 3 * y**2 * l2 * c**2 - 2 * far * c**2 * half - 2 * c**2 * l2 * x**2
-    two += 3 * c**2 * x**2 * y**2 + 2 * s * c * y * half - far**2 * c**2 * x**2 - far**2 * c**2 * y**2
-    two += -2 * far * s * c * y * l2 + 2 * s * c * far * y * x**2 + 2 * s * c * far * y**3
-    return vector(zero, one, two) / below
+    alpha0 = 2 * x * y * vx * vy + (l2 - y**2) * vx**2 + (l2 - x**2) * vy**2
+    alpha1 = -2 * vx * s * y * l2 - 2 * vx * c * half + 2 * vx * s * y**3 - 2 * vy * s * x**3
+    alpha1 += 2 * vx * s * y * x**2 - 2 * vx * c * x**2 * sqrt(below) - 2 * vy * c * x * y * sqrt(below)
+    alpha1 += 2 * l2 * far * c * vx - 2 * far * c * x**2 * vx - 2 * far * c * y**2 * vx
+    alpha1 += 2 * l2 * s * x * vy - 2 * s * x * y**2 * vy
+    alpha2 = -2 * x**2 * y**2 + y**2 * l2 + 2 * c**2 * y**4 + c**2 * x**4 + x**2 * l2 + c**2 * l2**2 - x**4 - y**4
+    alpha2 += far**2 * c**2 * l2 - 3 * y**2 * l2 * c**2 - 2 * far * c**2 * half - 2 * c**2 * l2 * x**2
+    alpha2 += 3 * c**2 * x**2 * y**2 + 2 * s * c * y * half - far**2 * c**2 * x**2 - far**2 * c**2 * y**2
+    alpha2 += -2 * far * s * c * y * l2 + 2 * s * c * far * y * x**2 + 2 * s * c * far * y**3
+    return vector(alpha0, alpha1, alpha2) / below
 
 
 def _plane_alpha(power: int) -> Any:

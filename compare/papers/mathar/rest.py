@@ -75,7 +75,7 @@ def _below_a_tenth() -> Answer:
     return Answer(holds, f"largest {shown(angle(steepest))}° at latitude {shown(steepest, 8)}°")
 
 
-def _one_curve() -> Answer:
+def _same_curve() -> Answer:
     latitudes = [MP.mpf(10 * k) for k in range(1, 9)]
     angles = [[degrees(paris().but(length=MP.mpf(m), latitude=d).case.rest_angle) for m in (1, 100)] for d in latitudes]
     gap = max(abs(a - b) for a, b in angles)
@@ -144,7 +144,7 @@ def _section_v() -> list[Check]:
             lambda p: _hanging(p).y, remark="at the rest position of the reference"),
         Statement("45_degree", "(45)", "a quartic equation for y", _degree_of_45),
         Statement("45_text", ", after (45)", "deviations from the vertical < 0.1°", _below_a_tenth),
-        Statement("fig1", ", Fig. 1", "l = 1, 10, 100 m indistinguishable", _one_curve),
+        Statement("fig1", ", Fig. 1", "l = 1, 10, 100 m indistinguishable", _same_curve),
         Identity("46_a", "(46), first line", "R̂Ω² (±sinϕ cosφ - cosϕ sinφ) + Ω² (…)(…) + (g/l) sinφ",
             lambda p: tuple(_first_line_of_46(p, sign) for sign in (1, -1)),
             lambda p: tuple(_restoring(p, sign) for sign in (1, -1))),

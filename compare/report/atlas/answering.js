@@ -59,10 +59,10 @@ function answer(files, tolerance, truth) {
     const candidate = candidateOf(files, truth.words);
     const { path, ...result } = judge(candidate, truth, allowedBy(tolerance));
     if (!path) return { ...result, path };
-    const { errors, ...told } = path;
+    const { errors, ...verdict } = path;
     const { t, x, y } = candidate.columns;
     const mine = [t, x, y].map((column) => Float64Array.from(column));
-    return { ...result, path: told, points: thinned(errors), mine };
+    return { ...result, path: verdict, points: thinned(errors), mine };
   } catch (error) {
     if (!(error instanceof Unreadable)) throw error;
     return { refused: error.message };
@@ -75,7 +75,7 @@ if (typeof WorkerGlobalScope !== "undefined") {
     if (data.truth) truth = unpacked(data.truth, data.made);
     else {
       const result = answer(await textsOf(data.files), data.tolerance, truth);
-      postMessage({ ...result, asked: data.asked }, (result.mine ?? []).map((column) => column.buffer));
+      postMessage({ ...result, drop: data.drop }, (result.mine ?? []).map((column) => column.buffer));
     }
   };
 }

@@ -4,7 +4,7 @@
 const [TALL, LEFT, TOP, BOTTOM] = [260, 48, 12, 36];
 const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-const raised = (exponent) => `10${exponent < 0 ? "⁻" : ""}${[...String(Math.abs(exponent))].map((one) => RAISED[one]).join("")}`;
+const raised = (exponent) => `10${exponent < 0 ? "⁻" : ""}${[...String(Math.abs(exponent))].map((digit) => RAISED[digit]).join("")}`;
 
 // Points [[t, error], …] and lines at the tolerance and at the bound; it spans the file.
 function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, wide) {

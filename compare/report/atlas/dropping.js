@@ -7,9 +7,9 @@ const shown = document.getElementById("verdict");
 const tolerance = document.getElementById("tolerance");
 const listeners = []; // called with the columns t, x, y of what was judged
 let last = [];
-let asked = 0; // drops so far: of two the later one is shown
+let drops = 0; // so far: of two the later one is shown
 
-const escaped = (text) => String(text).replace(/[&<>"]/g, (one) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[one]);
+const escaped = (text) => String(text).replace(/[&<>"]/g, (letter) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[letter]);
 // Three digits; a bound is given 1.005 times as large, so that rounding does not take from it.
 const small = (value) => (value === 0 ? "0" : value.toPrecision(3).replace(/\.?0+(e|$)/, "$1"));
 
@@ -31,18 +31,18 @@ function functionMade() {
 
 // What answers files: a worker of the page's own scripts.
 let worker = null;
-async function answered(files, mine) {
+async function answered(files, drop) {
   worker ??= functionMade().then((made) => {
-    const scripts = [...document.querySelectorAll("script.judging")].map((one) => one.textContent);
-    const one = new Worker(URL.createObjectURL(new Blob(scripts, { type: "text/javascript" })));
-    one.postMessage({ truth: page, made });
-    return one;
+    const scripts = [...document.querySelectorAll("script.judging")].map((script) => script.textContent);
+    const started = new Worker(URL.createObjectURL(new Blob(scripts, { type: "text/javascript" })));
+    started.postMessage({ truth: page, made });
+    return started;
   });
-  const one = await worker;
+  const started = await worker;
   return new Promise((done) => {
-    one.onmessage = ({ data }) => data.asked === mine && done(data);
-    one.onerror = (event) => done({ refused: `The script failed: ${event.message}.` });
-    one.postMessage({ files, tolerance: tolerance.value, asked: mine });
+    started.onmessage = ({ data }) => data.drop === drop && done(data);
+    started.onerror = (event) => done({ refused: `The script failed: ${event.message}.` });
+    started.postMessage({ files, tolerance: tolerance.value, drop });
   });
 }
 
@@ -93,11 +93,11 @@ function show(files, result) {
 async function take(files) {
   if (!files.length) return;
   last = [...files];
-  const mine = ++asked;
+  const drop = ++drops;
   shown.className = "working";
   shown.innerHTML = `<p class="word">Judging ${last.map((file) => escaped(file.name)).join(" and ")} …</p>`;
-  const result = await answered(last, mine);
-  if (mine !== asked) return;
+  const result = await answered(last, drop);
+  if (drop !== drops) return;
   show(last, result);
   if (result.mine) for (const listener of listeners) listener(result.mine, result.path.max_error_m);
 }

@@ -32,22 +32,22 @@ class StudyResults:
     """Results of the kept studies for one scene: runs asked for the same digits, and the least error of each method.
 
     Attributes:
-        asked: runs that were asked for the same digits, by name.
+        same_digits: runs that were asked for the same digits, by name.
         least: the most accurate run of each method over `span_s`.
         span_s: in s; 0 if there is no such study.
     """
 
-    asked: dict[str, Cell] = field(default_factory=dict)
+    same_digits: dict[str, Cell] = field(default_factory=dict)
     least: Sequence[Row] = ()
     span_s: float = 0.0
 
     def sentence(self) -> str:
         """Return it in short; empty if nothing is known."""
-        if self.asked:
-            right = sum(cell.status is Status.OK for cell in self.asked.values())
-            wrong = [name for name, cell in self.asked.items() if cell.status is Status.SILENTLY_WRONG]
-            said = f"; silently wrong: {', '.join(wrong)}" if wrong else ", and none was silently wrong"
-            return f"{right} of {len(self.asked)} runs of methods kept what was asked for{said}."
+        if self.same_digits:
+            right = sum(cell.status is Status.OK for cell in self.same_digits.values())
+            wrong = [name for name, cell in self.same_digits.items() if cell.status is Status.SILENTLY_WRONG]
+            ending = f"; silently wrong: {', '.join(wrong)}" if wrong else ", and none was silently wrong"
+            return f"{right} of {len(self.same_digits)} runs of methods kept what was asked for{ending}."
         if self.least:
             best = self.least[0]
             return f"{len(self.least)} methods; the most accurate, {run_name(best)}, is {best.error_m:.1e} m off."
@@ -55,9 +55,9 @@ class StudyResults:
 
 
 def run_name(run: Cell | Row) -> str:
-    """Return the method of a run, with its number type and formulation where they are told."""
-    told = run.formulation if isinstance(run, Row) else run.precision.removeprefix("double, ")
-    return f"{run.method} {told}".strip()
+    """Return the method of a run, with its formulation, and its number type where that is not double."""
+    variant = run.formulation if isinstance(run, Row) else run.precision.removeprefix("double, ")
+    return f"{run.method} {variant}".strip()
 
 
 @dataclass(frozen=True)
@@ -127,9 +127,10 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
         readings.setdefault(_name(golden), {})[golden.manifest.inputs] = golden
     kept = kept_studies(studies)
     scenes = []
-    for name, of in sorted(readings.items()):
-        either = next(iter(of.values()))
-        scenes.append(Entry(of.get("decimal", either), of.get("binary64", either), kept.get(name, StudyResults())))
+    for name, by_inputs in sorted(readings.items()):
+        either = next(iter(by_inputs.values()))
+        decimal, binary64 = by_inputs.get("decimal", either), by_inputs.get("binary64", either)
+        scenes.append(Entry(decimal, binary64, kept.get(name, StudyResults())))
     return scenes
 
 
@@ -157,7 +158,7 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
             scene = document.get("scene")
             if scene is None:
                 for cell in cells.validate_python([NOT_KEPT | row for row in document["rows"]]):
-                    results[cell.scene].asked.setdefault(run_name(cell), cell)  # the first study that has it
+                    results[cell.scene].same_digits.setdefault(run_name(cell), cell)  # the first study that has it
             elif document["t_end"] > results[scene].span_s:
                 results[scene].least, results[scene].span_s = _least(rows_of(document)), float(document["t_end"])
         except (InputError, OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:

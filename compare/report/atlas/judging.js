@@ -74,13 +74,13 @@ function judgedRows(columns, truth) {
   const { t } = columns;
   const last = t[t.length - 1];
   if (last > end + step) {
-    const unit = words.FINER.find((one) => last * ratio(words.TIMES[one]) <= end * (1 + words.SAME) && last > words.FAR * end);
+    const unit = words.FINER.find((finer) => last * ratio(words.TIMES[finer]) <= end * (1 + words.SAME) && last > words.FAR * end);
     const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : "Leave later rows out.";
     throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
   }
-  const found = truthAt(t, truth);
+  const known = truthAt(t, truth);
   const within = SAME_TIME * Math.min(step, truth.omega ? 1 / truth.omega : step);
-  if (found.rows.some((row) => t[row] > (truth.at ? 0 : within))) return found;
+  if (known.rows.some((row) => t[row] > (truth.at ? 0 : within))) return known;
   if (truth.at) throw new Unreadable("No row after t = 0: the file says nothing of the motion.");
   const offsets = t.filter((time) => time > 0).map((time) => time - grid.t[nearest(grid.t, time)]);
   const shift = offsets[0] ?? 0;
@@ -94,7 +94,7 @@ function judgedRows(columns, truth) {
 // Errors of these rows: candidate minus truth.
 function errorsOf(columns, { rows, golden }) {
   const components = {};
-  for (const name of STATE.filter((one) => one in columns)) {
+  for (const name of STATE.filter((column) => column in columns)) {
     components[name] = Float64Array.from(rows, (row, i) => columns[name][row] - golden[name][i]);
   }
   const present = POSITION.filter((name) => name in columns).map((name) => components[name]);
@@ -130,8 +130,8 @@ function judge(candidate, truth, tolerance = null) {
     const apart = columns.t.length - judged.rows.length;
     if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
     if (verdict.path.max_error_m > allowed) {
-      const found = suspicions(columns, judged, errors, truth);
-      verdict.notes.push(...(found.length ? found : unitOfTime(columns, truth)));
+      const mistakes = suspicions(columns, judged, errors, truth);
+      verdict.notes.push(...(mistakes.length ? mistakes : unitOfTime(columns, truth)));
     }
   }
   if (times && truth.transits) {
@@ -176,22 +176,22 @@ function firstWrongPlace(error) {
 function suspicions(columns, { rows, golden }, errors, truth) {
   const { words } = truth;
   const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
-  const told = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: put right, ${rest.toPrecision(2)} m are left.`] : []);
+  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: put right, ${rest.toPrecision(2)} m are left.`] : []);
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
       if (!unit && !axes) continue;
-      const own = [columns.x, columns.y];
-      const left = (row, i) => Math.hypot(xSign * size * own[first][row] - golden.x[i], ySign * size * own[second][row] - golden.y[i]);
+      const plane = [columns.x, columns.y];
+      const left = (row, i) => Math.hypot(xSign * size * plane[first][row] - golden.x[i], ySign * size * plane[second][row] - golden.y[i]);
       if (rows.some((row, i) => left(row, i) > enough)) continue;
-      return told([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], most(rows.map(left)));
+      return explained([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], most(rows.map(left)));
     }
   }
   const { vx, vy } = golden;
   const { x: ex, y: ey } = errors.components;
-  const square = vx.reduce((sum, one, i) => sum + one ** 2 + vy[i] ** 2, 0);
-  const late = -vx.reduce((sum, one, i) => sum + one * ex[i] + vy[i] * ey[i], 0) / square;
-  const rest = most(vx.map((one, i) => Math.hypot(ex[i] + late * one, ey[i] + late * vy[i])));
-  return square ? told([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
+  const square = vx.reduce((sum, u, i) => sum + u ** 2 + vy[i] ** 2, 0);
+  const late = -vx.reduce((sum, u, i) => sum + u * ex[i] + vy[i] * ey[i], 0) / square;
+  const rest = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i])));
+  return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
 }
 
 // The unit in which times are meant: the rows, their times in it, are within 2 % of the truth; a sentence or none.
@@ -230,8 +230,8 @@ function transitErrors(times, truth, until, tolerance) {
   // xdot as the function has it, else near a transit ax times the distance; what stands there twice is no transit at all
   const tangent = (time) => (t.length ? Math.abs(time - t[nearest(t, time)]) * weight[nearest(t, time)] : Infinity);
   const near = (time) => (truth.at ? Math.abs(truth.at(Math.min(time, truth.end))[3]) / truth.omega : tangent(time)) <= tolerance;
-  const few = extra.length <= MOST_EXTRA; // of more, none is excused
-  const spurious = extra.map((time) => few && near(time) && mine.filter((other) => other === time).length === 1);
+  const excusable = extra.length <= MOST_EXTRA; // of more, none is excused
+  const spurious = extra.map((time) => excusable && near(time) && mine.filter((other) => other === time).length === 1);
   const size = (values) => values.reduce((best, value) => Math.max(best, Math.abs(value)), 0);
   return {
     matched: matched.length,

@@ -57,7 +57,7 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
 
 def _group(entry: Entry) -> str:
     flags = {*entry.flags} - {"long"}
-    return next((name for name, of in GROUPS.items() if flags & of), [*GROUPS][-1]) if flags else PLAIN
+    return next((name for name, group in GROUPS.items() if flags & group), [*GROUPS][-1]) if flags else PLAIN
 
 
 def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any] | None, beside: str | None) -> str:
@@ -70,9 +70,9 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any
         made: the golden function, None if it has none.
         beside: the file beside the page that holds the function; None if the page itself does.
     """
-    (first, *others), title = entry.datasets, entry.golden.manifest.title.rstrip(".")
+    (first, *further), title = entry.datasets, entry.golden.manifest.title.rstrip(".")
     fared = parts.methods(entry.studied)
-    readings = [Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}") for golden in others]
+    readings = [Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}") for golden in further]
     return page(
         entry.id,
         [
@@ -132,17 +132,17 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
     transits = ""
     if golden.manifest.counts.transits:
         transits = " A second file with the times of xdot = 0 in a column t has your transits judged as well."
-    wanted = f"a row for {times} … s, or for some of them"
+    rows = f"a row for {times} … s, or for some of them"
     known = "the golden rows alone: the dataset has no golden function"
     if made:
-        wanted = f"rows at any times up to {golden.t[-1]:.15g} s"
+        rows = f"rows at any times up to {golden.t[-1]:.15g} s"
         bounds = ", ".join(f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z"))
         known = f"the golden function, which has {bounds} of the truth at every time (proven)"
     if made and beside:
         size = f"{len(made['coefficients']) / 1e6:.1f} MB"
         known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"
-    words = {"wanted": wanted, "transits": transits, "known": known, "command": entry.score_command()}
-    return Html(Template(source("drop.html").rstrip()).substitute({name: text(of) for name, of in words.items()}))
+    words = {"rows": rows, "transits": transits, "known": known, "command": entry.score_command()}
+    return Html(Template(source("drop.html").rstrip()).substitute({name: text(word) for name, word in words.items()}))
 
 
 def _data(document: dict[str, Any]) -> Html:

@@ -105,22 +105,22 @@ def linked(golden: Golden, name: str, base: str) -> Html:
 
 def inputs(golden: Golden) -> Html:
     """Return the scene's inputs as they stand in the manifest."""
-    return facts(by_field({section: of for section, of in golden.manifest.scene.items() if section != "run"}))
+    return facts(by_field({name: table for name, table in golden.manifest.scene.items() if name != "run"}))
 
 
 def methods(studied: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
-    if studied.asked:
+    if studied.same_digits:
         columns = {"method": "", "outcome": "", **dict.fromkeys(("asked for", "digits kept", "CPU s"), "number")}
         rows, kinds = [], []
-        kept = {name: -1.0 if cell.digits is None else cell.digits for name, cell in studied.asked.items()}
+        kept = {name: -1.0 if cell.digits is None else cell.digits for name, cell in studied.same_digits.items()}
         for name in sorted(kept, key=kept.__getitem__, reverse=True):
-            cell = studied.asked[name]
-            rows.append((name, cell.status.words, _one(cell.asked), _one(cell.digits), _cpu(cell.cpu_s)))
+            cell = studied.same_digits[name]
+            rows.append((name, cell.status.words, _tenths(cell.asked), _tenths(cell.digits), _cpu(cell.cpu_s)))
             kinds.append("" if cell.status is Status.OK else "failed")
-        asked = Table(columns, rows, kinds)
-        parts.append(asked.html("Runs that were asked for the same digits (docs/studies.md)"))
+        same_digits = Table(columns, rows, kinds)
+        parts.append(same_digits.html("Runs that were asked for the same digits (docs/studies.md)"))
     if studied.least:
         runs = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
         least = Table({"method": "", "least error": "number", "its CPU s": "number"}, runs)
@@ -128,7 +128,7 @@ def methods(studied: StudyResults) -> list[Html]:
     return parts
 
 
-def _one(digits: float | None) -> str:
+def _tenths(digits: float | None) -> str:
     return "" if digits is None else f"{max(digits, 0.0):.1f}"
 
 
@@ -179,11 +179,11 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
 def _vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
     reading = names, text_reader, read, candidate
-    found = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
-    said = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
+    tables = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
+    sentences = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
     limits = {name: getattr(judge, name) for name in ("TOLERANCE", "FINER", "FAR", "SAME", "SMALL")}
     axes = [[*order, *signs, text] for (order, signs), (_, text) in conventions.AXES_SAID.items()]
-    return found | said | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
+    return tables | sentences | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
 
 
 def plain(value: object) -> Any:

@@ -9,7 +9,7 @@ const TRAIL = 240; // points of the trail
 const SHARE = 0.15; // of the amplitude, that enlarged errors take up at most
 const MOST_ROWS = 1000; // of a file, in the trail
 let scene = null; // { at, end, period, panels, size }
-let own = null; // { t, x, y, scale } of a dropped file
+let dropped = null; // { t, x, y, scale } of a dropped file
 let now = 0;
 let playing = false;
 let before = 0; // ms, of the last frame
@@ -43,15 +43,15 @@ function dot(context, [x, y], radius, filled) {
 }
 
 // Rows of the file within the trail, each moved away from the golden state of its own time by `scale` times its error.
-function ownRows(from, until) {
-  const [first, last] = [nearest(own.t, from), nearest(own.t, until)];
+function droppedRows(from, until) {
+  const [first, last] = [nearest(dropped.t, from), nearest(dropped.t, until)];
   const each = Math.ceil((last - first + 1) / MOST_ROWS);
   const rows = [];
-  for (let row = first; row <= last; row += each) if (own.t[row] >= from && own.t[row] <= until) rows.push(row);
+  for (let row = first; row <= last; row += each) if (dropped.t[row] >= from && dropped.t[row] <= until) rows.push(row);
   return rows.map((row) => {
-    const golden = scene.at(Math.min(own.t[row], scene.end));
-    const moved = (k, value) => golden[k] + own.scale * (value - golden[k]);
-    return [moved(0, own.x[row]), moved(1, own.y[row])];
+    const golden = scene.at(Math.min(dropped.t[row], scene.end));
+    const moved = (k, value) => golden[k] + dropped.scale * (value - golden[k]);
+    return [moved(0, dropped.x[row]), moved(1, dropped.y[row])];
   });
 }
 
@@ -67,7 +67,7 @@ function draw() {
   context.font = "12px system-ui, sans-serif";
   const begin = Math.max(0, now - scene.period);
   const trail = Array.from({ length: TRAIL + 1 }, (_, i) => scene.at(begin + ((now - begin) * i) / TRAIL));
-  const mine = own && ownRows(begin, now);
+  const mine = dropped && droppedRows(begin, now);
   scene.panels.forEach(([i, j, size], n) => {
     const [left, top] = across > 1 ? [n * side, 0] : [0, n * side];
     const unit = (side / 2 - 14) / size;
@@ -85,7 +85,7 @@ function draw() {
     dot(context, shown(mine[mine.length - 1]), 7, false);
   });
   slider.value = now / scene.end;
-  const enlarged = own ? `; yours in orange${own.scale > 1 ? `, its error times ${own.scale.toLocaleString("en")}` : ""}` : "";
+  const enlarged = dropped ? `; yours in orange${dropped.scale > 1 ? `, its error times ${dropped.scale.toLocaleString("en")}` : ""}` : "";
   player.querySelector("output").textContent = `t = ${now.toPrecision(7)} s of ${page.t_end} s${enlarged}`;
 }
 
@@ -109,9 +109,9 @@ async function press() {
   if (playing) requestAnimationFrame(frame);
 }
 
-function drawOwn([t, x, y], error) {
+function drawDropped([t, x, y], error) {
   const room = (SHARE * page.amplitude_m) / error;
-  own = { t, x, y, scale: room > 1 ? 10 ** Math.floor(Math.log10(room)) : 1 };
+  dropped = { t, x, y, scale: room > 1 ? 10 ** Math.floor(Math.log10(room)) : 1 };
   ready().then((there) => {
     if (!there) return;
     now = Math.min(scene.end, Math.max(t[0] + scene.period, scene.period));
@@ -124,6 +124,6 @@ if (player) {
   slider.addEventListener("input", async () => (await ready()) && ((now = slider.value * scene.end), draw()));
   addEventListener("resize", () => scene && draw());
   still.addEventListener("change", () => playing && press());
-  listeners.push(drawOwn);
+  listeners.push(drawDropped);
   if (page.beside === null) ready().then(draw);
 }

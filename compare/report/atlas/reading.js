@@ -70,18 +70,18 @@ function meaning(word, vocabulary) {
   if (whole(vocabulary.TIME_UNITS).test(text.toLowerCase())) ways.push(["t", text]);
   if (after) ways.push([after[1], after[2]]);
   if (brackets) ways = [[brackets[1], brackets[2]]];
-  for (const [name, said] of ways) {
-    const found = columnOf(name, vocabulary);
-    if (!found) continue;
-    let { column, sign, rank } = found;
-    let unit = said;
-    if (said === text) rank = 2; // it is called by its unit
-    const turned = vocabulary.DIRECTIONS[said.toLowerCase()];
+  for (const [name, suffix] of ways) {
+    const named = columnOf(name, vocabulary);
+    if (!named) continue;
+    let { column, sign, rank } = named;
+    let unit = suffix;
+    if (suffix === text) rank = 2; // it is called by its unit
+    const turned = vocabulary.DIRECTIONS[suffix.toLowerCase()];
     if (turned && column !== "t") {
       column = column.slice(0, -1) + turned[0];
       [sign, unit, rank] = [turned[1], "", 2];
     }
-    if (["t", "time"].includes(said.toLowerCase()) && column !== "t") unit = ""; // x(t)
+    if (["t", "time"].includes(suffix.toLowerCase()) && column !== "t") unit = ""; // x(t)
     const size = unit ? sizeOf(unit, column, vocabulary) : [1, 1];
     if (size) return { column, factor: [size[0] * sign, size[1]], unit, rank };
     if (brackets) return { column, factor: undefined, unit, rank };
@@ -113,65 +113,65 @@ function fieldsOf(line, { separator, comma }, vocabulary) {
 
 // The ways to take a header apart, the most likely first.
 function wordsOf(line, vocabulary) {
-  const ways = [",", ";", "\t"].filter((separator) => line.includes(separator)).map((one) => line.split(one));
+  const ways = [",", ";", "\t"].filter((separator) => line.includes(separator)).map((separator) => line.split(separator));
   const bare = line.trim();
   const joined = bare.replace(pattern(vocabulary.BEFORE_BRACKET, "g"), "");
   ways.push(bare.split(pattern(vocabulary.APART)), joined.split(/\s+/), bare.split(/\s+/));
   return ways.map((way) => (way.length > 1 && !way[way.length - 1].trim() ? way.slice(0, -1) : way));
 }
 
-// The words of the header among the lines above the first row, or those that the number of columns stands for, said so.
+// The words of the header among the lines above the first row, or those that the number of columns stands for.
 function headerOf(above, count, needed, vocabulary) {
   const columns = (way) => new Set(way.map((word) => meaning(word, vocabulary)?.column).filter(Boolean));
   const complete = (way) => needed.every((name) => columns(way).has(name));
   for (const { text, comment, number } of above.slice().reverse()) {
     const ways = wordsOf(text, vocabulary);
     const fitting = ways.filter((way) => way.length === count);
-    const few = comment ? Math.max(Math.min(vocabulary.FEW, needed.length), Math.floor(count / 2)) : 0;
+    const enough = comment ? Math.max(Math.min(vocabulary.FEW, needed.length), Math.floor(count / 2)) : 0;
     const other = (way) => complete(way) && (!comment || columns(way).size === way.length);
-    const found = fitting.find(complete) ?? ways.find(other) ?? fitting.find((way) => columns(way).size >= few);
-    if (!found) continue;
-    if (found.length !== count) {
-      throw new Unreadable(`The first row has ${count} fields, and the header in line ${number} has ${found.length}.`);
+    const header = fitting.find(complete) ?? ways.find(other) ?? fitting.find((way) => columns(way).size >= enough);
+    if (!header) continue;
+    if (header.length !== count) {
+      throw new Unreadable(`The first row has ${count} fields, and the header in line ${number} has ${header.length}.`);
     }
-    return { words: found, said: [] };
+    return { words: header, conventions: [] };
   }
-  if (needed.length === 1 && count === 1 && !above.length) return { words: ["t"], said: [] };
+  if (needed.length === 1 && count === 1 && !above.length) return { words: ["t"], conventions: [] };
   const names = needed.length > 1 && vocabulary.UNNAMED[count];
   if (!names) throw new Unreadable(`No line names the columns: let the first be ${needed.join(",")}.`);
-  const said = [`no header: the columns are taken as ${names.join(", ")}`];
-  return { words: [...names, ...Array(count - names.length).fill("-")], said };
+  const conventions = [`no header: the columns are taken as ${names.join(", ")}`];
+  return { words: [...names, ...Array(count - names.length).fill("-")], conventions };
 }
 
 // Which column stands where, and by what it comes to SI units.
 function layoutOf(words, needed, vocabulary) {
   const meanings = words.map((word) => meaning(word, vocabulary));
-  const places = {};
+  const layout = {};
   for (const name of allColumns(vocabulary)) {
-    const found = meanings.flatMap((one, i) => (one && one.column === name ? [i] : []));
-    const rank = Math.min(...found.map((i) => meanings[i].rank));
-    const best = found.filter((i) => meanings[i].rank === rank);
+    const places = meanings.flatMap((meant, i) => (meant && meant.column === name ? [i] : []));
+    const rank = Math.min(...places.map((i) => meanings[i].rank));
+    const best = places.filter((i) => meanings[i].rank === rank);
     if (best.length > 1) throw new Unreadable(`Two columns are ${name}: ${best.map((i) => words[i].trim()).join(", ")}.`);
     if (!best.length && needed.includes(name)) {
       throw new Unreadable(`There is no column ${name} in ${words.map((word) => word.trim()).join(", ").slice(0, 80)}.`);
     }
     if (!best.length) continue;
-    const one = meanings[best[0]];
-    if (!one.factor) throw new Unreadable(`The unit ${one.unit} of ${name} is not known: write s, m or m/s.`);
-    places[name] = { ...one, at: best[0], word: unquoted(words[best[0]]) };
+    const meant = meanings[best[0]];
+    if (!meant.factor) throw new Unreadable(`The unit ${meant.unit} of ${name} is not known: write s, m or m/s.`);
+    layout[name] = { ...meant, at: best[0], word: unquoted(words[best[0]]) };
   }
-  return places;
+  return layout;
 }
 
 // What is to be said of a header: columns by other names, those not read, units converted; as names.py says it.
 function conventionsOf(words, places, vocabulary) {
   const read = Object.values(places);
-  const renamed = read.filter((one) => one.rank === 2).map((one) => `${one.word} as ${one.factor[0] < 0 ? "-" : ""}${one.column}`);
-  const others = words.filter((word, i) => !read.some((one) => one.at === i)).map(unquoted);
-  const unread = others.filter((word) => !vocabulary.SKIPPED.includes(word)).join(", ");
-  const units = read.filter((one) => Math.abs(one.factor[0]) !== one.factor[1]).map((one) => `${one.column} from ${one.unit}`);
-  const said = renamed.length ? [renamed.join(", ") + (unread && `; not read: ${unread}`)] : [];
-  return units.length ? [...said, `${units.join(", ")}, converted to SI units`] : said;
+  const renamed = read.filter(({ rank }) => rank === 2).map(({ word, factor, column }) => `${word} as ${factor[0] < 0 ? "-" : ""}${column}`);
+  const skipped = words.filter((word, i) => !read.some(({ at }) => at === i)).map(unquoted);
+  const unread = skipped.filter((word) => !vocabulary.SKIPPED.includes(word)).join(", ");
+  const units = read.filter(({ factor }) => Math.abs(factor[0]) !== factor[1]).map(({ column, unit }) => `${column} from ${unit}`);
+  const conventions = renamed.length ? [renamed.join(", ") + (unread && `; not read: ${unread}`)] : [];
+  return units.length ? [...conventions, `${units.join(", ")}, converted to SI units`] : conventions;
 }
 
 // Read columns of a text: {t: […], x: […], …} in SI units, and notes. `needed` columns must be there, times first.
@@ -200,10 +200,10 @@ function readColumns(text, needed, vocabulary, onComment = () => {}) {
       const fields = fieldsOf(line, spelled, vocabulary);
       width = fields.length;
       const count = width - (width > 1 && fields[width - 1] === "" ? 1 : 0);
-      const { words, said } = headerOf(above, count, needed, vocabulary);
+      const { words, conventions } = headerOf(above, count, needed, vocabulary);
       places = layoutOf(words, needed, vocabulary);
       const comma = spelled.comma ? [vocabulary.DECIMAL_COMMA] : [];
-      notes.push(...[...said, ...conventionsOf(words, places, vocabulary), ...comma].map((one) => `Reading: ${one}.`));
+      notes.push(...[...conventions, ...conventionsOf(words, places, vocabulary), ...comma].map((text) => `Reading: ${text}.`));
       for (const name of Object.keys(places)) columns[name] = [];
     }
     const fields = fieldsOf(line, spelled, vocabulary);

@@ -33,7 +33,7 @@ class Experiment:
         id: a stable word, and the name of the file that is kept.
         title: what is changed.
         values: the fields of the scene with their other values.
-        where: where the mistake is, if the error is gone with it; "" if that would not tell.
+        where: where the mistake is, if the error is gone with it; "" if that would not show it.
         finer: by which {setting} is divided.
     """
 
@@ -110,8 +110,8 @@ class Finding:
         """Return what was found, for people."""
         changes = ", ".join(f"{name} = {value}" for name, value in self.changes.items())
         error = "" if self.max_error_m is None else f"the error is {self.max_error_m:.2g} m"
-        said = ": ".join(part for part in (error, self.conclusion) if part)
-        return f"Experiment, {self.title} ({changes}): {said}."
+        results = ": ".join(text for text in (error, self.conclusion) if text)
+        return f"Experiment, {self.title} ({changes}): {results}."
 
 
 @dataclass(frozen=True)
@@ -139,24 +139,24 @@ class Experiments:
 
 
 def possible(scene: Scene, command: str) -> list[Experiment]:
-    """Return the experiments for which a command has the placeholders: those that tell a program all of a change.
+    """Return the experiments for which a command has the placeholders: those that give a program all of a change.
 
     Raises:
         InputError: there are none.
     """
     words, given = set(re.findall(r"(?<!\{)\{(\w+)\}", command)), placeholders(scene)
     angles, places = ({name for name in given if re.match(form, name)} for form in ("a(ng|z)", "v?[xyz]0"))
-    found = []
+    experiments = []
     for experiment in EXPERIMENTS:
         try:
-            other = placeholders(experiment.changed(scene))
+            values = placeholders(experiment.changed(scene))
         except FoucaultError:  # the scene has no such form: twice its swing over the top
             continue
-        others = {name for name, value in other.items() if value != given[name]} - {"z0", "vz0"}
-        told = others - angles <= words or (others & angles and others - places <= words)
-        if (others and told) or (experiment.finer > 1 and SETTING.strip("{}") in words):
-            found.append(experiment)
-    if not found:
+        changed = {name for name, value in values.items() if value != given[name]} - {"z0", "vz0"}
+        complete = changed - angles <= words or (changed & angles and changed - places <= words)
+        if (changed and complete) or (experiment.finer > 1 and SETTING.strip("{}") in words):
+            experiments.append(experiment)
+    if not experiments:
         expected = "a command with a placeholder that an experiment can change"
         raise InputError("--experiments", command, expected, ADVICE)
-    return found
+    return experiments

@@ -1,6 +1,6 @@
 """The explanations of several runs together: causes, and the way in which each follows the scene.
 
-One file does not tell whether a program takes g to be 9.81, or 1.0003 times what it is given, or has a fast clock. Of a
+One file does not show whether a program takes g to be 9.81, or 1.0003 times what it is given, or has a fast clock. Of a
 scene with another g these are different motions. So the numbers of all runs stand side by side as those of one file do,
 and are read in the same way.
 """
@@ -25,14 +25,14 @@ from ..explanation.causes import Cause, causes_of, fitted_number
 from ..explanation.explain import KnownScene
 from ..explanation.families import Fit, fits_of
 from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
-from ..explanation.gate import Evidence, may_be_told
+from ..explanation.gate import Evidence, supported_causes
 from ..explanation.programs import Program
 from ..explanation.readings import Reading
 from ..explanation.stepped import LONGEST, Steps, step_cause
 
 # how a cause follows the scene
 RULE, TYPED, FACTOR = "", ", whatever it is given", ", in proportion to what it is given"
-INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")  # numbers that a scene, or {setting}, tells
+INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")  # numbers that a scene, or {setting}, gives
 CLOCK = fitted_number("clock", "clock", "moves on by {value} s while its clock counts one", "pace", stage="clock")
 TRIED = 30  # readings of a family that are run
 EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
@@ -60,11 +60,11 @@ class Trial:
     @cached_property
     def causes(self) -> dict[tuple[str, str, int], Cause]:
         """The mistakes that a program of its scene may have, by family, id, and number among those of one id."""
-        found, seen = {}, defaultdict[tuple[str, str], Iterator[int]](count)
+        causes, seen = {}, defaultdict[tuple[str, str], Iterator[int]](count)
         for kind in ("sphere", *MODELS):
             for cause in (*causes_of(self.case, kind), CLOCK):
-                found[kind, cause.id, next(seen[kind, cause.id])] = cause
-        return found
+                causes[kind, cause.id, next(seen[kind, cause.id])] = cause
+        return causes
 
     def given(self, name: str) -> float:
         """Return a number that the program was given."""
@@ -144,18 +144,18 @@ class JointCase(Case):
         return self.runs[0].case.enough / run.case.enough
 
     def side_by_side(self, rows: Sequence[Array]) -> Array:
-        """Return rows of each run as those of one."""
-        return np.concatenate([one * self.weight(run) for one, run in zip(rows, self.runs, strict=True)])
+        """Return positions of each run as those of one."""
+        return np.concatenate([positions * self.weight(run) for positions, run in zip(rows, self.runs, strict=True)])
 
     def positions(self, program: Program) -> Array:
         """Return what a program writes in all runs."""
         assert isinstance(program, Joint)
         made = zip(self.runs, program.programs, strict=True)
-        return self.side_by_side([run.case.positions(one) for run, one in made])
+        return self.side_by_side([run.case.positions(run_program) for run, run_program in made])
 
     def _fit(self, kind: str, fits: Sequence[Fit]) -> Fit:
         weights = [self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times)) for run in self.runs]
-        fits = [replace(one, rest=w * one.rest, slopes=w * one.slopes) for w, one in zip(weights, fits, strict=True)]
+        fits = [replace(fit, rest=w * fit.rest, slopes=w * fit.slopes) for w, fit in zip(weights, fits, strict=True)]
         blocks = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
         slopes = np.block([[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks])
         free = tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free)
@@ -163,13 +163,13 @@ class JointCase(Case):
         return Fit(kind, np.concatenate([fit.theta for fit in fits]), rest, free, slopes)
 
     def causes(self, kind: str) -> list[Cause]:
-        """Return the causes of a family in every way in which the runs may tell them apart."""
-        found = []
+        """Return the causes of a family in every way in which the runs may distinguish them."""
+        causes = []
         for key, cause in self.runs[0].causes.items():
-            told = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
-            ways = (TYPED, FACTOR)[: 1 + told] if cause.free else (RULE, TYPED)
-            found += [_following(Part(key, cause, way), told) for way in ways if key[0] == kind]
-        return found
+            varied = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
+            ways = (TYPED, FACTOR)[: 1 + varied] if cause.free else (RULE, TYPED)
+            causes += [_following(Part(key, cause, way), varied) for way in ways if key[0] == kind]
+        return causes
 
     def readings(self, most: float = 1.0) -> list[Reading]:
         """Return the readings of all runs that leave of each no more than may be left, `most` times; the best first."""
@@ -177,8 +177,8 @@ class JointCase(Case):
         fits = [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
         finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
         readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
-        run = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
-        return sorted((reading for reading in run if self.off(reading) <= most), key=lambda reading: reading.score)
+        readings = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
+        return sorted((reading for reading in readings if self.off(reading) <= most), key=lambda reading: reading.score)
 
     def off(self, reading: Reading) -> float:
         """Return the most that a reading leaves of a run, over what may be left."""
@@ -196,10 +196,10 @@ class JointCase(Case):
         """Return the case with what steps do to the programs of a reading taken from the rows, and that cause."""
         program, seen, causes = self.right if reading is None else reading.program, [], []
         assert isinstance(program, Joint)
-        for run, one in zip(self.runs, program.programs, strict=True):
+        for run, run_program in zip(self.runs, program.programs, strict=True):
             taken = replace(steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0)))
             case = run.case.part(int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum()))
-            pendulum, theta = case.pendulum_of(one)
+            pendulum, theta = case.pendulum_of(run_program)
             moved = replace(taken, **vars(pendulum)).rows(theta, case.rows.times, 2)
             effect = moved - pendulum.rows(theta, case.rows.times, 2)
             case = replace(case, rows=replace(case.rows, positions=case.rows.positions - effect))
@@ -207,7 +207,7 @@ class JointCase(Case):
             causes.append(step_cause(taken, effect))
         return JointCase.of(seen), causes[0]
 
-    def told(self, reading: Reading, *besides: Deviation) -> Explanation:
+    def explanation_of(self, reading: Reading, *besides: Deviation) -> Explanation:
         """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
         assert isinstance(reading.program, Joint)
         case, program = self.runs[0].case, reading.program.programs[0]
@@ -215,15 +215,15 @@ class JointCase(Case):
         known, clean = tuple(cause.id for cause in read), clean_share(case, program.kind)
         spacing = float(times[1] - times[0])
         evidence = Evidence(left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known)
-        causes = tuple(may_be_told(read, evidence))
+        causes = tuple(supported_causes(read, evidence))
         return Explanation(causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m)
 
 
-def _following(part: Part, told: bool) -> Cause:
-    """Return a cause that changes the programs of all runs; its text says how, if the runs tell that."""
+def _following(part: Part, varied: bool) -> Cause:
+    """Return a cause that changes the programs of all runs; its text says how, if the runs varied its number."""
 
     def change(program: Program) -> Program:
         changed = part.cause.change(program)
         return changed.changed(parts=(*changed.parts, part)) if isinstance(changed, Joint) else changed
 
-    return replace(part.cause, change=change, text=part.cause.text + part.way * told)
+    return replace(part.cause, change=change, text=part.cause.text + part.way * varied)

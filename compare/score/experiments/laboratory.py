@@ -21,7 +21,7 @@ from .findings import Experiment, Experiments, Finding
 from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
 
 WAYS = TYPED, FACTOR  # how a step follows {setting}
-ONE_THING = {"turn": "coriolis"}  # Ω upwards alone, and a plane turned by hand, may be one motion
+SAME_MOTION = {"turn": "coriolis"}  # Ω upwards alone, and a plane turned by hand, may be one motion
 LEAST_RUNS = 2  # by which a cause is measured
 UNSOLVED = (FoucaultError, ArithmeticError, np.linalg.LinAlgError)  # no program solves such a scene, or fits its rows
 Run = Callable[[Experiment, Scene], Candidate]
@@ -30,63 +30,65 @@ Run = Callable[[Experiment, Scene], Candidate]
 class Laboratory:
     """The runs of a program so far, and what they show."""
 
-    def __init__(self, candidate: Candidate, scene: Scene, allowed_m: float, told: Explanation, run: Run) -> None:
+    def __init__(
+        self, candidate: Candidate, scene: Scene, allowed_m: float, explanation: Explanation, run: Run
+    ) -> None:
         """Begin with the first run.
 
         Args:
             candidate: its output as it was given.
             scene: that it was given, in the reading that it was scored in.
             allowed_m: distance in m that counts as agreement.
-            told: of its one file.
+            explanation: of its one file.
             run: runs it for an experiment in a scene; raises a FoucaultError.
         """
-        self._problem, self._allowed_m, self._told, self._run = KnownScene.of(scene), allowed_m, told, run
-        self._rename = any(convention.id in RENAMED for convention in told.conventions)  # axes as they were read
+        self._problem, self._allowed_m, self._run, self._explanation = KnownScene.of(scene), allowed_m, run, explanation
+        self._rename = any(convention.id in RENAMED for convention in explanation.conventions)  # axes as they were read
         self._reach = 0.0
         self._findings: list[Finding] = []
         self._likely: list[tuple[Steps, str]] | None = None
         self._runs = [self._trial(self._problem, candidate, 1.0)]
 
     def measured(self, possible: Sequence[Experiment]) -> tuple[Experiments, Explanation]:
-        """Make experiments until they tell one explanation, and return what they found, and that explanation."""
-        told: list[Explanation] = []
+        """Make experiments until one explanation is left, and return what they found, and that explanation."""
+        explanations: list[Explanation] = []
         with np.errstate(all="ignore"):
             for experiment in possible:
                 if self._make(experiment) and len(self._runs) > LEAST_RUNS:
-                    told = self._explanations()
-                    if len(told) < 2:  # what does not make these files makes no more of them
+                    explanations = self._explanations()
+                    if len(explanations) < 2:  # what does not make these files makes no more of them
                         break
             if 1 < len(self._runs) <= LEAST_RUNS:  # the program is fit for no more
-                told = self._explanations()
-            known = bool(told)
-            told = told or self._of_integrator()
-        texts = ["; it ".join(cause.text for cause in one.causes) for one in told]
+                explanations = self._explanations()
+            known = bool(explanations)
+            explanations = explanations or self._of_integrator()
+        texts = ["; it ".join(cause.text for cause in explanation.causes) for explanation in explanations]
         files = f"the {len(self._runs)} files"
         text = f"Measured: {'one explanation makes' if known else 'an integrator is at fault, say'} {files}."
-        if len(told) > 1:
+        if len(explanations) > 1:
             text = f"Cannot be told apart by these experiments: your program {', or '.join(texts)}."
-        elif not told:
+        elif not explanations:
             text = f"No known mistake makes {files}: nothing is named."
-        ids = tuple(tuple(cause.id for cause in one.causes) for one in told)
-        unknown = replace(self._told, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
-        best = told[0] if len(told) == 1 else unknown
-        same = {cause.id for cause in self._told.causes} == set().union(*ids)
-        best = replace(best, conventions=self._told.conventions, model=self._told.model if same else None)
-        return Experiments(tuple(self._findings), ids, text), self._told if len(self._runs) == 1 else best
+        ids = tuple(tuple(cause.id for cause in explanation.causes) for explanation in explanations)
+        unknown = replace(self._explanation, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
+        best = explanations[0] if len(explanations) == 1 else unknown
+        same = _ids(self._explanation) == set().union(*ids)
+        best = replace(best, conventions=self._explanation.conventions, model=self._explanation.model if same else None)
+        return Experiments(tuple(self._findings), ids, text), self._explanation if len(self._runs) == 1 else best
 
     def _explanations(self) -> list[Explanation]:
         """Return what makes the files of all runs; where nothing does, with the steps of a method on the sphere."""
         try:
             case = JointCase.of(self._runs)
-            told = _told(case)
-            if self._likely is None and not told:
+            explanations = _explanations_of(case)
+            if self._likely is None and not explanations:
                 self._likely = [(steps, way) for steps in likely_steps(self._runs[0].case, None) for way in WAYS]
-            while not told and self._likely:  # what does not make these files makes no more of them
+            while not explanations and self._likely:  # what does not make these files makes no more of them
                 steps, way = self._likely[0]
                 near = case.without_steps(steps, way)[0].readings(math.inf)
-                told = _told(*case.without_steps(steps, way, near[0])) if near else []
-                self._likely = self._likely[not told :]
-            return told
+                explanations = _explanations_of(*case.without_steps(steps, way, near[0])) if near else []
+                self._likely = self._likely[not explanations :]
+            return explanations
         except UNSOLVED:
             return []
 
@@ -99,13 +101,14 @@ class Laboratory:
                 if changed > first.case.enough:
                     return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
         try:
-            readers = [(run.case, one) for run in self._runs for one in readers_of(run.case, list(run.fits.values()))]
+            read = [(run.case, readers_of(run.case, list(run.fits.values()))) for run in self._runs]
         except UNSOLVED:
             return []
-        drifting = {id(case) for case, one in readers if one.right.kind == "sphere" and one.drifts(case, one.right)}
+        spheres = [(case, reader) for case, readers in read for reader in readers if reader.right.kind == "sphere"]
+        drifting = {id(case) for case, reader in spheres if reader.drifts(case, reader.right)}
         error_m = _error_m(first)
-        told = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
-        return [told] if len(drifting) == len(self._runs) > LEAST_RUNS else []
+        explanation = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
+        return [explanation] if len(drifting) == len(self._runs) > LEAST_RUNS else []
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""
@@ -113,20 +116,20 @@ class Laboratory:
         problem, changes = KnownScene.of(experiment.changed(scene)), experiment.values(scene)
         if experiment.finer > 1:
             changes[SETTING] = f"1/{experiment.finer} of the first"
-        made, conclusion = None, "its file is read in another way than the first; nothing follows from it"
+        trial, conclusion = None, "its file is read in another way than the first; nothing follows from it"
         try:
             candidate = self._run(experiment, problem.scene)
-            made = self._trial(problem, candidate, 1 / experiment.finer) if candidate.positions else None
+            trial = self._trial(problem, candidate, 1 / experiment.finer) if candidate.positions else None
         except UNSOLVED as error:
             conclusion = f"{str(error).rstrip('.')}; nothing follows from it"
         error_m = None
-        if made is not None and _conventions(made) == _conventions(self._runs[0]):
-            self._runs.append(made)
-            error_m = _error_m(made)
-            gone = error_m <= made.case.enough
+        if trial is not None and _conventions(trial) == _conventions(self._runs[0]):
+            self._runs.append(trial)
+            error_m = _error_m(trial)
+            gone = error_m <= trial.case.enough
             conclusion = f"what is wrong is {experiment.where}" if gone else f"it is not {experiment.where} alone"
-        said = conclusion if experiment.where or error_m is None else ""
-        self._findings.append(Finding(experiment.id, experiment.title, changes, error_m, said))
+            conclusion = conclusion if experiment.where else ""
+        self._findings.append(Finding(experiment.id, experiment.title, changes, error_m, conclusion))
         return error_m is not None
 
     def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
@@ -139,20 +142,25 @@ class Laboratory:
         return Trial(problem, replace(case, allowed_m=self._allowed_m * reach / self._reach), setting)
 
 
-def _told(case: JointCase, *step: Deviation) -> list[Explanation]:
-    """Return the explanations of a case, beside a step, the likeliest first; of those of the same things one."""
-    told: list[Explanation] = []
-    things: list[set[str]] = []
+def _explanations_of(case: JointCase, *step: Deviation) -> list[Explanation]:
+    """Return the explanations of a case, beside a step, the likeliest first; of those of the same groups one."""
+    explanations: list[Explanation] = []
+    explained: list[set[str]] = []
     for reading in case.readings():
-        one = case.told(reading, *step)
-        groups = {ONE_THING.get(cause.group, cause.group) for cause in reading.causes}
-        ids = {cause.id for cause in one.causes}
-        same = groups in things or any({cause.id for cause in other.causes} <= ids for other in told)
-        if ids and not same and one.score <= (told or [one])[0].score + EQUAL:
-            told.append(one)
-            things.append(groups)
-    sets = [{cause.id for cause in one.causes} for one in told]
-    return [one for one, ids in zip(told, sets, strict=True) if not any(fewer < ids for fewer in sets)]
+        explanation = case.explanation_of(reading, *step)
+        groups = {SAME_MOTION.get(cause.group, cause.group) for cause in reading.causes}
+        ids = _ids(explanation)
+        same = groups in explained or any(_ids(likelier) <= ids for likelier in explanations)
+        least = explanations[0].score if explanations else explanation.score
+        if ids and not same and explanation.score <= least + EQUAL:
+            explanations.append(explanation)
+            explained.append(groups)
+    sets = [_ids(explanation) for explanation in explanations]
+    return [explanations[i] for i, ids in enumerate(sets) if not any(fewer < ids for fewer in sets)]
+
+
+def _ids(explanation: Explanation) -> set[str]:
+    return {cause.id for cause in explanation.causes}
 
 
 def _error_m(trial: Trial) -> float:

@@ -169,7 +169,7 @@ class Case:
 
     @property
     def floor(self) -> float:
-        """Root mean square in m below which nothing is asked."""
+        """Root mean square in m below which no error needs a cause."""
         return max(self.rows.noise, self.allowed_m / 3)
 
     @property

@@ -24,7 +24,7 @@ from .phasors import as_angles, fit_phasors, sinc
 NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
 FLAT = "gives z a constant: its bob does not rise as it swings"
 SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
-OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is said
+OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is reported
 SLIGHT = 1e-9  # and by more than this, heights are left out
 ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
@@ -131,35 +131,35 @@ def _flat(rows: Rows) -> Rows:
 
 def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
-    row, last = rows.positions[[0, -1]]
-    released = any(is_release(one, release, rows.noise) for one in (row, last))
-    if released or not rows.starts or np.hypot(*row[:2]) == 0:
+    first, last = rows.positions[[0, -1]]
+    released = any(is_release(row, release, rows.noise) for row in (first, last))
+    if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
-    others = [(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()]
-    others += [(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")]
-    units = [(1.0, ""), *others, (1 / length, "is in cord lengths (x/l)")]
+    units = [(1.0, ""), *((1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items())]
+    units += [(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")]
+    units += [(1 / length, "is in cord lengths (x/l)")]
     ways = [*AXES_SAID]
-    for one, (scale, text), (order, signs) in itertools.product((row, last), units, ways if rename else ways[:1]):
-        if is_release(one[[*order]] / scale * np.array(signs), release, rows.noise / scale):
+    for row, (scale, text), (order, signs) in itertools.product((first, last), units, ways if rename else ways[:1]):
+        if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _renamed(_in_metres(rows, scale, text, length), order, signs)
     # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
     near = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
-    if np.abs(row[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
+    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
         near += [(units[0], way) for way in ways[1:] if rename]
     for (scale, text), (order, signs) in near:
-        if np.abs(row[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
+        if np.abs(first[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
             return _renamed(_in_metres(rows, scale, text, length), order, signs)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
     polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
     for (unit, size), expected in itertools.product((("degrees", 180 / math.pi), ("radians", 1.0)), (angles, polar)):
-        if np.abs(row[:2] / size - expected).max() <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size:
+        if np.abs(first[:2] / size - expected).max() <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size:
             theta = rows.plane / size
             plane = length * np.sin(theta)
             if expected is polar:
                 plane = length * theta * sinc(np.hypot(theta[:, 0], theta[:, 1]))[:, None]
             text = f"gives x and y as angles of the cord in {unit}"
-            convention = Deviation("angles", text, float(np.abs(row).max()))
+            convention = Deviation("angles", text, float(np.abs(first).max()))
             return rows.changed(convention, positions=plane, noise=rows.noise / size * length)
     return replace(rows, starts=False)
 
@@ -172,8 +172,9 @@ def _in_metres(rows: Rows, scale: float, text: str, length: float) -> Rows:
     if not text:
         return rows
     p = rows.positions / scale
-    # whether it keeps the cord was asked in the wrong unit
-    rows = replace(rows, conventions=tuple(said for said in rows.conventions if said.id != "off_the_sphere"))
+    # whether it keeps the cord was judged in the wrong unit
+    kept = tuple(convention for convention in rows.conventions if convention.id != "off_the_sphere")
+    rows = replace(rows, conventions=kept)
     convention = Deviation("unit_of_length", text, largest(p - rows.positions))
     made = rows.changed(convention, positions=p, noise=rows.noise / scale)
     if p.shape[1] < 3:
@@ -207,7 +208,7 @@ def _from_zero(rows: Rows, release: Array) -> Rows:
     return rows.changed(convention, times=rows.times - rows.times[0], starts=True)
 
 
-def other_ways(rows: Rows, release: Array) -> Iterator[Rows]:
+def other_conventions(rows: Rows, release: Array) -> Iterator[Rows]:
     """Yield rows that were made right as those of other conventions between which row 0 does not decide."""
     if 0 < rows.times[0] < rows.times[-1]:  # a clock that starts late, and a release that is off
         yield _from_zero(rows, release)

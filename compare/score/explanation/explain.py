@@ -1,4 +1,4 @@
-"""Explain a disagreement: conventions, then the family of models, then the causes that its numbers tell."""
+"""Explain a disagreement: conventions, then the family of models, then the causes that its numbers show."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
 from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest, rms
 from .causes import NAMED
-from .conventions import ROUGHLY, axes, clock, digits, heights, other_ways, rounded_clock, shifted, unit_of_time
+from .conventions import ROUGHLY, axes, clock, digits, heights, other_conventions, rounded_clock, shifted, unit_of_time
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
 from .gate import SHARE
@@ -107,15 +107,16 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     problem = KnownScene.of(scene)
     rows = problem.rows(times, columns)
     best = first_good_explanation(problem.case(rows, allowed_m), scene)
-    others = list(other_ways(rows, problem.start)) if best.corrected_m > allowed_m else []
+    alternatives = list(other_conventions(rows, problem.start)) if best.corrected_m > allowed_m else []
     if any(convention.id in RENAMED for convention in rows.conventions):
-        others.append(problem.rows(times, columns, rename=False))  # the release may be at fault, and not the names
-    for other in others:
-        told = first_good_explanation(problem.case(other, allowed_m), scene)
-        if told.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in told.causes):
-            best, rows = min((best, rows), (told, other), key=lambda pair: pair[0].score)
-    clock = [part.size_m for part in best.conventions if part.id in ("rows_early", "rows_late")]
-    if clock and not best.known and clock[0] < SHARE * best.corrected_m:  # what is left may look like it
+        # the release may be at fault, and not the names
+        alternatives.append(problem.rows(times, columns, rename=False))
+    for alternative in alternatives:
+        explanation = first_good_explanation(problem.case(alternative, allowed_m), scene)
+        if explanation.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in explanation.causes):
+            best, rows = min((best, rows), (explanation, alternative), key=lambda pair: pair[0].score)
+    shifts = [convention.size_m for convention in best.conventions if convention.id in ("rows_early", "rows_late")]
+    if shifts and not best.known and shifts[0] < SHARE * best.corrected_m:  # what is left may look like it
         rows = problem.rows(times, columns, late=False)
         best = first_good_explanation(problem.case(rows, allowed_m), scene)
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}

@@ -12,14 +12,14 @@ from ...candidates.candidate import Deviation
 from .case import AS_IF, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
-from .gate import CLEAN, Evidence, loose, may_be_told, without_doubtful_steps
+from .gate import CLEAN, Evidence, loose, supported_causes, without_doubtful_steps
 from .programs import NAMES, Program
 from .readings import Reader, Reading, adjusted
 
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
 POLISHED = 3  # steps by which fitted numbers are moved
-TIE = 0.2  # decades: readings that may as well be true, and are told apart by what they leave below the tolerance
+TIE = 0.2  # decades: readings that may as well be true, and are distinguished by what they leave below the tolerance
 FINEST = 1e-3  # of the tolerance: below it a program's own rounding begins
 EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
 BETTER = 0.9  # of what was left, for a step that is taken
@@ -63,14 +63,14 @@ def best_of(case: Case, stepped: bool = False) -> Reading | None:
     finest = max(case.rows.noise, 1.2 * least, FINEST * case.floor)
     if not stepped and run and _is_tied(run):
         exact = ranked(case, readers_of(case, fits, finest), causes)
-        run = next((one for one in (exact, run) if one[0].rest <= EXACT * finest), [])
+        run = next((readings for readings in (exact, run) if readings[0].rest <= EXACT * finest), [])
     best = polished(case, run[0]) if run else None
     if best is None or stepped:
         return best
     if case.rows.plane.size <= len(NAMES):  # a family fits any such rows: what leaves much of them says nothing
         return best if best.rest <= case.enough else None
-    one_of_many = any(cause.free or cause.group == "g" for cause in best.causes)  # 9.81, 9.80665 and so on
-    share = FITTED_SHARE if one_of_many else NAMED_SHARE
+    many_values = any(cause.free or cause.group == "g" for cause in best.causes)  # 9.81, 9.80665 and so on
+    share = FITTED_SHARE if many_values else NAMED_SHARE
     return best if best.rest <= max(share * case.error, noise) else None
 
 
@@ -118,7 +118,7 @@ def ranked(
         least = min((reading.score + EXTRA[reading.reader.right.kind] for reading in run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
         likely = reader.readings(causes_of(reader.right.kind), most)
-        likely = [one for one in likely if sum(bool(cause.free) for cause in one.causes) < numbers][:tried]
+        likely = [reading for reading in likely if sum(bool(cause.free) for cause in reading.causes) < numbers][:tried]
         likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
         for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
             leaves = rms(case.left(reading.program))
@@ -152,9 +152,9 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     shown = ("release.x", "release.y") if rows.starts and rows.times[0] == 0 else ()
     evidence = Evidence(corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown)
     read = [*sized(case, reading), *([] if step is None else [step])]
-    causes = list(may_be_told(read, evidence))
+    causes = list(supported_causes(read, evidence))
     program = _with(reading, causes)
-    if program != reading.program:  # what is not told is not put right
+    if program != reading.program:  # a cause that is not reported is not put right
         left = case.left(program)
         corrected = largest(left)
         causes = without_doubtful_steps(causes, corrected, enough)
@@ -175,21 +175,21 @@ def clean_share(case: Case, kind: str) -> float:
     return max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
 
 
-def _with(reading: Reading, told: Sequence[Deviation]) -> Program:
-    """Return the program that has, of the causes of a reading, those that are told."""
-    words = {cause.id.removeprefix(f"{AS_IF}.") for cause in told}
+def _with(reading: Reading, reported: Sequence[Deviation]) -> Program:
+    """Return the program that has, of the causes of a reading, those that are reported."""
+    words = {cause.id.removeprefix(f"{AS_IF}.") for cause in reported}
     drift = {"site.gravity", "pendulum.length", "pendulum.drag"} if "integrator_loose" in words else set()
-    kept = [part for part in reading.causes if part.id in words | drift or part.stage == "integrator"]
+    kept = [cause for cause in reading.causes if cause.id in words | drift or cause.stage == "integrator"]
     if len(kept) == len(reading.causes):
         return reading.program
-    return reading.reader.without(reading, [part for part in reading.causes if part not in kept]).program
+    return reading.reader.without(reading, [cause for cause in reading.causes if cause not in kept]).program
 
 
 def _without_needless(case: Case, reading: Reading) -> Reading:
     """Return a reading without the causes without which what is left is within the tolerance as well."""
     while reading.causes:
         fewer = [reading.reader.without(reading, [cause]) for cause in reading.causes]
-        left = {largest(case.left(one.program)): one for one in fewer}
+        left = {largest(case.left(shorter.program)): shorter for shorter in fewer}
         least = min(filter(math.isfinite, left), default=math.inf)
         if least > case.allowed_m:
             break
@@ -217,8 +217,8 @@ def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
         after = case.positions(program)
         size = largest(after - before)
         if cause is not None and size <= case.enough:  # another cause, put right before it, may have made it small
-            others = reading.reader.without(reading, [cause]).program
-            size = largest(case.positions(reading.program) - case.positions(others))
+            without = reading.reader.without(reading, [cause]).program
+            size = largest(case.positions(reading.program) - case.positions(without))
         yield Deviation(word, text, size, stage, value, shift, uncertainty)
         before = after
 

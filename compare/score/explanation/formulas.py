@@ -33,7 +33,7 @@ GAIN = 0.9  # of what was left: a step that leaves more is not taken
 WINDOW = 4.0  # ratio of the lengths of one window and the one before
 HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
 SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
-FLAT = 1e-12  # of the largest: products whose share in the rows is less are not told apart
+FLAT = 1e-12  # of the largest: products whose share in the rows is less are not distinguished
 MOST = 3  # coefficients that are off
 
 
@@ -59,7 +59,7 @@ class Formula:
         return replace(self, beta=-self.beta, coefficients=self.coefficients * np.array([[1], [-1], [1], [-1], [1]]))
 
     def fit(self, times: Array, right: Program) -> Fit:
-        """Return its rates as a fit of theta: β and ω² alone are told by it."""
+        """Return its rates as a fit of theta: of that they give β and ω² alone."""
         theta = right.theta()
         turn, pull = NAMES.index("turn_z"), NAMES.index("pull_z")
         # γ1 γ2 = β² - ω² is the pull of the model whose phasors have these rates
@@ -78,7 +78,7 @@ class Formula:
         theta = program.theta()
         start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
         push = (speed + 1j * self.beta * start) / self.omega
-        parts = [start, -1j * start, push, -1j * push, 0j]
+        model = [start, -1j * start, push, -1j * push, 0j]  # of x and y: real and imaginary part
         size = float(np.abs(self.coefficients).max())
 
         def number(value: float) -> str:
@@ -86,8 +86,8 @@ class Formula:
 
         sentences = []
         for i, name in enumerate("xy"):
-            for product, value, part in zip(PRODUCTS, self.coefficients[:, i], parts, strict=True):
-                right = (part.real, part.imag)[i]
+            for product, value, both in zip(PRODUCTS, self.coefficients[:, i], model, strict=True):
+                right = (both.real, both.imag)[i]
                 if abs(value - right) > same:
                     where = f"in the formula of {name}, {product} has {number(value)} m"
                     sentences.append(f"{where} where the model has {number(right)} m")
@@ -154,9 +154,9 @@ def _basis(times: Array, omega: float, beta: float) -> Array:
 
 def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Iterator[Array]:
     """Yield d rows / d ω and d rows / d β, each of shape (rows, 2)."""
-    cc, cs, sc, ss, one = _basis(times, omega, beta).T
-    none = np.zeros_like(one)
-    for changed in ([-sc, -ss, cc, cs, none], [-cs, cc, -ss, sc, none]):
+    cc, cs, sc, ss, constant = _basis(times, omega, beta).T
+    zero = np.zeros_like(constant)
+    for changed in ([-sc, -ss, cc, cs, zero], [-cs, cc, -ss, sc, zero]):
         yield times[:, None] * (np.column_stack(changed) @ coefficients)
 
 

@@ -1,4 +1,4 @@
-"""The gate of all that is told of a reading: a cause that the rows speak for, and that nothing else looks like."""
+"""The gate of an explanation: it lets through a cause that the rows speak for, and that nothing else looks like."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ def loose(size_m: float, stage: str = "integrator") -> Deviation:
     return Deviation("integrator_loose", LOOSE, size_m, stage)
 
 
-def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Deviation]:
-    """Yield what may be told of causes that were read from the rows."""
+def supported_causes(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Deviation]:
+    """Yield the causes, read from the rows, that these speak for; a number that nobody typed as a motion like it."""
     if any(not is_likely(cause) or not math.isfinite(cause.size_m) for cause in causes):
         return
     allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
@@ -127,20 +127,20 @@ def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
     if not _is_step(cause) or not cause.uncertainty:
         return cause
     assert cause.value is not None
-    many = round(evidence.spacing / cause.value)
-    doubt, off = evidence.clean * many, abs(evidence.spacing / cause.value - many)
+    steps = round(evidence.spacing / cause.value)
+    doubt, off = evidence.clean * steps, abs(evidence.spacing / cause.value - steps)
     too_fine = cause.value * evidence.frequency < FINEST
-    if not many or off > max(doubt, APART) or evidence.clean >= 1 or too_fine:
+    if not steps or off > max(doubt, APART) or evidence.clean >= 1 or too_fine:
         return loose(cause.size_m)
     if doubt >= 1 / 2:
         return replace(cause, uncertainty=max(cause.uncertainty, evidence.clean * cause.value))
-    step = evidence.spacing / many
+    step = evidence.spacing / steps
     text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
     return replace(cause, value=step, shift=step, uncertainty=0.0, text=text)
 
 
 def _drift_as_step(causes: Sequence[Deviation], evidence: Evidence) -> list[Deviation]:
-    """Return causes with a frequency that is off by little told as a step's error.
+    """Return causes in which a step's error stands for a frequency that is off by little.
 
     An integrator with a variable step moves the frequency and the amplitude, as no input does and no fixed step.
     """
@@ -148,17 +148,18 @@ def _drift_as_step(causes: Sequence[Deviation], evidence: Evidence) -> list[Devi
     drag = fitted.get("pendulum.drag")
     slow = drag is not None and abs(drag.shift or 0.0) < 0.1 * STEP_LIKE * evidence.frequency
     steps = any(cause.stage == "integrator" for cause in causes)
-    told = list(causes)
+    kept = list(causes)
     for word in ("site.gravity", "pendulum.length"):
         cause = fitted.get(word)
         if cause is None or not abs(cause.shift or 0.0) < STEP_LIKE * abs(cause.value or 0.0):
             continue
         if slow and drag is not None:
-            return [*(part for part in told if part not in (drag, cause)), loose(drag.size_m + cause.size_m)]
+            return [*(other for other in kept if other not in (drag, cause)), loose(drag.size_m + cause.size_m)]
         if not evidence.agrees and evidence.left_m > CLEAN * cause.size_m:
-            others = [part for part in told if part is not cause]
-            told = others if steps else [*others, loose(cause.size_m)]
-    return told
+            kept = [other for other in kept if other is not cause]
+            if not steps:
+                kept.append(loose(cause.size_m))
+    return kept
 
 
 def is_the_scenes(cause: Deviation, allowed_m: float) -> bool:
@@ -186,14 +187,14 @@ def is_typed(cause: Deviation, within: float = 0.0) -> bool:
     """
     value, doubt = cause.value or 0.0, (cause.uncertainty or 0.0) * max(within, 1.0)
     scene = value - (cause.shift or 0.0)
-    few = within > 0 and value * scene >= 0  # another size and another sign at once take better evidence
-    if has_few_digits(value, doubt, few):
+    lenient = within > 0 and value * scene >= 0  # another size and another sign at once take better evidence
+    if has_few_digits(value, doubt, lenient):
         return True
     factor = cause.id == "site.rotation_rate" and scene != 0
-    return factor and has_few_digits(value / scene, doubt / abs(scene), few, FACTOR_DIGITS)
+    return factor and has_few_digits(value / scene, doubt / abs(scene), lenient, FACTOR_DIGITS)
 
 
-def has_few_digits(value: float, doubt: float, any_few: bool, most: int = MOST_DIGITS) -> bool:
+def has_few_digits(value: float, doubt: float, lenient: bool, most: int = MOST_DIGITS) -> bool:
     """Return whether the shortest decimal within a doubt has few digits; see `is_typed`."""
     doubt = max(doubt, 2.0**-50 * abs(value))
     if abs(value) <= doubt:
@@ -201,5 +202,5 @@ def has_few_digits(value: float, doubt: float, any_few: bool, most: int = MOST_D
     for digits in range(1, most + 1):
         unit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
         if abs(round(value / unit) * unit - value) <= doubt:
-            return 2 * doubt < (SCARCE if any_few and digits <= TYPED else CHANCE) * unit
+            return 2 * doubt < (SCARCE if lenient and digits <= TYPED else CHANCE) * unit
     return False

@@ -151,9 +151,9 @@ def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[comple
                 continue
             gammas = np.log(roots.astype(complex)) / (1j * step * skip)
             turn = 2 * math.pi / (step * skip)
-            for one, other in (gammas, gammas[::-1]):
-                first = one + turn * round((near - one.real) / turn)
-                second = other + turn * round((-near - other.real) / turn)
+            for gamma1, gamma2 in (gammas, gammas[::-1]):
+                first = gamma1 + turn * round((near - gamma1.real) / turn)
+                second = gamma2 + turn * round((-near - gamma2.real) / turn)
                 guesses.insert(0, (complex(first), complex(second)))
     return guesses
 

@@ -241,8 +241,8 @@ class Pendulum:
         """Return the constants of the force."""
         length, gradient, point = theta[11:14]
         pointing = point * abs(theta[5]) * length / self.radius if self.radius else 0.0
-        xx, yy, yz, zz = (gradient * part for part in self.square)
-        turn, pull = (tuple(part.tolist()) for part in (theta[:3], theta[3:6]))
+        xx, yy, yz, zz = (gradient * component for component in self.square)
+        turn, pull = (tuple(vector.tolist()) for vector in (theta[:3], theta[3:6]))
         centrifugal = xx - pointing, yy - pointing, yz, zz + 2 * pointing
         return Constants(length=float(length), turn=turn, pull=pull, centrifugal=centrifugal, drag=float(theta[6]))
 

@@ -66,7 +66,7 @@ class Reader:
     Attributes:
         right: what a right program computes with, with the family's kind.
         fit: the free fit of that family.
-        floor: root mean square in m below which nothing more is asked.
+        floor: root mean square in m below which no error needs a cause.
         least: root mean square in m that the best fit of any family leaves.
         joint: whether it is of several runs: then fits follow bent valleys, which in one run lead to numbers that are
             not there, and no name is put in place of a number, which may follow the scene.
@@ -116,12 +116,13 @@ class Reader:
 
     def _exchanged(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
         """Return the best reading that comes from one by leaving causes out, or taking others of their groups."""
-        found = [reading]
-        for part in reading.causes:
-            found.append(fewer := self.without(reading, [part]))
-            others = [cause for cause in causes if cause.group == part.group and not _clash(fewer.causes, cause)]
-            found += filter(None, (self._with(fewer, other) for other in others if other is not part))
-        best = min(found, key=lambda reading: reading.score)
+        readings = [reading]
+        for cause in reading.causes:
+            fewer = self.without(reading, [cause])
+            same_group = [other for other in causes if other.group == cause.group and other is not cause]
+            exchanged = [self._with(fewer, other) for other in same_group if not _clash(fewer.causes, other)]
+            readings += [fewer, *filter(None, exchanged)]
+        best = min(readings, key=lambda reading: reading.score)
         return best if best is reading else self._exchanged(best, causes)
 
     def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
@@ -132,7 +133,7 @@ class Reader:
             value = reading.value(cause)
             if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
                 sign = next(other for other in causes if other.id == "coriolis_sign")
-                together = tuple(sign if part is cause else part for part in reading.causes)
+                together = tuple(sign if other is cause else other for other in reading.causes)
                 return self._judged(together, sign.change(reading.program.changed(rate=self.right.rate)))
             for other in causes:
                 if other.free or other.group != cause.group:
@@ -140,7 +141,7 @@ class Reader:
                 program = other.change(reading.program)
                 exact = float(getattr(program, cause.free))
                 if exact != value and abs(exact - value) <= SAME * abs(value):
-                    together = tuple(other if part is cause else part for part in reading.causes)
+                    together = tuple(other if before is cause else before for before in reading.causes)
                     return self._judged(together, program)
         return reading
 
@@ -199,11 +200,11 @@ class Reader:
     def without(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
         """Return a reading without some of its causes, the other fitted numbers as they were."""
         program = self.right
-        together = tuple(part for part in reading.causes if part not in causes)
-        for part in together:
-            program = part.change(program)
-            if part.free:
-                program = program.changed(**{part.free: reading.value(part)})
+        together = tuple(cause for cause in reading.causes if cause not in causes)
+        for cause in together:
+            program = cause.change(program)
+            if cause.free:
+                program = program.changed(**{cause.free: reading.value(cause)})
         return self._judged(together, program)
 
     def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:

@@ -1,7 +1,7 @@
-"""A slip in a program's force, told from its rows alone: a term that is off, or a bob that falls or swings ever wider.
+"""A slip in a program's force, read from its rows alone: a term that is off, or a bob that falls or swings ever wider.
 
 Near its lowest point the bob's acceleration is nearly linear in x, y and their velocities. What the rows have more than
-the model is fitted by such terms, and the largest are told beside what the model has in their place. Needs rows close
+the model is fitted by such terms, and the largest are named beside what the model has in their place. Needs rows close
 enough to be differentiated twice.
 """
 
@@ -28,8 +28,8 @@ COARSE = np.array([-1, 16, -30, 16, -1]) / 12  # of order 4, whose difference fr
 LEAST = 30  # rows that can be differentiated
 USUAL, FARTHEST = 0.15, 0.5  # steps between rows, in radians of the swing
 CLEAR = 10.0  # times their own error: accelerations that are off
-EXPLAINED = 0.02  # of the mean square that the terms told may leave
-MOST = 3  # terms that are told
+EXPLAINED = 0.02  # of the mean square that the terms named may leave
+MOST = 3  # terms that are named
 WORK = 0.2  # of |force| |velocity|: a force that does work
 ALIKE = 0.2  # by which two terms that are off alike may differ
 LOW = 0.3  # of the length: farther out, the force is not linear

@@ -123,15 +123,15 @@ def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
     rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
     hung = case.right.changed(length=case.rows.cord or case.right.length)
-    found = []
+    explanations = []
     for steps in likely_steps(replace(flat, right=hung), None if reading is None else reading.program):
         within = rows.times <= steps.spacing / steps.every * max(LONGEST, min(FEWEST * steps.every, 2 * LONGEST))
-        told = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
-        if told is not None:
-            found.append(told)
-            if all(cause.stage != AS_IF for cause in told.causes):
+        explanation = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
+        if explanation is not None:
+            explanations.append(explanation)
+            if all(cause.stage != AS_IF for cause in explanation.causes):
                 break
-    return min(found, key=lambda told: told.score, default=None)
+    return min(explanations, key=lambda explanation: explanation.score, default=None)
 
 
 def _of_steps(case: Case, steps: Steps) -> Explanation | None:
@@ -161,8 +161,8 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
         return None
     cause = step_cause(steps, effect)
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-    told = explanation_of(seen, best, cause)
-    return case.explanation(told.causes, told.corrected_m, left, sum(cause.cost for cause in best.causes) + FITTED)
+    explanation, price = explanation_of(seen, best, cause), sum(cause.cost for cause in best.causes) + FITTED
+    return case.explanation(explanation.causes, explanation.corrected_m, left, price)
 
 
 def step_cause(steps: Steps, effect: Array) -> Deviation:
@@ -240,8 +240,8 @@ def _apart(swing: Case, steps: Steps, thetas: Array, slopes: Array, low: int, hi
         theta, sizes = thetas[:, which], sizes.reshape(-1, len(every))[which]
         near = slice(max(best - 1, 0), best + 2)
         if settled or not np.isfinite(sizes[best]):
-            found = zip(sizes[near].tolist(), every[near].tolist(), strict=True)
-            return [(size, replace(steps, every=count, near=tuple(theta))) for size, count in found]
+            closest = zip(sizes[near].tolist(), every[near].tolist(), strict=True)
+            return [(size, replace(steps, every=count, near=tuple(theta))) for size, count in closest]
         theta, slopes = _nearer(swing, replace(steps, every=int(every[best])), theta)
         thetas, settled = theta[:, None], high - low < len(every)
         low, high = (low, high) if settled else (int(every[near][0]), int(every[near][-1]))
@@ -249,13 +249,13 @@ def _apart(swing: Case, steps: Steps, thetas: Array, slopes: Array, low: int, hi
 
 
 @cache
-def _steps(method: str, many: int) -> Any:
+def _steps(method: str, count: int) -> Any:
     """Return steps of a method as machine code: of a state over l, with h, pull, turn, centrifugal, drag as `pars`."""
 
     def change(state: State, numbers: State) -> State:
         pull, turn, centrifugal = tuple(numbers[1:4]), tuple(numbers[4:7]), tuple(numbers[7:11])
         k = Constants(pull=pull, turn=turn, centrifugal=centrifugal, drag=numbers[11])
-        for _ in range(many):
+        for _ in range(count):
             state = _taken(method, state, numbers[0], k)
         return state
 

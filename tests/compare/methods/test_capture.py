@@ -17,8 +17,8 @@ from reference.scenes.fields import LEVELS
 
 
 @pytest.fixture
-def own_process(monkeypatch):
-    monkeypatch.setattr(library, "own_process", True)
+def isolated(monkeypatch):
+    monkeypatch.setattr(library, "isolated", True)
 
 
 def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch, size):
@@ -39,7 +39,7 @@ def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch, size):
     assert redirected == []
 
 
-def test_what_is_written_is_captured_and_quoted_on_one_line(capfd, own_process):
+def test_what_is_written_is_captured_and_quoted_on_one_line(capfd, isolated):
     with captured() as output:
         os.write(1, b"a step\n")
         os.write(2, b"failed\n")

@@ -53,7 +53,7 @@ def test_a_tolerance_that_scipy_raises_is_said(installed):
 
 
 def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd, installed, monkeypatch):
-    monkeypatch.setattr(library, "own_process", True)
+    monkeypatch.setattr(library, "isolated", True)
     problem = Problem.of(case("steep").scene, "momentum")
     outcome = installed("numbalsoda_lsoda").prepare(problem, 1e-17)()
     assert outcome.status == "gave_up"

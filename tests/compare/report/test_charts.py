@@ -81,7 +81,7 @@ def motion():
 
 
 ROWS = study_rows()
-OWN = [one.label for one in curves(ROWS) if one.own and one.measured]
+USUAL = [curve.label for curve in curves(ROWS) if curve.usual and curve.measured]
 RUNS = [long_run("double", 1.5, 1e-16), long_run("quadruple", 1.0, 1e-33), long_run("single", 1.0, 1e-7)]
 CELLS = [cell("paris", "rk4", "ok", 7.99), cell("hard", "rk4", "silently_wrong"), cell("hard", "other", "not_finite")]
 CHOSEN = [motions()[word] for word in ("linear_g", "method_1", "linear_3d")]
@@ -89,10 +89,10 @@ PARIS = error_table(load_scene("paris"), CHOSEN, 600.0, times=(1.0, 10.0, 60.0))
 LATITUDES = [
     SweepRow("planar", 60.0, 1e-3 * (1 + value), 1.0, over="latitude", value=value) for value in (0.0, 45.0, 90.0)
 ]
-CALLS = [label for label in OWN if METHODS[label].family not in (Family.HEYOKA, Family.MANY_DIGITS)]
-TOLERANCES = [label for label in OWN if METHODS[label].setting == "tolerance" and label != "heyoka_real128"]
+CALLS = [label for label in USUAL if METHODS[label].family not in (Family.HEYOKA, Family.MANY_DIGITS)]
+TOLERANCES = [label for label in USUAL if METHODS[label].setting == "tolerance" and label != "heyoka_real128"]
 CHARTS = {  # how each is drawn, the titles of its axes with their units, and the names of its lines
-    "overview": (lambda: study_charts.overview(ROWS, BOUND), {CPU, ERROR, "failed"}, OWN),
+    "overview": (lambda: study_charts.overview(ROWS, BOUND), {CPU, ERROR, "failed"}, USUAL),
     "families": (lambda: study_charts.by_family(ROWS, BOUND), {CPU, ERROR, Family.PAPER}, CALLS),
     "evaluations": (
         lambda: study_charts.right_hand_sides(ROWS, BOUND),

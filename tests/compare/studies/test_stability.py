@@ -17,7 +17,7 @@ from compare.report.stability_page import document_of, headlines, page_text, tex
 from compare.studies.character import Character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.row import Row
-from compare.studies.stability import Cell, _Cells, cut, default_scenes, digits_asked, stability
+from compare.studies.stability import Cell, _Cells, cut, default_scenes, digits_requested, stability
 from reference import load_scene
 from reference.scenes.shipped import data_root
 from reference.status import Status
@@ -33,9 +33,9 @@ def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None
 
 
 def test_a_fixed_step_is_asked_for_as_many_digits_as_its_order_gives() -> None:
-    assert digits_asked("rkng67", 1 / 200) == pytest.approx(9.0, abs=0.02)  # (2 pi / 200)^6
-    assert digits_asked("rkng56", 1 / 200) == pytest.approx(7.5, abs=0.02)
-    assert digits_asked("rk4", 1 / 200) == pytest.approx(6.0, abs=0.02)
+    assert digits_requested("rkng67", 1 / 200) == pytest.approx(9.0, abs=0.02)  # (2 pi / 200)^6
+    assert digits_requested("rkng56", 1 / 200) == pytest.approx(7.5, abs=0.02)
+    assert digits_requested("rk4", 1 / 200) == pytest.approx(6.0, abs=0.02)
 
 
 def shortened(folder: Path, name: str, t_end: str, grid_step: str) -> str:

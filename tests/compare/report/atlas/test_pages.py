@@ -89,7 +89,7 @@ def test_the_script_beside_a_page_is_the_shipped_function_and_nothing_else(atlas
 
 def test_what_studies_say_of_a_scene(tmp_path):
     kept = kept_studies(studies_folder())
-    assert kept["paris"].asked and kept["paris"].least and kept["paris"].span_s == 86_400
+    assert kept["paris"].same_digits and kept["paris"].least and kept["paris"].span_s == 86_400
     assert [one.error_m for one in kept["hard"].least] == sorted(one.error_m for one in kept["hard"].least)
     assert kept_studies(None) == {} and "silently wrong" in kept["hard"].sentence()
     (tmp_path / "other.json").write_text('{"rows": [{"scene": "paris"}]}')
