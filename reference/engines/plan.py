@@ -99,12 +99,14 @@ class Engine(OptionalEngine, ABC):
         bits: lowest and highest precision that it is chosen for.
         own_process: whether a proof has it compute in a child process; else it costs too little for that.
         start_s: CPU seconds until its first step: of importing what it requires and of loading what it has compiled.
+        proof_step_s: CPU seconds that a proof takes for as much of its run as is a step in double.
     """
 
     formulation: ClassVar[str]
     bits: ClassVar[range]
     own_process: ClassVar[bool]
     start_s: ClassVar[float]
+    proof_step_s: ClassVar[float]
 
     @abstractmethod
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:

@@ -52,16 +52,19 @@ def checked(name: str | None) -> str:
     return name
 
 
-def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS) -> Engine:
+def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS, *, proof: bool = False) -> Engine:
     """Return the engine to compute with at `prec` bits, in a run that would be `steps` steps in double.
 
-    The engine called `name` is taken if it is installed and can compute at this precision. Otherwise, or if `name` is
-    "auto", it is the one with the least expected cost among the installed engines that can.
+    With `proof` what a proof of the run costs counts as well. The engine called `name` is taken if it is
+    installed and can compute at this precision. Otherwise, or if `name` is "auto", it is the one with the least
+    expected cost among the installed engines that can.
     """
+
+    def cost_s(engine: Engine) -> float:
+        return engine.start_s + engine.expected_s(steps, prec) + proof * steps * engine.proof_step_s
+
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
-    return min(
-        serving, key=lambda engine: (name not in (engine.name, AUTO), engine.start_s + engine.expected_s(steps, prec))
-    )
+    return min(serving, key=lambda engine: (name not in (engine.name, AUTO), cost_s(engine)))
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:

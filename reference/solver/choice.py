@@ -74,7 +74,7 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
 
         feed = Feed(scene.exact, times, AUTO, pilot.steps)
         bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits - COEFFICIENT_BITS
-        return fastest(bits, steps=pilot.steps).plan(scene.exact, bits, times, transits=False)
+        return fastest(bits, steps=pilot.steps, proof=True).plan(scene.exact, bits, times, transits=False)
     return published_plan(scene, times, pilot, first_prec(scene, pilot, AUTO), AUTO)
 
 

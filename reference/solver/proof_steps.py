@@ -59,7 +59,7 @@ class Feed:
                 the engine that its dataset names, so that `--engine` gives the same bytes again.
         """
         self.stop()
-        engine = fastest(prec, self._engine, self._count)
+        engine = fastest(prec, self._engine, self._count, proof=True)
         if self.begun not in ("", engine.name):
             raise EngineChanged(engine.name)
         self.begun, self._run = engine.name, None
@@ -73,7 +73,8 @@ class Feed:
 
     def lost(self, bits: int) -> int:
         """Return how many bits a run of so many loses besides those that a proof counts on."""
-        return HEYOKA_BITS if fastest(bits - COEFFICIENT_BITS, self._engine, self._count).name == "heyoka" else 0
+        engine = fastest(bits - COEFFICIENT_BITS, self._engine, self._count, proof=True)
+        return HEYOKA_BITS if engine.name == "heyoka" else 0
 
     def finished(self) -> Run:
         """Exhaust the steps and return the run, with its states at `times`."""

@@ -22,6 +22,7 @@ class Limbs(Engine):
     bits = range(LEAST_PREC, MOST_PREC + 1)
     own_process = False
     start_s = 0.5
+    proof_step_s = 4e-4  # its steps are twice as long as heyoka's
 
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
         """Return the run that keeps `prec` bits of a number as large as the swing."""

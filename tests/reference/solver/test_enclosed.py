@@ -286,8 +286,8 @@ def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
     """At rest at the top, limbs have too few bits for the second try: heyoka begins again with the first."""
     scene, tried = reference.load_scene("inverted_rest"), []
 
-    def watched(prec, *words):
-        engine = fastest(prec, *words)
+    def watched(prec, *words, **options):
+        engine = fastest(prec, *words, **options)
         tried.append((engine.name, prec))
         return engine
 
