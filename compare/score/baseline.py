@@ -133,4 +133,4 @@ def _worse(new: Score, baseline: Mapping[str, Any], more: float, agreed: bool) -
         before = sum(len(baseline["transits"][key]) for key in ("missed_at", "extra_at"))
         now = len(new.transits.missed) + len(new.transits.extra)
         if now > before:
-            yield f"{now} transits are missed or extra, and {before} were"
+            yield f"of transits {now} are missed or extra, and {before} were"

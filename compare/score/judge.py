@@ -91,6 +91,7 @@ def judge(
         raise InputError("t_end", t_end, "a number of seconds")
     if not (isinstance(covers, Real) and 0 <= covers <= 1):
         raise InputError("covers", covers, "a share of the scene's span, from 0 to 1")
+    tolerance, t_end = (None if number is None else float(number) for number in (tolerance, t_end))
     if isinstance(scene, Mapping) and "t" in scene:
         got = f"columns {', '.join(map(str, scene))}"
         raise InputError("scene", got, "a scene", "The rows stand before the scene.")

@@ -53,7 +53,7 @@ class Since:
         elif self.apart_m:
             what = f"{numbers}; what lies between them, {self.apart_m:.2g} m, is no known mistake"
         else:
-            what = f"nothing changed, {numbers}"
+            what = f"no position changed, {numbers}"
         return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in self.worse)}"
 
 

@@ -180,7 +180,7 @@ def _motion(scene: Scene) -> dict[str, Any]:
     They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
     """
     from ..model.start import Start
-    from ..solver.swing import HOUR, offset, turns_too_far
+    from ..solver.swing import CLEAR, HOUR, offset, turns_too_far
     from ..sweeps.part import solve_part
     from ..sweeps.promote import Promoted
     from ..sweeps.request import request
@@ -201,12 +201,17 @@ def _motion(scene: Scene) -> dict[str, Any]:
     motion: dict[str, Any] = {"over_s": scene.run.t_end}
     swing, turn, angle = (float(row[name]) for name in ("swing_hz", "precession_deg_per_h", "max_angle_deg"))
     if not swing > 0:
-        return {"reason": row["reason"] or "the bob does not swing to and fro"}
+        return {
+            "reason": row["reason"]
+            or "it has no two highest points: the bob does not swing to and fro, or the run ends before"
+        }
     seconds, k = float(scene.run.t_end), start.k
     smallest = 2 * math.sin(math.radians(angle) / 2) * math.exp(-float(k.drag) * seconds / 2)
     off = offset(start, float(k.length) * smallest)
     if off > 1:
-        return {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
+        return {
+            "reason": f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
+        }
     motion |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
     if off <= math.radians(abs(turn)) * seconds / HOUR and not turns_too_far(start, 0.5 / swing):
         error_of_turn = float(row["precession_error_deg_per_h"])

@@ -86,7 +86,7 @@ def test_the_status_tells_whether_it_became_worse(foucault, rows, tmp_path, kind
     assert (done, document["verdict"]) == (status, verdict) and since["text"].startswith(f"{begins} {rows / old}.csv: ")
     assert bool(since["worse"]) is bool(status) and since["better"] is begins.startswith("Better")
     expected = pytest.approx(abs(OFF.get(new, 2e-3) - OFF.get(old, 2e-3)), abs=1e-12)
-    assert since["apart_m"] == expected and (since["apart_m"] == 0) is ("nothing changed" in since["text"])
+    assert since["apart_m"] == expected and (since["apart_m"] == 0) is ("no position changed" in since["text"])
 
 
 def test_what_became_worse_is_said(foucault, rows):
@@ -173,9 +173,9 @@ def test_a_suite_is_compared_with_an_earlier_one(foucault, suites, kind):
     names = ("same", "new", "worse", "lost")
     assert [tags[f"foucault.{name}"] for name in names] == ["system-out", "system-out", "failure", "error"]
     assert kinds["foucault.worse"].get("message").startswith("Worse since")
-    assert "nothing changed" in kinds["foucault.same"].text
+    assert "no position changed" in kinds["foucault.same"].text
     page = (suites / "page/index.html").read_text()
-    assert "Worse since" in page and "nothing changed" in page
+    assert "Worse since" in page and "no position changed" in page
     out = foucault(*words, "--github")[1]
     signs = [line.partition(" ")[0] for line in out.splitlines() if line.startswith(("::error", "::notice"))]
     assert signs == ["::notice", "::notice", "::error", "::error"]

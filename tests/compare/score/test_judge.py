@@ -8,6 +8,7 @@ import sys
 from contextlib import contextmanager
 from dataclasses import replace
 from decimal import Context, Decimal, localcontext
+from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
@@ -790,3 +791,10 @@ def test_metres_under_a_header_of_centimetres_are_told(golden):
     said = str(judge({"t": golden.t, **columns}, golden.scene))
     assert "Your file counts metres as centimetres.\nWith this put right, " in said
     assert "|r| = l" not in said
+
+
+def test_a_tolerance_and_an_end_may_be_any_real_number():
+    golden = load("paris")
+    rows = {"t": golden.t[:5], "x": golden.x[:5], "y": golden.y[:5]}
+    score = judge(rows, "paris", tolerance=Fraction(1, 1000), t_end=Fraction(120))
+    assert "tolerance 0.001 m" in str(score) and len(score.errors.t) == 3

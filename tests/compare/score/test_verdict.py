@@ -150,7 +150,7 @@ def test_a_share_is_rounded_down_to_three_digits_but_for_rounding_errors(share, 
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({}, "Since v1: nothing changed, 1 → 2 m"),
+        ({}, "Since v1: no position changed, 1 → 2 m"),
         ({"changes": ("g came", "h went")}, "Since v1: g came; h went: 1 → 2 m; that explains not all of it"),
         ({"changes": ("g came",), "better": True, "left_m": 0.25},
          "Better since v1: g came: 1 → 2 m; that explains all but 0.25 m"),

@@ -50,7 +50,10 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
     assert motion["precession_error_deg_per_h"] > abs(motion["precession_deg_per_h"])
     assert "full_turn_h" not in motion
     motion = json.loads(foucault("show", "damped", "--json")[1])["motion"]  # its last highest points were 157° an hour
-    assert motion == {"reason": "at the end the swing is hardly larger than the rest position is off the plumb line"}
+    assert motion == {
+        "reason": "its last swing is less than 16 times as wide as the rest position is off the plumb line"
+    }
+    assert "or the run ends before" in foucault("show", "paris", "--set", "run.t_end=10")[1]
     motion = json.loads(foucault("show", "damped", "--set", "run.t_end=120", "--json")[1])["motion"]
     assert motion["full_turn_h"] == pytest.approx(31.7, rel=0.05)
     assert {"period_s", "period_error_s", "over_s"} == {
