@@ -21,6 +21,8 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
+NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
+LEAN = "the rest position is off the plumb line"
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -201,17 +203,12 @@ def _motion(scene: Scene) -> dict[str, Any]:
     motion: dict[str, Any] = {"over_s": scene.run.t_end}
     swing, turn, angle = (float(row[name]) for name in ("swing_hz", "precession_deg_per_h", "max_angle_deg"))
     if not swing > 0:
-        return {
-            "reason": row["reason"]
-            or "it has no two highest points: the bob does not swing to and fro, or the run ends before"
-        }
+        return {"reason": row["reason"] or NO_SWING}
     seconds, k = float(scene.run.t_end), start.k
     smallest = 2 * math.sin(math.radians(angle) / 2) * math.exp(-float(k.drag) * seconds / 2)
     off = offset(start, float(k.length) * smallest)
     if off > 1:
-        return {
-            "reason": f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
-        }
+        return {"reason": f"its last swing is less than {CLEAR} times as wide as {LEAN}"}
     motion |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
     if off <= math.radians(abs(turn)) * seconds / HOUR and not turns_too_far(start, 0.5 / swing):
         error_of_turn = float(row["precession_error_deg_per_h"])

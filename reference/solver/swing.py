@@ -76,8 +76,8 @@ class Swing:
 def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)) -> Swing | None:
     """Return the swing from the highest points of a run.
 
-    None with fewer than two, where their times overlap, and where they are not the ends of a swing: it is hardly larger
-    than its rest position is off the plumb line (`offset`), or two on one side follow one another.
+    None with fewer than two, where their times overlap, and where they are not the ends of a swing: it is too small
+    beside how far the rest position is off the plumb line (`offset`), or two on one side follow one another.
 
     Args:
         points: intervals of t, x, y and z of each, in s and m.
