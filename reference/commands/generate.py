@@ -169,7 +169,9 @@ def command(
         unseen = "The proof finds all transits; no run with event detection confirms them"
         typer.echo(f"{unseen}: {solution.not_checked}", err=True)
     typer.echo(f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps")
-    typer.echo(f"CPU: run {run.cpu_s:.2f} s, check {measured['check_cpu_s']:.2f} s, pilot {solution.pilot_s:.2f} s")
+    parts = {"run": run.cpu_s, "checks": solution.check_s, "pilot": solution.pilot_s, "discarded": solution.discarded_s}
+    told = ", ".join(f"{name} {seconds:.2f}" for name, seconds in parts.items() if seconds)
+    typer.echo(f"CPU {solution.cpu_s:.2f} s: {told}")
 
 
 def _generate_ranges(

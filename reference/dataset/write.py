@@ -128,8 +128,6 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
     """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=Fraction)
-    checks_s = sum(check.cpu_s for check in solution.checks)
-    checks_s += solution.proof.enclosure.cpu_s if solution.proof else 0.0
     measured = vars(solution.guard).items() if solution.guard else ()
     guard = {name: float(value) if isinstance(value, Fraction) else value for name, value in measured}
     return {
@@ -142,10 +140,11 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "transits": len(solution.directions),
         "possible": len(solution.possible),
         "bound_m": float(bound) or math.ulp(0.0) * (bound != "0"),  # the least double, where it is less
-        "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,
+        "cpu_s": solution.cpu_s,
         "run_cpu_s": solution.run.cpu_s,
-        "check_cpu_s": checks_s,
+        "check_cpu_s": solution.check_s,
         "pilot_cpu_s": solution.pilot_s,
+        "discarded_cpu_s": solution.discarded_s,
         "compile_s": solution.run.compile_s,
         "number": solution.run.number,
         "steps": solution.run.steps,

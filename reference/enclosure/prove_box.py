@@ -28,7 +28,8 @@ class BoxEnclosure:
     """A proof of a box as trusted code returned it, and how it was reached.
 
     `radius` is that of the tube at the end, in m; `pace` the interval of the factors of time; `lean` how far unit
-    vectors across the plumb line are from the scene's, at most; `cpu_s` all of its work.
+    vectors across the plumb line are from the scene's, at most; `cpu_s` the CPU seconds,
+    without those of the approximant.
     """
 
     proved: ProvedBox
@@ -81,19 +82,22 @@ def enclose_box(
 
             follower = Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             source = TangentSource(windows.balls, follower.bound.ways)
+        cpu_s = process_time() - begun
         for step in until(approximant(bits, latest), latest):
+            begun = process_time()
             course.advance(step, *([source.propose(step)] if source else []))
-            reached, count = course.bound.time, count + 1
+            reached, count, cpu_s = course.bound.time, count + 1, cpu_s + process_time() - begun
             if progress:
                 progress(float(reached / latest))
-        found = follower.finish() if follower else None
+        begun, found = process_time(), follower.finish() if follower else None
         proved = found.proved if found else windows.finish()
+        cpu_s += process_time() - begun
     except (ArithmeticError, ValueError):
         holds = float(reached / windows.pace.high) if reached else 0.0
         raise UnreachableError(f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE) from None
     radius = interval(course.bound.eta * balls.length).high
     lean = interval(sum((2 * x.rad() for x in balls.tilt), arb(0))).high  # these balls hold the scene's own
-    return BoxEnclosure(proved, bits, count, radius, windows.pace, lean, process_time() - begun, found)
+    return BoxEnclosure(proved, bits, count, radius, windows.pace, lean, cpu_s, found)
 
 
 def _width(balls: BoxBalls) -> Fraction:

@@ -68,14 +68,14 @@ def solve_enclosed(
         if plan and confirm == "sampled":  # while the audit goes on
             solution = confirmed(problem, solution, confirm, _sampled(plan, solution, report))
         if second_proof is not None:
-            solution = audited(solution, second_proof.result(report))
+            solution = audited(solution, *second_proof.result(report))
         if confirming is not None:
             solution = confirmed(problem, solution, confirm, confirming.result(report))
         return solution if confirming and not solution.possible else guarded(solution, problem.pilot)
 
 
-def audited(solution: Solution, digits: Any) -> Solution:
-    """Return a proved solution as audited, given the digits that FLINT alone proves.
+def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:
+    """Return a proved solution as audited, given the digits that FLINT alone proves, and the CPU seconds it took.
 
     Raises:
         IntegrationError: they are others.
@@ -83,7 +83,7 @@ def audited(solution: Solution, digits: Any) -> Solution:
     if digits != proved_digits(solution):
         raise IntegrationError("FLINT alone proves other digits.")
     assert solution.proof is not None
-    return replace(solution, proof=replace(solution.proof, audited=True))
+    return replace(solution, proof=replace(solution.proof, audited=True, audit_s=cpu_s))
 
 
 def proved_digits(solution: Solution) -> Any:
@@ -99,7 +99,8 @@ def _send_digits(emit: Emit, problem: ProofTask) -> None:
 
     if isinstance(emit, Parent):
         os.nice(LOWER)
-    emit(proved_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
+    again = proved(problem, partial(enclose, flint_only=True), reports(emit))
+    emit((proved_digits(again), again.cpu_s - again.pilot_s))
 
 
 def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:
@@ -141,6 +142,7 @@ def confirmed(problem: ProofTask, solution: Solution, confirm: Confirmation, wit
         if last is not None and check.position_m >= last > 0:
             break
         last = check.position_m
+        solution = replace(solution, discarded_s=solution.discarded_s + witness.cpu_s)
         prec = max(LONG_DOUBLE.prec, rounded_prec(witness.plan.number.prec + missing))
         plan = _confirming_plan(problem, confirm, prec)
         witness = run(plan) if confirm == "whole" else _sampled(plan, solution)

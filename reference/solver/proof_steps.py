@@ -6,9 +6,10 @@ they arrive; the pipe provides back-pressure. The proof bounds the defect of eve
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from fractions import Fraction
 from itertools import chain, islice
+from time import process_time
 
 from ..engines.plan import Run
 from ..engines.registry import MANY_STEPS, WORTH_A_PROCESS, engines, fastest
@@ -23,6 +24,8 @@ BATCH = 32  # steps sent at once
 # than `MARGIN_BITS` counts on, and a proof that begins with too few bits is made a second time. Columns begin too low
 # as well, but `inverted_rest` ships with the bits that they take so.
 HEYOKA_BITS = 8
+
+Sent = tuple[TaylorStep | Run, float]
 
 
 class EngineChanged(Exception):
@@ -44,12 +47,16 @@ class Feed:
             times: output times in s; the run goes one step beyond the last.
             engine: name of the engine, where it has the bits; "auto" for the fastest.
             steps: about how many steps it takes in double.
+
+        `run_s` and `proof_s` are the CPU seconds of the last run, as far as it has come, and of what was done with its
+        steps; `discarded_s` those of all runs before.
         """
         self._inputs, self._times, self._engine, self._count = inputs, times, engine, steps
         self.begun = ""
         self._worker: Worker | None = None
-        self._steps: Iterator[TaylorStep] = iter(())
+        self._steps = self._only_steps(())
         self._run: Run | None = None
+        self.run_s = self.proof_s = self.discarded_s = 0.0
 
     def __call__(self, prec: int) -> Iterator[TaylorStep]:
         """Start a run at `prec` bits and return its steps, in order from t = 0.
@@ -59,6 +66,9 @@ class Feed:
                 the engine that its dataset names, so that `--engine` gives the same bytes again.
         """
         self.stop()
+        self._steps.close()  # which ends its clock
+        self.discarded_s += self.run_s + self.proof_s
+        self.run_s = self.proof_s = 0.0
         engine = fastest(prec, self._engine, self._count, proof=True)
         if self.begun not in ("", engine.name):
             raise EngineChanged(engine.name)
@@ -89,16 +99,23 @@ class Feed:
         if self._worker is not None:
             self._worker.stop()
 
-    def _only_steps(self, items: Iterable[TaylorStep | Run]) -> Iterator[TaylorStep]:
-        for item in items:
+    def _only_steps(self, items: Iterable[Sent]) -> Generator[TaylorStep]:
+        for item, self.run_s in items:
             if isinstance(item, Run):
                 self._run = item
-            else:
+                continue
+            begun = process_time()
+            try:
                 yield item
+            finally:  # also where the proof gives up
+                self.proof_s += process_time() - begun
 
 
-def _steps_and_run(engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[TaylorStep | Run]:
-    """Yield the steps of an engine's run, in the axes of a proof and paired, and at last the run."""
+def _steps_and_run(engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[Sent]:
+    """Yield the steps of an engine's run, in the axes of a proof and paired, and at last the run.
+
+    Beside each stand the CPU seconds since the first, before which code is compiled.
+    """
     from ..enclosure import pair, turned
 
     runs: list[Run] = []
@@ -106,8 +123,12 @@ def _steps_and_run(engine: str, inputs: Inputs, times: tuple[Fraction, ...], pre
     def steps() -> Iterator[TaylorStep]:
         runs.append((yield from engines()[engine].taylor_steps(inputs, times, prec, prec + COEFFICIENT_BITS)))
 
-    yield from pair(turned(inputs, steps()))
-    yield runs[0]
+    items: Iterator[TaylorStep | Run] = chain(pair(turned(inputs, steps())), runs)
+    cpu_s, begun = 0.0, None
+    for item in items:
+        cpu_s += 0.0 if begun is None else process_time() - begun
+        yield item, cpu_s
+        begun = process_time()
 
 
 def _send(emit: Emit, engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> None:

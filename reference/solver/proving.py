@@ -97,9 +97,10 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
                 if undecided.column == "t":
                     radius = min(radius, late_radius(first, scene.exact))
             else:
-                return solution
+                return replace(solution, discarded_s=feed.discarded_s)
     except EngineChanged as changed:
-        return proved(replace(problem, engine=changed.engine), enclose, report)
+        again = proved(replace(problem, engine=changed.engine), enclose, report)
+        return replace(again, discarded_s=again.discarded_s + feed.discarded_s)
     finally:
         feed.stop()
     raise UnreachableError(f"{reason} Balls of {rounded_up(tried)} m were tried.", advice)
@@ -174,6 +175,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             _check_passages(event_run, solution, errors)
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
+            solution = replace(solution, discarded_s=solution.discarded_s + event_run.cpu_s)
         else:
             return replace(solution, guard=CrossCheck.by(event_run, gaps, apart))
     if contradiction is not None:

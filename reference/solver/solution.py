@@ -74,6 +74,7 @@ class Proof:
         audited: whether FLINT alone proves it too.
         confirmed: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
             transit, or a sample: a tenth of the grid's intervals, each from its first row.
+        audit_s: CPU seconds of the audit.
     """
 
     enclosure: Any = field(repr=False)
@@ -81,6 +82,7 @@ class Proof:
     agreement_bits: int
     audited: bool = False
     confirmed: Confirmation = "none"
+    audit_s: float = 0.0
 
 
 class Passages(NamedTuple, Generic[T]):
@@ -116,6 +118,7 @@ class Solution(GridColumns):
         guard: at the level enclosed, where no run confirms every transit, one with event detection that found them
             all, in the cheapest type that serves; it goes into no dataset.
         sections: the passages of each section that the scene asks for, by its word.
+        discarded_s: CPU seconds of runs and proofs in too few bits, whose numbers are not used.
         not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest on it, and a run
             that finds other transits is an error.
 
@@ -135,6 +138,7 @@ class Solution(GridColumns):
     proof: Proof | None = None
     possible: Undecided = ()
     guard: CrossCheck | None = None
+    discarded_s: float = 0.0
     not_checked: str = ""
     sections: Mapping[str, Passages[Table]] = field(default_factory=dict, repr=False)
 
@@ -147,6 +151,17 @@ class Solution(GridColumns):
     def level(self) -> Level:
         """Level of trust in the numbers, one of `scene.LEVELS`."""
         return self.scene.run.level
+
+    @property
+    def check_s(self) -> float:
+        """CPU seconds of the runs that check the numbers, of the proof, and of its audit."""
+        runs = sum(check.cpu_s for check in (*self.checks, self.guard) if check)
+        return runs + (self.proof.enclosure.cpu_s + self.proof.audit_s if self.proof else 0.0)
+
+    @property
+    def cpu_s(self) -> float:
+        """CPU seconds of all runs and proofs, imports and compilation apart."""
+        return self.pilot_s + self.run.cpu_s + self.check_s + self.discarded_s
 
     @cached_property
     def swing(self) -> Swing | None:

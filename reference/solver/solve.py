@@ -180,6 +180,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
     prec = first_prec(scene, pilot, engine)
     check_reach(pilot.steps, prec, digits)
     last_gap: Fraction | None = None
+    discarded_s = 0.0
     for _ in range(MAX_RAISES):
         fine = published_plan(scene, times, pilot, prec, engine)
         if scene.run.level == "confirmed":
@@ -190,7 +191,9 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         gap = Agreement.between(published, witness, digits)
         if not gap.missing_bits:
             transit_s = None if gap.transits is None else gap.transits.largest()["t"]
-            return _assemble(scene, published, gap, (CrossCheck.by(witness, gap.grid, transit_s),), pilot.cpu_s)
+            checks = (CrossCheck.by(witness, gap.grid, transit_s),)
+            return replace(_assemble(scene, published, gap, checks, pilot.cpu_s), discarded_s=discarded_s)
+        discarded_s += published.cpu_s + witness.cpu_s
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
             last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -131,6 +132,7 @@ def solve_ranges(
     finally:
         for feed in feeds:
             feed.stop()
+    proof = replace(proof, cpu_s=proof.cpu_s + feeds[-1].run_s)
     transits = separated(proof.proved.transits or (), TRANSITS, end, Intervals)
     return Ranges(
         scene,

@@ -16,7 +16,9 @@ from reference.dataset.golden import load
 from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of
 from reference.dataset.write import write
+from reference.enclosure import prove
 from reference.enclosure.course import FINISHED, Course
+from reference.enclosure.plan import plan_for
 from reference.enclosure.prove import _Run
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
@@ -115,25 +117,54 @@ def test_scenes_that_bounds_find_hard_are_proved(name, engine, size):
     assert solution.possible == ()
 
 
-@pytest.mark.parametrize(
-    ("name", "t_end", "digits"), [("paris", "60", 15), ("pantheon", "60", 40), ("damped", "600", 20)]
-)
-def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(monkeypatch, name, t_end, digits):
-    attempts, honest = [], _Run.prove
+@pytest.fixture
+def attempts(monkeypatch):
+    """Return the CPU seconds of each attempt of a proof, with those of its approximant, in this process."""
+    seconds, honest = [], _Run.prove
 
     def timed(attempt, approximant):
         begun = process_time()
         try:
             return honest(attempt, approximant)
         finally:
-            attempts.append(process_time() - begun)
+            seconds.append(process_time() - begun)
 
     monkeypatch.setattr(_Run, "prove", timed)
     monkeypatch.setattr(proof_steps, "WORTH_A_PROCESS", 1e9)
+    return seconds
+
+
+@pytest.mark.parametrize(
+    ("name", "t_end", "digits"), [("paris", "60", 15), ("pantheon", "60", 40), ("damped", "600", 20)]
+)
+def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(attempts, name, t_end, digits):
     solution = reference.solve(name, t_end=t_end, digits=digits, level="enclosed", engine="heyoka")
     assert len(attempts) == 1
     run_s, proof_s = solution.run.cpu_s, solution.proof.enclosure.cpu_s
     assert run_s > 0 and proof_s > 0 and run_s + proof_s < attempts[0]
+    assert solution.discarded_s == 0
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "limbs"])
+def test_a_proof_that_is_made_twice_tells_the_cpu_seconds_of_both(attempts, monkeypatch, engine):
+    def too_few(*words):
+        plan = plan_for(*words)
+        return plan._replace(bits=plan.bits * 2 // 3)
+
+    reference.solve("paris", t_end="120", level="enclosed", engine=engine)  # compiles
+    attempts.clear()
+    monkeypatch.setattr(prove, "plan_for", too_few)
+    solution = reference.solve("paris", t_end="120", level="enclosed", engine=engine)
+    assert len(attempts) == 2
+    assert 0.4 * attempts[0] < solution.discarded_s < attempts[0]
+    parts = solution.pilot_s + solution.run.cpu_s + solution.check_s + solution.discarded_s
+    assert solution.cpu_s == parts > sum(attempts) / 2
+
+
+def test_the_cpu_seconds_of_an_audit_are_told():
+    plain, audited = (reference.solve("paris", t_end="60", level="enclosed", audit=audit) for audit in (False, True))
+    assert (plain.proof.audit_s, plain.check_s) < (audited.proof.audit_s, audited.check_s)
+    assert audited.check_s >= audited.proof.enclosure.cpu_s + audited.proof.audit_s
 
 
 def test_xdot_identically_zero_has_no_transits_to_enclose():
@@ -298,6 +329,7 @@ def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
     again = names.index("heyoka") + 1
     assert names[0] == "limbs"
     assert precs[again] == precs[0]
+    assert by_limbs.discarded_s > 0
     del tried[:again]
     begun_by_limbs = list(tried)
     tried.clear()
@@ -323,7 +355,7 @@ def test_an_audit_that_proves_other_digits_is_refused(transits):
         make_scene(run={**SHORT, "t_end": "30", "digits": 20, "transits": transits}), engine="limbs"
     )
     digits = proved_digits(solution)
-    assert audited(solution, digits).proof.audited
+    assert audited(solution, digits, 1.0).proof.audited
     others = [replace(solution, directions=[*solution.directions, 1])]
     for name in ("grid", "zeros") if transits else ("grid",):
         table = getattr(solution, name)
@@ -332,7 +364,7 @@ def test_an_audit_that_proves_other_digits_is_refused(transits):
         others.append(replace(solution, **{name: spoilt}))
     for other in others:
         with pytest.raises(IntegrationError, match="FLINT alone proves other digits"):
-            audited(other, digits)
+            audited(other, digits, 1.0)
 
 
 def test_an_audit_without_a_proof_is_refused():

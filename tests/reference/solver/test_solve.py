@@ -282,9 +282,9 @@ def test_two_runs_that_never_agree_are_refused_and_give_no_numbers(monkeypatch, 
     ],
 )
 def test_an_engine_whose_runs_come_no_nearer_is_replaced(monkeypatch, paris, gaps, engines):
-    tried, found = [], iter(gaps)
+    tried, found, done = [], iter(gaps), SimpleNamespace(cpu_s=1.0)
     monkeypatch.setattr(solver, "MAX_RAISES", len(gaps))
-    monkeypatch.setattr(solver, "run_both", lambda fine, *_: tried.append(fine.engine) or (None, None))
+    monkeypatch.setattr(solver, "run_both", lambda fine, *_: tried.append(fine.engine) or (done, done))
     monkeypatch.setattr(solver.Agreement, "between", lambda *_: SimpleNamespace(missing_bits=8, grid=next(found)))
     with pytest.raises(UnreachableError):
         reference.solve(paris, t_end="60", digits=30, level="confirmed", engine="limbs")
