@@ -1,4 +1,4 @@
-"""CSV tables of a dataset: decimals with a fixed number of digits per column, and their nearest doubles."""
+"""CSV files of a dataset, from tables that are rounded already: decimals, and their nearest doubles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Passages of sections in a run: the zeros of affine forms on its Taylor steps, so that none is lost and none doubled.
+"""Zeros of a polynomial, counted and told apart, and the passages of sections in a run, none lost and none doubled.
 
 The zeros of a step's polynomial are counted by Descartes' rule: in Bernstein's form its coefficients change sign as
 often as it has zeros, or 2, 4, ... times oftener. One change at most is certain; any other piece is halved. This is

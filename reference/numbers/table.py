@@ -1,4 +1,6 @@
-"""Tables of exact numbers: named columns with bounds, how far two are apart, and how they are rounded and printed.
+"""Tables of exact numbers: named columns with bounds, how far two are apart, and how they are printed.
+
+How many decimals to print a solved scene says (solver/solution.py), how to round precision.py.
 
 Numbers are integers over a power of two. Whole columns of them can be put into formulas (`FixedPoint`).
 """

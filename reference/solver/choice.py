@@ -1,4 +1,4 @@
-"""The run that a scene's digits come from: its engine and its form of the equations, at the bits that `pilot` tells.
+"""Choose the run that a scene's digits come from: engine, form of the equations, and bits, which the pilot measured.
 
 `solve` and `foucault show --equations` both ask here, and so does a confirmation, for its sample of the grid.
 """

@@ -1,4 +1,4 @@
-"""Solve a scene to the digits and level asked for: choose a precision, run twice, raise it until both agree.
+"""Solve a scene to the digits and level asked for: run twice at the bits of choice.py, raise them until both agree.
 
 Pilot runs measure how rounding errors grow on the scene over its whole span; from that follow the bits that the digits
 need. Two runs then have to agree to a quarter of the last printed digit in every column: for `self_consistent` at two

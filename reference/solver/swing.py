@@ -1,4 +1,7 @@
-"""Frequency and precession of a solved scene, from its highest points: intervals that follow from their bounds."""
+"""Frequency and precession of a solved scene, as intervals, from its highest points.
+
+Those of samples: compare/observed/swing_plane.py; of a sweep's rows: sweeps/estimate.py.
+"""
 
 from __future__ import annotations
 

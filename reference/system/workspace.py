@@ -1,4 +1,4 @@
-"""A hidden folder beside what is written: filled there, renamed from there, and cleared away after a killed process.
+"""Write a file or a folder whole or not at all: in a hidden folder beside it, renamed, and cleared away after a kill.
 
 A folder in use is locked by a file in it: a process number would say nothing where they repeat, in containers, or where
 several machines share a disk. On a disk without locks none is cleared away.

@@ -1,4 +1,4 @@
-"""The causes that a program's error may have (a solar day, no drag, ...), each one change in a right `Program`.
+"""The causes that an error may have (a solar day, no drag, ...), each one change in a `Program`: readings.py chooses.
 
 Causes that exclude each other stand in one group. The words of `id` are stable; `text` ends the sentence "Your
 program …". A cause with numbers in it (`free`) is fitted; all others are named and fixed.

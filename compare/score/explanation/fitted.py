@@ -1,4 +1,4 @@
-"""Find the best reading of a file among the families that fit it, and name its causes with their sizes."""
+"""Compare the families of models that fit a file, run the readings of each, and name the causes of the best one."""
 
 from __future__ import annotations
 

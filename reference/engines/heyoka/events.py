@@ -1,4 +1,6 @@
-"""Transits by heyoka: guards around its event detection, so that no zero of xdot is lost and none counted twice.
+"""Transits by heyoka: guards around its event detection, which have ../passages.py count zeros that are close.
+
+So no zero of xdot is lost and none counted twice.
 
 heyoka finds the zeros on the polynomial of each step, but it can lose one within about 2**-prec of the left edge of the
 step, which it tells its log alone. If, for example, xdot is +0.3 mm/s at the start of a step and -0.2 mm/s at its end,
