@@ -149,4 +149,5 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "number": solution.run.number,
         "steps": solution.run.steps,
         "guard": guard or None,
+        "not_checked": solution.not_checked or None,
     }

@@ -13,8 +13,7 @@ from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
 from .balls import interval, times
 from .box import BoxBalls, Windows
-from .plan import plan_for
-from .prove import SCENE_GUARD_BITS, until
+from .prove import SCENE_GUARD_BITS, plan_for, until
 from .shapes import Box, Interval, ProvedBox, ProvedDerivatives
 
 LOOK_BITS = 192  # in which a box is looked at

@@ -8,28 +8,23 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from hashlib import sha256
-from math import ceil, e, sqrt
+from math import ceil
 
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
-from ..model.start import Start
-from ..numbers.columns import POSITION, VELOCITY
-from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
-from ..numbers.table import bits_in
-from ..scenes.inputs import Inputs
+from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, real
 from ..scenes.scene import Scene
 from ..system.imports import needed
-from .pilot import Pilot, run_pilot
+from .pilot import Pilot, run_pilot, second_order_bits
 from .proof_steps import COEFFICIENT_BITS, Feed
+from .proving import first_radius
 from .solution import SAMPLED
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
 SAMPLES = 3  # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
 HARDWARE_ENGINE = "heyoka"  # computes in double and long double
-MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
-ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 
 
 def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> Pilot:
@@ -70,7 +65,7 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
     """
     if scene.run.level == "enclosed":
         need_flint()
-        from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
+        from ..enclosure.prove import plan_for  # python-flint is not imported unless the level asks for it
 
         feed = Feed(scene.exact, times, AUTO, pilot.steps)
         bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits - COEFFICIENT_BITS
@@ -123,35 +118,6 @@ def drawn_intervals(scene: Scene) -> list[int]:
     return sorted(drawn[: ceil(Fraction(count, SAMPLED))])
 
 
-def second_order_bits(scene: Scene, pilot: Pilot) -> int:
-    """Return the bits that highest and lowest points need besides: the height is of second order in the amplitude."""
-    fastest_speed = max(pilot.sizes[name] for name in VELOCITY)
-    if not fastest_speed or not {"highest", "lowest"} & {*(scene.run.sections or ())}:
-        return 0
-    return bits_in(scene.exact.length * Fraction(Start.of(scene.exact, DOUBLE.prec).rate) / fastest_speed)
-
-
 def rounded_prec(prec: int) -> int:
     """Round a precision up to a multiple of `ROUND_TO_BITS`."""
     return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
-
-
-def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
-    """Return the radius in m of the balls that a proof of a scene begins with.
-
-    It is a small part of the last digit's unit in the middle position or velocity column; smaller ones have smaller
-    balls.
-    """
-    decimals = pilot.decimals(scene.run.digits)
-    unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
-    return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
-
-
-def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
-    """Return the radius in m that tells a damped scene's last transits as closely as `radius` tells the first ones.
-
-    A small swing dies as exp(-r t), where r = γ/2; where drag is too strong for a swing, r = γ/2 - (γ²/4 - g/l)^(1/2).
-    """
-    half, stiffness = float(inputs.drag) / 2, float(inputs.gravity / inputs.length)
-    rate = half - sqrt(max(half**2 - stiffness, 0.0))
-    return radius / (1 << ceil(min(rate * float(inputs.t_end) * log2(e), MOST_DIED)))

@@ -21,6 +21,7 @@ from ..numbers.columns import GRID, HORIZONTAL, POSITION, VELOCITY
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, decimals_for, real
 from ..numbers.table import Table, bits_in, decimals_of, resolved
 from ..scenes.inputs import Inputs
+from ..scenes.scene import Scene
 
 PILOT_PREC = 47  # of the first exact run: three limbs
 PILOT_GAP_BITS = 22  # bits between it and the second: a limb
@@ -265,3 +266,11 @@ def _reason(inputs: Inputs, needed: float, pace: float) -> str:
         f"Stiff: drag takes the speed away at {fast:.1e}/s, and after that {then}. "
         f"An explicit method's steps are limited by the faster rate: {altogether}"
     )
+
+
+def second_order_bits(scene: Scene, pilot: Pilot) -> int:
+    """Return the bits that highest and lowest points need besides: the height is of second order in the amplitude."""
+    fastest_speed = max(pilot.sizes[name] for name in VELOCITY)
+    if not fastest_speed or not {"highest", "lowest"} & {*(scene.run.sections or ())}:
+        return 0
+    return bits_in(scene.exact.length * Fraction(Start.of(scene.exact, DOUBLE.prec).rate) / fastest_speed)

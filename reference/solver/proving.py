@@ -18,15 +18,17 @@ from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
 from ..numbers.columns import GRID, POSITION, SECTION, TRANSITS, VELOCITY
-from ..numbers.precision import cheapest_type, rounded_up
+from ..numbers.precision import cheapest_type, log2, rounded_up
 from ..numbers.table import Table, bits_in
+from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .agreement import with_passage_errors
-from .choice import first_radius, late_radius, second_order_bits
-from .pilot import ESTIMATE_FACTOR, Pilot
+from .pilot import ESTIMATE_FACTOR, Pilot, second_order_bits
 from .proof_steps import COEFFICIENT_BITS, EngineChanged, Feed
 from .solution import CrossCheck, Passages, Proof, Solution, Source, UndecidedRounding, check_decided, separated
 
+MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
+ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 ROUNDING_TRIES = 8  # radii that are tried before giving up
 FINER = 2**16  # the next radius is smaller by this factor at least,
 SPARE = 2**20  # and at least so small that the widest undecided number is known to this part of its last digit
@@ -121,6 +123,27 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     sections = {word: separated(section, SECTION, times[-1], table) for word, section in passages.items()}
     fields = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
     return Solution(*fields, sections=sections)
+
+
+def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
+    """Return the radius in m of the balls that a proof of a scene begins with.
+
+    It is a small part of the last digit's unit in the middle position or velocity column; smaller ones have smaller
+    balls.
+    """
+    decimals = pilot.decimals(scene.run.digits)
+    unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
+    return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
+
+
+def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
+    """Return the radius in m that tells a damped scene's last transits as closely as `radius` tells the first ones.
+
+    A small swing dies as exp(-r t), where r = γ/2; where drag is too strong for a swing, r = γ/2 - (γ²/4 - g/l)^(1/2).
+    """
+    half, stiffness = float(inputs.drag) / 2, float(inputs.gravity / inputs.length)
+    rate = half - math.sqrt(max(half**2 - stiffness, 0.0))
+    return radius / (1 << math.ceil(min(rate * float(inputs.t_end) * log2(math.e), MOST_DIED)))
 
 
 def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:

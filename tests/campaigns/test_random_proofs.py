@@ -11,7 +11,7 @@ import pytest
 from random_scenes import random_scene
 
 import reference
-from reference.enclosure.plan import plan_for
+from reference.enclosure.prove import plan_for
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
 from reference.errors import InputError, IntegrationError, UnreachableError

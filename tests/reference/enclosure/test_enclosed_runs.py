@@ -58,7 +58,7 @@ def test_the_hard_scenes_lie_inside(name, size):
 
 
 def test_precision_rises_until_the_width_is_reached(monkeypatch):
-    monkeypatch.setattr("reference.enclosure.plan.MARGIN_BITS", -40)
+    monkeypatch.setattr("reference.enclosure.prove.MARGIN_BITS", -40)
     proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=recurrence(PARIS))
     assert proof.position_radius <= WANTED
     assert 140 < proof.bits < 260

@@ -8,7 +8,7 @@ import pytest
 from mpmath import mp, mpf
 
 import reference
-from reference.solver.choice import MOST_DIED, late_radius
+from reference.solver.proving import MOST_DIED, late_radius
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,7 @@ from reference.dataset.verify import problems_of
 from reference.dataset.write import write
 from reference.enclosure import prove
 from reference.enclosure.course import FINISHED, Course
-from reference.enclosure.plan import plan_for
-from reference.enclosure.prove import _Run
+from reference.enclosure.prove import _Run, plan_for
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
