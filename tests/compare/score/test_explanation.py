@@ -22,6 +22,7 @@ import pytest
 import scipy.linalg
 from mistakes import Case, case, one_word_for_one_motion, words_of
 from places import MISTAKEN_C, PENDULUM_C
+from sampled import one_in
 from small_scenes import make_scene
 from typer.testing import CliRunner
 
@@ -410,7 +411,10 @@ def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
 DRIFT = "semi_implicit_euler_drift"
 
 
-@pytest.mark.parametrize("times", [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)])
+FEW = [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)]
+
+
+@pytest.mark.parametrize("times", one_in(2, map(pytest.param, FEW)))
 def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(times: tuple[float, ...]) -> None:
     """A family of models fits a few rows whatever they are, and so do as many fitted numbers as the rows have."""
     scene = load_scene("paris", ["inputs=binary64"])
