@@ -1,4 +1,4 @@
-"""CONTRIBUTING's recipe for a column of grid.csv, followed to the letter in a copy of the project."""
+"""CONTRIBUTING's recipes name what is there; that for a column of grid.csv, followed to the letter in a copy."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
+
+from reference.dataset.files import read_manifest
 
 BALL = '''
 
@@ -62,9 +64,29 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root
 
 
+def recipes() -> dict[str, str]:
+    """Return the rows of CONTRIBUTING's table by what is added."""
+    table = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("| what |")[2].partition("\n\n")[0]
+    return dict(re.findall(r"^\| ([^|]+) \|(.+)$", table, re.M))
+
+
+def test_every_file_that_a_recipe_names_is_there():
+    paths = r"((?:reference|compare|tests|data|docs)/[\w/.]+)(?=[` ])"
+    names = {name for row in recipes().values() for name in re.findall(paths, row)}
+    assert len(names) > 30
+    assert [name for name in sorted(names) if not (ROOT / name).exists()] == []
+
+
+def test_the_recipe_for_a_scene_makes_functions_of_doubles_as_they_ship():
+    (words,) = re.findall(r"`foucault generate <id> (--set inputs=binary64 .+?)`", recipes()["a scene"])
+    manifest = read_manifest(ROOT / "data/golden/pole.binary64")
+    assert manifest.alone
+    assert {*words.split()} <= {*manifest.command.split()}
+
+
 def test_the_recipe_names_the_files_that_have_to_be_touched_and_no_others():
-    (row,) = re.findall(r"^\| a column of `grid.csv` \|(.+)$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.M)
-    assert set(re.findall(r"`((?:reference|tests)/[\w/]+\.py)`", row)) == {*EDITS}
+    named = re.findall(r"`((?:reference|tests)/[\w/]+\.py)`", recipes()["a column of `grid.csv`"])
+    assert {*named} == {*EDITS}
 
 
 def test_a_column_is_made_and_verified_at_levels_of_runs_and_of_proof(copy, tmp_path, size):
