@@ -30,7 +30,7 @@ def page(kept: dict[str, Any]) -> str:
 
 
 def test_every_sentence_and_figure_of_the_page_follows_from_the_kept_results(page: str) -> None:
-    assert studies.PAGE.read_text(encoding="utf-8") == page
+    assert studies.PAGE.read_text(encoding="utf-8") == page, "python tests/bench/studies.py --page writes it anew"
 
 
 def test_the_page_names_the_one_command_and_each_study(page: str) -> None:
