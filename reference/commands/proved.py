@@ -10,7 +10,7 @@ from ..engines.registry import in_background
 from ..numbers.precision import rounded_up
 from ..scenes.scene import Scene, unit_of
 from ..solver.solve import solve
-from ..solver.swing import Swing, left_out
+from ..solver.swing import Swing, left_out, left_out_texts
 from ..solver.uncertain import exact_texts, widths_of
 from ..system.workers import Emit
 
@@ -47,12 +47,7 @@ def swing_line(proved: dict[str, Any]) -> str:
     if "reason" in proved:
         return f"[proved, over {proved['over_s']} s] no period: {proved['reason']}"
     texts = [f"{name} = {value[0]} to {value[1]}" for name, value in proved.items() if isinstance(value, list)]
-    return f"[proved, over {proved['over_s']} s] " + ", ".join([*texts, *left_out_texts(proved)])
-
-
-def left_out_texts(document: dict[str, Any]) -> list[str]:
-    """Return which numbers of a swing are left out of a line, and why."""
-    return [f"no {name}: {reason}" for name, reason in document["left_out"].items()]
+    return f"[proved, over {proved['over_s']} s] " + ", ".join([*texts, *left_out_texts(proved["left_out"])])
 
 
 def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
@@ -105,7 +100,9 @@ def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
         for name in MEAN
         if any(ranges[name] for name in MEAN) and name not in ranges["left_out"]
     ]
-    texts += left_out_texts(ranges) or ([] if texts else ["no period: the intervals of these inputs leave it open"])
+    texts += left_out_texts(ranges["left_out"]) or (
+        [] if texts else ["no period: the intervals of these inputs leave it open"]
+    )
     texts += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
     for word, passages in ranges["first_passages_s"].items():
         texts += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]

@@ -140,6 +140,11 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
     return {"full_turn_h": "the plane may not turn at all"} if still else {}
 
 
+def left_out_texts(reasons: dict[str, str]) -> list[str]:
+    """Return what `left_out` gives as words of a line."""
+    return [f"no {name}: {reason}" for name, reason in reasons.items()]
+
+
 def offset(start: Start, far: Any) -> float:
     """Return how far a swing's highest points may lie from its ends, in radians of azimuth; above 1: anywhere.
 
