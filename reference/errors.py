@@ -14,12 +14,15 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
+from numbers import Integral
+from os import PathLike
 from pathlib import Path
 from typing import Any, TextIO, cast
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
 MOST = 5  # names in a message at most
 VERY_ALIKE = 0.8  # of difflib, from 0 to 1: names that are as alike as this leave no room for others
+MOST_WHOLE = 2**62  # of a number that is counted: what libraries in C take
 LEAST_PART = 3  # characters of a word that is looked for inside the names as well
 
 # controls, invisible and direction-changing characters, separators of lines, bytes that are not UTF-8 (surrogates),
@@ -59,6 +62,19 @@ def usable(field: str, path: Path, expected: str = "a folder that can be written
         yield
     except OSError as error:
         raise InputError(field, str(path), expected, f"{error.strerror}.") from None
+
+
+def checked_path(field: str, path: object, expected: str, advice: str = "") -> Path:
+    """Return a path that a caller gave; anything but text or a path is an InputError, whose arguments these are."""
+    if not isinstance(path, str | PathLike):
+        raise InputError(field, path, expected, advice)
+    return Path(path)
+
+
+def check_whole(field: str, number: object, least: int = 1, words: str = "a whole number from 1") -> None:
+    """Raise InputError for what is no whole number from `least` on; `words` say what was expected."""
+    if not isinstance(number, Integral) or isinstance(number, bool) or not least <= int(number) <= MOST_WHOLE:
+        raise InputError(field, number, words)
 
 
 def all_of(mistakes: Sequence[InputError]) -> InputError:
@@ -116,10 +132,10 @@ class Stopped(FoucaultError):
         super().__init__(f"stopped; {outcome}")
 
 
-def nearest(word: str, known: Iterable[str]) -> list[str]:
+def nearest(word: object, known: Iterable[str]) -> list[str]:
     """Return at most five names: a word's own or what it shortens (site.g), very like it, containing it, or like it."""
     names = {name.lower(): name for name in known}
-    typed = word.lower()
+    typed = str(word).lower()  # callers in Python give anything
     section, _, key = typed.rpartition(".")
     short = [name for name in names if key and name.startswith(section) and f".{key}" in name]
     for alike in ([typed] if typed in names else short, get_close_matches(typed, names, n=MOST, cutoff=VERY_ALIKE)):
@@ -129,7 +145,7 @@ def nearest(word: str, known: Iterable[str]) -> list[str]:
     return [names[name] for name in (containing or get_close_matches(typed, names, n=MOST))][:MOST]
 
 
-def did_you_mean(word: str, known: Iterable[str], otherwise: str) -> str:
+def did_you_mean(word: object, known: Iterable[str], otherwise: str) -> str:
     """Return the question whether one of the nearest names was meant; `otherwise` if no name is near."""
     names = nearest(word, known)
     return f"Did you mean {in_words(names)}?" if names else otherwise
@@ -145,7 +161,7 @@ def counted(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
-def unknown(field: str, word: str, expected: str, known: Iterable[str], otherwise: str) -> InputError:
+def unknown(field: str, word: object, expected: str, known: Iterable[str], otherwise: str) -> InputError:
     """Return the error for a word that is none of the known ones.
 
     Args:

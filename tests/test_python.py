@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from decimal import Decimal
 
 import numpy as np
 import pandas
@@ -39,6 +40,18 @@ def test_fields_are_replaced_by_words_or_a_mapping(values):
     assert reference.load_scene("paris").with_values(values) == scene
 
 
+def test_numbers_of_any_kind_in_a_scene_are_what_they_print_as():
+    number = {"length": Decimal("67.10"), "drag": np.int64(0)}
+    document = {"id": "a", "pendulum": number, "release": {"x": np.float64(0.1), "y": Decimal("1E-3")}}
+    solution = reference.solve(document | {"run": {"t_end": np.int64(60), "digits": np.int64(12)}}, level="computed")
+    scene = solution.scene
+    assert (scene.pendulum.length, scene.pendulum.drag, scene.run.t_end) == ("67.10", "0", "60")
+    assert (scene.release.x, scene.release.y, scene.run.digits) == ("0.1", "0.001", 12)
+    for wrong in (Decimal("NaN"), Decimal("Infinity"), True):
+        with pytest.raises(InputError, match=r"pendulum\.length"):
+            reference.parse_scene(document | {"pendulum": {"length": wrong}})
+
+
 def test_one_word_is_one_word():
     assert reference.load_scene("paris", "site.latitude=40").site.latitude == "40"
     assert len(reference.sweep("paris", "site.latitude=0,10", t_end=60, engine="heyoka")) == 2
@@ -52,6 +65,11 @@ def test_an_axis_of_a_sweep_is_a_range_a_list_an_array_or_text(latitudes):
     frame = swept.to_pandas()
     assert frame["swing_hz"].tolist() == swept["swing_hz"].tolist()
     assert "<table" in swept._repr_html_()
+
+
+def test_a_sweep_whose_rows_all_go_through_the_solver_names_it():
+    swept = reference.sweep("paris", {"site.latitude": [0]}, t_end=20, digits=18, engine="octet")
+    assert repr(swept) == "Swept(paris: 1 row, 1 ok; the solver)"
 
 
 @pytest.mark.parametrize("columns", [ROWS, {k: np.array(v) for k, v in ROWS.items()}, pandas.DataFrame(ROWS)])

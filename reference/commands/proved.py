@@ -10,6 +10,7 @@ from ..engines.registry import in_background
 from ..numbers.precision import rounded_up
 from ..scenes.scene import Scene, unit_of
 from ..solver.solve import solve
+from ..solver.swing import Swing, left_out, left_out_texts
 from ..solver.uncertain import exact_texts, widths_of
 from ..system.workers import Emit
 
@@ -27,8 +28,13 @@ def proved_swing(scene: Scene) -> dict[str, Any]:
         UnreachableError: the level enclosed is out of reach.
     """
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "false"})
-    swing = solve(scene, level="enclosed", digits=PROVED_DIGITS, sections="highest").swing
-    return {"over_s": scene.run.t_end, **_interval_texts(swing, SWING)}
+    swing = solve(scene, level="enclosed", digits=PROVED_DIGITS, sections="highest").swing_or_reason
+    proved = {"over_s": scene.run.t_end, **_interval_texts(swing, SWING)}
+    return proved | ({"reason": swing} if isinstance(swing, str) else {"left_out": _left_out(swing)})
+
+
+def _left_out(swing: Swing) -> dict[str, str]:
+    return left_out(swing.reason, swing.full_turn is None)
 
 
 def _interval_texts(swing: Any, names: Iterable[str]) -> dict[str, list[str] | None]:
@@ -38,8 +44,10 @@ def _interval_texts(swing: Any, names: Iterable[str]) -> dict[str, list[str] | N
 
 def swing_line(proved: dict[str, Any]) -> str:
     """Return in a line what is proved of the swing."""
+    if "reason" in proved:
+        return f"[proved, over {proved['over_s']} s] no period: {proved['reason']}"
     texts = [f"{name} = {value[0]} to {value[1]}" for name, value in proved.items() if isinstance(value, list)]
-    return f"[proved, over {proved['over_s']} s] " + (", ".join(texts) or "no swing is decided")
+    return f"[proved, over {proved['over_s']} s] " + ", ".join([*texts, *left_out_texts(proved["left_out"])])
 
 
 def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
@@ -61,6 +69,7 @@ def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
             "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
             "period_s": ranges.period and list(ends(*ranges.period)),
             **_interval_texts(ranges.swing, MEAN[1:]),
+            "left_out": _left_out(ranges.swing) if ranges.swing else {},
             "first_transits_s": first.pop("transit"),
             "first_passages_s": first,
             "possible": len(ranges.possible),
@@ -89,8 +98,11 @@ def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     texts = [
         f"{name} = {ranges[name][0]} to {ranges[name][1]}" if ranges[name] else f"{name} is not decided"
         for name in MEAN
-        if any(ranges[name] for name in MEAN)
+        if any(ranges[name] for name in MEAN) and name not in ranges["left_out"]
     ]
+    texts += left_out_texts(ranges["left_out"]) or (
+        [] if texts else ["no period: the intervals of these inputs leave it open"]
+    )
     texts += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
     for word, passages in ranges["first_passages_s"].items():
         texts += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]

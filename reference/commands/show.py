@@ -21,8 +21,6 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
-NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
-LEAN = "the rest position is off the plumb line"
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -182,7 +180,7 @@ def _motion(scene: Scene) -> dict[str, Any]:
     They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
     """
     from ..model.start import Start
-    from ..solver.swing import CLEAR, HOUR, offset, turns_too_far
+    from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, SMALL, left_out, offset, turns_too_far
     from ..sweeps.part import solve_part
     from ..sweeps.promote import Promoted
     from ..sweeps.request import request
@@ -208,15 +206,16 @@ def _motion(scene: Scene) -> dict[str, Any]:
     smallest = 2 * math.sin(math.radians(angle) / 2) * math.exp(-float(k.drag) * seconds / 2)
     off = offset(start, float(k.length) * smallest)
     if off > 1:
-        return {"reason": f"its last swing is less than {CLEAR} times as wide as {LEAN}"}
+        return {"reason": LEAN}
     motion |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
-    if off <= math.radians(abs(turn)) * seconds / HOUR and not turns_too_far(start, 0.5 / swing):
-        error_of_turn = float(row["precession_error_deg_per_h"])
+    turned, error_of_turn = math.radians(abs(turn)) * seconds / HOUR, float(row["precession_error_deg_per_h"])
+    reason = FAST if turns_too_far(start, 0.5 / swing) else "" if off <= turned else SMALL
+    if not reason:
         motion |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
         if abs(turn) > error_of_turn:
             full = 360 / abs(turn)
             motion |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
-    return motion
+    return motion | {"left_out": left_out(reason, not abs(turn) > error_of_turn)}
 
 
 def _motion_line(motion: dict[str, Any]) -> str:
@@ -224,11 +223,14 @@ def _motion_line(motion: dict[str, Any]) -> str:
     if "reason" in motion:
         return f"[motion] no period: {motion['reason']}"
     from ..numbers.precision import digits_that_hold
+    from ..solver.swing import left_out_texts
 
-    names = [name for name in motion if name != "over_s"]
+    names = [name for name in motion if name not in ("over_s", "left_out")]
     pairs = zip(names[::2], names[1::2], strict=True)
     texts = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
-    return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(texts)
+    return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(
+        [*texts, *left_out_texts(motion["left_out"])]
+    )
 
 
 def scene_file(scene: Scene | None) -> str:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError, Stopped, did_you_mean, in_words, plain_json
+from ..errors import InputError, Stopped, check_whole, did_you_mean, in_words, plain_json
 from ..scenes.scene import Scene, field_names, full_name
 from ..scenes.shipped import scene_ids
 
@@ -171,5 +171,5 @@ def check_workers(workers: int | None, cluster: str | None) -> None:
     """
     if cluster is not None:
         refuse({"--workers": workers}, "together with --cluster")
-    if workers is not None and workers < 1:
-        raise InputError("--workers", workers, "a whole number from 1")
+    if workers is not None:
+        check_whole("--workers", workers)

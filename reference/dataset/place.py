@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
+from ..errors import checked_path
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import golden_root, in_checkout, scene_ids
 from .sheets import by_field, scene_inputs
@@ -75,8 +76,12 @@ def ships(folder: Path) -> bool:
 
 
 def golden_folder(name: str | Path) -> Path:
-    """Return the folder that a name means: a path, or else an id in ./golden, in data/golden, in the package."""
-    folder = Path(name)
+    """Return the folder that a name means: a path, or else an id in ./golden, in data/golden, in the package.
+
+    Raises:
+        InputError: it is neither text nor a path.
+    """
+    folder = checked_path("PATH", name, "the id of a dataset, or the path of its folder")
     if isinstance(name, Path) or folder.name != name or folder.is_dir():
         return folder
     roots = (Path(GOLDEN), Path("data") / GOLDEN, golden_root())

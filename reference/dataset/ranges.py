@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..engines.plan import Report
-from ..errors import DatasetError, FoucaultError, InputError
+from ..errors import DatasetError, FoucaultError, InputError, checked_path
 from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..scenes.scene import parse_scene
@@ -47,7 +47,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
     """
     if not isinstance(ranges, Ranges):
         raise InputError("ranges", ranges, "what solve(…, uncertain=…) returns", "A Solution is written by write.")
-    folder = Path(folder)
+    folder = checked_path("folder", folder, "the folder to write to")
     check_target(folder, RANGES)
     texts = _texts(ranges)
     if problems := _misprints(texts, ranges):
@@ -86,7 +86,7 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
         printed, texts = _read(folder)
     except DatasetError as error:
         return error.problems
-    again = solve(printed.scene, uncertain=_signed(printed), engine=printed.engine, report=report)
+    again = solve(printed.scene, uncertain=printed.uncertain, engine=printed.engine, report=report)
     problems = _misprints(texts, again)
     if recompute and not problems:
         files = _texts(again)
@@ -145,10 +145,6 @@ def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[
 def _intervals(cells: Sequence[str]) -> tuple[Ends, ...]:
     ends = [Fraction(text) for text in cells]
     return tuple(Ends(*pair) for pair in zip(ends[::2], ends[1::2], strict=True))
-
-
-def _signed(ranges: Ranges) -> dict[str, str]:
-    return {name: f"±{width}" for name, width in ranges.uncertain.items()}
 
 
 def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
@@ -239,7 +235,7 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
         "level": scene.run.level,
         "inputs": scene.inputs,
         "scene": inputs,
-        "uncertain": _signed(ranges),
+        "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
         "period_s": period_texts(ranges),
         "possible": open_intervals(ranges.possible),
         **({"sections": sections} if sections else {}),

@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..errors import DatasetError, InputError
+from ..errors import DatasetError, InputError, checked_path
 from ..numbers.columns import POSITION
 from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
@@ -78,7 +78,7 @@ def write(solution: Solution, folder: str | Path, name: str | None = None, *, ta
         raise InputError(
             "solution", solution, "a Solution", "Solve the scene first. Ranges are written by write_ranges."
         )
-    folder = Path(folder)
+    folder = checked_path("folder", folder, "the folder to write to")
     if not tables and solution.function is None:
         raise InputError("tables", "none", "a golden function, or tables", "Solve it with function=True.")
     if ships(folder) and solution.proof is not None and not solution.proof.audited:

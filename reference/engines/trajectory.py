@@ -6,13 +6,13 @@ They are as good as their number type and tolerance, no better: `solver.solve` g
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..errors import BeyondDoublesError, InputError, IntegrationError, unknown
+from ..errors import BeyondDoublesError, InputError, IntegrationError, check_whole, unknown
 from ..model.carried import carried
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
@@ -89,6 +89,7 @@ class Variants:
 
 STEPS_PER_RADIAN = 100  # most steps while the scene's fastest rate goes through a radian: a run takes one or two
 LEAST_STEPS = 10_000  # and of a whole run
+MOST_RADIANS = 1e16  # of a run: its steps are counted in 64 bits
 SINGULAR = {"plane": "at the horizontal", "angles": "on the vertical", "lagrangian": "on the vertical"}
 
 
@@ -117,18 +118,26 @@ def integrate(
         The states as binary64, shape (times, variables).
 
     Raises:
-        InputError: times that do not increase from 0; a wrong tolerance; not as many rates, or numbers of `start`, as
-            variables.
+        InputError: times that do not increase from 0; a wrong number type, tolerance or `max_steps`; variables that
+            are no names; not as many rates, or numbers of `start`, as variables, or others than numbers.
         IntegrationError: heyoka stops before the last time, also because `max_steps` do not suffice, or a state is
             not finite.
     """
     from .heyoka.model import Propagator
 
-    propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
+    _check_number(number)
+    check_whole("max_steps", max_steps, 0, "a whole number of steps, or 0 for any number")
+    if not callable(derivatives):
+        raise InputError("derivatives", derivatives, "a function derivatives(state, functions)")
+    names = list(variables) if isinstance(variables, Iterable) else []
+    if not names or not all(isinstance(name, str) for name in names) or len({*names}) < len(names):
+        raise InputError("variables", variables, "a name for each variable, no two alike")
+    propagator = Propagator(names, derivatives, number, tolerance=tolerance)
     numbers = propagator.numbers
-    if len(start) != len(variables):
-        raise InputError("start", start, f"{len(variables)} numbers, one a variable")
-    states = propagator.from_zero(numbers.all_of(start), _from_zero(times, numbers), max_steps=max_steps)
+    state = _numbers("start", start, numbers, f"{len(names)} finite numbers, one a variable")
+    if len(state) != len(names):
+        raise InputError("start", start, f"{len(names)} numbers, one a variable")
+    states = propagator.from_zero(state, _from_zero(times, numbers), max_steps=max_steps)
     return np.asarray(states.astype(float))
 
 
@@ -160,10 +169,9 @@ def trajectory(
         IntegrationError: heyoka stops before the last time, as where the formulation is singular.
     """
     scene = as_scene(scene)
-    if formulation not in FORMULATIONS:
+    if formulation not in [*FORMULATIONS]:
         raise unknown("formulation", formulation, f"one of {', '.join(FORMULATIONS)}", FORMULATIONS, "")
-    if not isinstance(number, NumberType):
-        raise InputError("number", number, "DOUBLE, LONG_DOUBLE or real(BITS) of reference.numbers.precision")
+    _check_number(number)
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.model import Numbers, RoundedModel
@@ -174,6 +182,9 @@ def trajectory(
     except OverflowError:
         raise BeyondDoublesError from None
     radians = start.fastest_rate * float(moments[-1])
+    if radians > MOST_RADIANS:
+        most = f"times up to {MOST_RADIANS / start.fastest_rate:.3g} s"
+        raise InputError("times", f"{float(moments[-1]):.6g} s", most, "A run with more steps would take centuries.")
     propagator = model.propagator(tolerance, radians)
     try:
         states = propagator.from_zero(state, moments, max_steps=LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians))
@@ -186,14 +197,24 @@ def trajectory(
     return rows
 
 
+def _check_number(number: object) -> None:
+    if not isinstance(number, NumberType):
+        raise InputError("number", number, "DOUBLE, LONG_DOUBLE or real(BITS) of reference.numbers.precision")
+
+
 def _from_zero(times: Sequence[Any] | Array, numbers: Any) -> Any:
     """Return times as heyoka's numbers of a run's type."""
-    try:
-        moments = numbers.all_of(times)
-        line = np.array(moments, dtype=numbers.dtype)
-        good = len(line) > 0 and line[0] == 0 and bool((line[1:] > line[:-1]).all())
-    except (ArithmeticError, AttributeError, TypeError, ValueError):  # what is no number, infinity and NaN among them
-        good = False
-    if not good:
-        raise InputError("times", times, "numbers of seconds that increase, the first of them 0")
+    expected = "numbers of seconds that increase, the first of them 0"
+    moments = _numbers("times", times, numbers, expected)
+    line = np.array(moments, dtype=numbers.dtype)
+    if not (line.ndim == 1 and line.size and line[0] == 0 and (line[1:] > line[:-1]).all()):
+        raise InputError("times", times, expected)
     return moments
+
+
+def _numbers(field: str, values: Any, numbers: Any, expected: str) -> Any:
+    """Return what a caller gave as heyoka's numbers of a run's type."""
+    try:
+        return numbers.all_of(values)
+    except (ArithmeticError, AttributeError, TypeError, ValueError):  # what is no number, infinity and NaN among them
+        raise InputError(field, values, expected) from None

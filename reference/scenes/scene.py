@@ -87,13 +87,15 @@ def words_of(values: Words) -> list[str]:
     """Return values of fields as words `key=value`; a list, range or array is written as values between commas."""
     if isinstance(values, Mapping):
         return [f"{key}={_word(value)}" for key, value in values.items()]
-    return [values] if isinstance(values, str) else list(values)
+    return [*map(str, values)] if _is_listed(values) else [str(values)]
 
 
 def _word(value: Any) -> str:
-    if isinstance(value, Iterable) and not isinstance(value, str):
-        return ",".join(map(_word, value))
-    return str(value)
+    return ",".join(map(_word, value)) if _is_listed(value) else str(value)
+
+
+def _is_listed(value: Any) -> bool:
+    return isinstance(value, Iterable) and not isinstance(value, str)
 
 
 def _with_values(document: dict[str, Any], values: Words) -> Scene:
@@ -179,6 +181,8 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
     Raises:
         InputError: names each wrong field, what it got and what was expected; the first one is its `field`.
     """
+    if not isinstance(document, Mapping):
+        raise InputError("scene", document, "nested mappings: {'id': 'mine', 'release': {'x': '1', 'y': '0'}}")
     try:
         scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
     except ValidationError as error:
@@ -239,9 +243,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
         if path.suffix == ".toml":
             raise
         advice = f"`foucault show --template` prints one. Before a trajectory: `foucault score SCENE {path.name}`."
-        raise InputError(
-            error.field, error.got, error.expected, "It is a folder." if os.path.isdir(path) else advice
-        ) from None
+        raise InputError(error.field, error.got, error.expected, _FOLDER if os.path.isdir(path) else advice) from None
     file_id = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document:
         if not is_scene_id(file_id):
@@ -280,6 +282,11 @@ def _floats_as_text(document: Mapping[str, Any]) -> dict[str, Any]:
     return {key: text(value) for key, value in document.items()}
 
 
+_FOLDER = "It is a folder. `foucault verify` checks datasets and ranges; reference.load and load_ranges read them."
+
+
 def _no_scene(word: str) -> InputError:
     expected = "a scene's id or the path of a TOML file"
+    if os.path.isdir(word):
+        return InputError("SCENE", word, expected, _FOLDER)
     return unknown("SCENE", word, expected, scene_ids(), "`foucault scenes` lists the ids.")

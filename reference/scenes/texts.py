@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from numbers import Integral
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema, WrapValidator
@@ -40,7 +41,7 @@ def _reading(info: ValidationInfo) -> str:
 def _as_text(value: object) -> object:
     if isinstance(value, float):
         raise Refused("a decimal number in quotes", f'Write "{value}" as a string: a bare TOML float is rounded.')
-    if isinstance(value, int) and not isinstance(value, bool):
+    if isinstance(value, Integral | Decimal) and not isinstance(value, bool):
         return str(value)
     return value
 
@@ -117,11 +118,18 @@ def _by_full_name(widths: object) -> object:
     return full
 
 
+def without_sign(width: str) -> str:
+    """Return half of a width as a number: ±0.001, +-0.001, +/-0.001 and 0.001 mean the same."""
+    text = width.strip()
+    return text.removeprefix(next(filter(text.startswith, SIGNS), "")).strip()
+
+
+SIGNS = ("±", "+-", "+/-")
 Width = Annotated[
     Positive,
-    BeforeValidator(lambda width: width.strip().removeprefix("±") if isinstance(width, str) else width),
+    BeforeValidator(lambda width: without_sign(width) if isinstance(width, str) else width),
     AfterValidator(lambda width: f"±{width}"),
-    WithJsonSchema({**_SCHEMA, "pattern": f"^±?{_DECIMAL.pattern}$"}),
+    WithJsonSchema({**_SCHEMA, "pattern": rf"^(±|\+-|\+/-)?{_DECIMAL.pattern}$"}),
 ]
 Widths = Annotated[dict[str, Width], BeforeValidator(_by_full_name)]
 

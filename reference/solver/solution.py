@@ -21,7 +21,7 @@ from ..numbers.precision import decimals_for
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
-from .swing import Swing, swing_of
+from .swing import UNDECIDED, Swing, swing_or_reason
 
 Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
 T = TypeVar("T")
@@ -163,16 +163,21 @@ class Solution(GridColumns):
         """CPU seconds of all runs and proofs, imports and compilation apart."""
         return self.pilot_s + self.run.cpu_s + self.check_s + self.discarded_s
 
-    @cached_property
+    @property
     def swing(self) -> Swing | None:
         """Frequency and precession as intervals, with the section `highest`; None without it, or where it is open."""
+        return self.swing_or_reason if isinstance(self.swing_or_reason, Swing) else None
+
+    @cached_property
+    def swing_or_reason(self) -> Swing | str:
+        """The swing, or a sentence that says why there is none."""
         passages = self.sections.get("highest")
         if passages is None or passages.possible:
-            return None
+            return UNDECIDED
         table, names = passages.table, ("t", "x", "y", "z")
         pairs = (zip(table.exact(name), table.bound(name), strict=True) for name in names)
         ends = ([(q - bound, q + bound) for q, bound in column] for column in pairs)
-        return swing_of([*zip(*ends, strict=True)], self.scene.exact, table.bits)
+        return swing_or_reason([*zip(*ends, strict=True)], self.scene.exact, table.bits)
 
     @cached_property
     def function(self) -> GoldenFunction | None:

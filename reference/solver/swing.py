@@ -21,6 +21,14 @@ from ..scenes.inputs import Inputs
 CERTAIN = 1e-6  # of a right angle: how near to it the turn from one highest point to the next may come
 CLEAR = 16  # times as far as the rest position is off the plumb line is where a swing's highest points are its ends
 HOUR = 3600
+# Why there is no swing, no precession or no full turn
+NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
+LEAN = f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
+UNDECIDED = "it is not decided which of its points are the highest"
+ONE_SIDE = "highest points that follow one another lie on one side: they are not the ends of a swing"
+FAST = "the site may turn by a right angle and more from one highest point to the next: nobody can tell which way"
+SMALL = "the plane turns by less than it may seem to, since the rest position is off the plumb line"
+LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
 ARC, DEGREES = Fraction(21, 20), Fraction(573, 10)  # a little more than π/3, and than a radian in degrees
 
 Ends = tuple[Fraction, Fraction]
@@ -50,10 +58,12 @@ class Swing:
         hz: swings a second: half of the highest points a second, from the first to the last.
         precession: their turn about the plumb line, east to north, in degrees an hour; None where they turn by less
             than they may be off, or one so far to the next, up to the half turn between sides, that none can follow it.
+        reason: why there is no precession.
     """
 
     hz: Ends
     precession: Ends | None
+    reason: str = ""
 
     @property
     def period(self) -> Ends:
@@ -77,10 +87,18 @@ class Swing:
 
 
 def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)) -> Swing | None:
-    """Return the swing from the highest points of a run.
+    """Return the swing from the highest points of a run, or None; arguments are those of `swing_or_reason`."""
+    swing = swing_or_reason(points, inputs, bits, lean)
+    return swing if isinstance(swing, Swing) else None
 
-    None with fewer than two, where their times overlap, and where they are not the ends of a swing: it is too small
-    beside how far the rest position is off the plumb line (`offset`), or two on one side follow one another.
+
+def swing_or_reason(
+    points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)
+) -> Swing | str:
+    """Return the swing from the highest points of a run, or a sentence that says why there is none.
+
+    There is none with fewer than two, where their times overlap, and where they are not the ends of a swing: it is too
+    small beside how far the rest position is off the plumb line (`offset`), or two on one side follow one another.
 
     Args:
         points: intervals of t, x, y and z of each, in s and m.
@@ -88,25 +106,46 @@ def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: 
         bits: that angles are computed with.
         lean: how far unit vectors across the plumb line are from the scene's, at most, where other inputs move it.
     """
-    if len(points) < 2 or points[-1][0][0] <= points[0][0][1]:
-        return None
+    if len(points) < 2:
+        return NO_SWING
+    if points[-1][0][0] <= points[0][0][1]:
+        return UNDECIDED
     start = Start.of(inputs, bits + GUARD_BITS)
     seen = [_seen(point, start, lean) for _, *point in points]
     off = offset(start, min(point.far for point in seen))
     if off > 1:
-        return None
+        return LEAN
     (first, last), half = (points[i][0] for i in (0, -1)), Fraction(len(points) - 1, 2)
     spans = last[0] - first[1], last[1] - first[0]
     hz = half / spans[1], half / spans[0]
     if turns_too_far(start, max(b[0][1] - a[0][0] for a, b in pairwise(points))):
-        return Swing(hz, None)
+        return Swing(hz, None, FAST)
     if any(count % 2 == 0 for count in _halves(seen)):
-        return None
+        return ONE_SIDE
     turn = _turn(seen, start.ctx, bits)
-    if turn is None or 2 * Fraction(off) * DEGREES > abs(turn[0] + turn[1]):
-        return Swing(hz, None)
+    if turn is None:
+        return Swing(hz, None, LOST)
+    if 2 * Fraction(off) * DEGREES > abs(turn[0] + turn[1]):
+        return Swing(hz, None, SMALL)
     rates = [angle / span * HOUR for angle in turn for span in spans]
     return Swing(hz, (min(rates), max(rates)))
+
+
+def left_out(reason: str, still: bool) -> dict[str, str]:
+    """Return why a swing has no precession or no full turn, by their names in a document.
+
+    Args:
+        reason: why there is no precession, "" if there is one.
+        still: whether the precession may be 0.
+    """
+    if reason:
+        return {"precession_deg_per_h": reason, "full_turn_h": "the precession is not known"}
+    return {"full_turn_h": "the plane may not turn at all"} if still else {}
+
+
+def left_out_texts(reasons: dict[str, str]) -> list[str]:
+    """Return what `left_out` gives as words of a line."""
+    return [f"no {name}: {reason}" for name, reason in reasons.items()]
 
 
 def offset(start: Start, far: Any) -> float:

@@ -15,6 +15,7 @@ from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal
 from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import Scene, checked_value, full_name
+from ..scenes.texts import without_sign
 from ..system.imports import needed
 from .pilot import check_reach
 from .proof_steps import COEFFICIENT_BITS, Feed
@@ -23,8 +24,7 @@ from .solution import exact_decimals, separated
 
 UNCERTAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in (*SITE, "inverse_flattening"))]
 UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
-SIGNS = ("±", "+-", "+/-")
-EXAMPLE = "a width with its sign, in SI units or degrees, such as ±0.001 or +-0.001"
+EXAMPLE = "half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001"
 MOST_DECIMALS = 20  # of an end of an interval
 
 
@@ -40,7 +40,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
     widths: dict[str, Fraction] = {}
     have = scene.exact.by_name
     for word, text in uncertain.items():
-        name, width = full_name(word), str(text).strip()
+        name = full_name(str(word))
         field_name = f"{'uncertain.' if scene.uncertain.get(word) == text else '--uncertain '}{word}"
         if name not in UNCERTAIN:
             raise unknown(field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES)
@@ -48,9 +48,8 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
             raise InputError(field_name, text, "an input that this scene has", f"It has {', '.join(have)}.")
         if name in widths:
             raise InputError(field_name, text, f"{name} once", "Give one width for each input.")
-        number = next((width.removeprefix(sign).strip() for sign in SIGNS if width.startswith(sign)), "")
         try:
-            widths[name] = Fraction(checked_value("site.altitude", number, "decimal"))
+            widths[name] = Fraction(checked_value("site.altitude", without_sign(str(text)), "decimal"))
         except InputError:
             raise InputError(field_name, text, EXAMPLE) from None
         if widths[name] <= 0:

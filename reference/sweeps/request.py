@@ -10,6 +10,7 @@ import json
 import math
 from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from pydantic.dataclasses import dataclass as checked
 from ..engines import AUTO
 from ..engines.batch_interface import Batch, RunOptions
 from ..engines.registry import batches
-from ..errors import InputError, unknown
+from ..errors import InputError, check_whole, unknown
 from ..model.sections import direction_of
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
@@ -84,6 +85,11 @@ class Request:
     def promotes(self) -> bool:
         """Whether every row goes through the solver, by its level or digits."""
         return self.level != "computed" or self.digits is not None
+
+    @property
+    def solved_by(self) -> str:
+        """What solves the rows: an engine for many at once, or the solver, where every row goes through it."""
+        return "the solver" if self.promotes else self.engine
 
     @property
     def run_options(self) -> RunOptions:
@@ -192,10 +198,10 @@ def request(
         needed("flint", "enclose", "--level", level, "which the proof needs")
     if digits is not None:
         checked_value("run.digits", str(digits), scene.inputs)
-    if tolerance is not None and not tolerance >= 0:
+    if tolerance is not None and not (isinstance(tolerance, Real) and tolerance >= 0):
         raise InputError("--tolerance", tolerance, "a number of metres from 0")
-    if audit is not None and audit < 0:
-        raise InputError("--audit", audit, "a number of rows from 0")
+    if audit is not None:
+        check_whole("--audit", audit, 0, "a number of rows from 0")
     words = list(over)
     if bool(words) == (rows is not None):
         raise InputError("--over", " ".join(words) or "nothing", "--over KEY=…, or --rows FILE", "Give one of the two.")
@@ -274,7 +280,7 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
         return min(
             serving, key=lambda engine: engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
         )
-    if name not in engines:
+    if name not in [*engines]:
         raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
     engines[name].check_installed()
     return engines[name]

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..engines import AUTO
-from ..errors import InputError, counted, unknown
+from ..errors import InputError, check_whole, checked_path, counted, unknown
 from ..numbers.columns import Framed, data_frame
 from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
 from ..status import Status
@@ -30,6 +30,7 @@ from .store import PLAN, SUMMARY, TRANSITS, Store, write_json
 
 MOST_IN_MEMORY = 100_000  # rows
 PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
+ROWS_OF_FRAME = "Of a data frame write rows.to_csv(FILE, index=False), and give FILE."
 LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # audited rows: at least, at most, else one in AUDITED
 
 Report = Callable[[int], None]
@@ -65,7 +66,7 @@ class Swept(Framed):
     def __repr__(self) -> str:
         """Return the scene, and how many rows there are of each status."""
         counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return f"Swept({self.request.scene.id}: {counted(len(self), 'row')}, {counts}; {self.request.engine})"
+        return f"Swept({self.request.scene.id}: {counted(len(self), 'row')}, {counts}; {self.request.solved_by})"
 
     def to_pandas(self) -> Any:
         """Return the rows as a pandas.DataFrame: the values of the fields, then the columns.
@@ -189,10 +190,11 @@ def sweep(
     Raises:
         InputError: a wrong axis, option or folder; before any work.
     """
-    file, folder = (Path(path) if path is not None else None for path in (rows, out))
-    if workers is not None and workers < 1:
-        raise InputError("workers", workers, "a whole number from 1, or None for one a core")
-    quantities = tuple(want.split(",")) if isinstance(want, str) else want
+    file = None if rows is None else checked_path("rows", rows, "a CSV or Parquet file", ROWS_OF_FRAME)
+    folder = None if out is None else checked_path("out", out, "a folder")
+    if workers is not None:
+        check_whole("workers", workers, words="a whole number from 1, or None for one a core")
+    quantities = want.split(",") if isinstance(want, str) else words_of(want)
     options = {"want": quantities, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
     run_values = {"run.t_end": t_end, "run.sections": sections}
     scene = as_scene(scene).with_values({key: value for key, value in run_values.items() if value is not None})
@@ -227,7 +229,7 @@ def load_sweep(folder: str | Path) -> Swept:
     Raises:
         InputError: there is none, or it is not done yet, or a part of it was damaged.
     """
-    store = Store.opened(Path(folder))
+    store = Store.opened(checked_path("folder", folder, "the folder of a sweep"))
     count = len(store.missing())
     if count:
         advice = f"{count} of {store.request.parts} are missing or damaged. Go on with `foucault sweep --out {folder}`."
@@ -272,8 +274,8 @@ def _workers(
     request: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
 ) -> AbstractContextManager[Executor]:
     if cluster is not None:
-        needed("distributed", "cluster", "--cluster", cluster, "which sends the rows to its workers")
+        needed("distributed", "cluster", "--cluster", str(cluster), "which sends the rows to its workers")
         from .cluster import on_cluster
 
-        return on_cluster(request, out, cluster)
+        return on_cluster(request, out, str(cluster))
     return on_this_machine(request, out, min(workers or usable_cores(), parts))

@@ -78,11 +78,15 @@ def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]
     """Return the pairs (variable, rate) that heyoka takes; a rate that is the int 0 becomes an expression.
 
     Raises:
-        InputError: there are not as many rates as variables.
+        InputError: there are not as many rates as variables, or one is neither a number nor an expression.
     """
-    if len(rates) != len(state):
-        raise InputError("derivatives", f"{len(rates)} rates", f"{len(state)}, one a variable")
-    return [(name, rate + hy.expression(0.0)) for name, rate in zip(state, rates, strict=True)]
+    try:
+        expressions = [rate + hy.expression(0.0) for rate in rates]
+    except TypeError:
+        raise InputError("derivatives", rates, "a list of rates, numbers or expressions") from None
+    if len(expressions) != len(state):
+        raise InputError("derivatives", f"{len(expressions)} rates", f"{len(state)}, one a variable")
+    return [*zip(state, expressions, strict=True)]
 
 
 def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -> list[Any]:

@@ -110,3 +110,13 @@ def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(foucault, tmp_pa
     status, out, err = foucault("plot", *words)
     assert (status, out) == (2, "") and said in err
     assert [path.name for path in tmp_path.iterdir()] == ["mine.csv"]
+
+
+def test_a_matplotlib_that_cannot_be_imported_is_told_before_anything_is_solved(foucault, tmp_path, monkeypatch):
+    def broken(name):
+        raise ImportError("numpy.core.multiarray failed to import")
+
+    monkeypatch.setattr("compare.commands.pictures.import_module", broken)
+    status, _, err = foucault("plot", "laboratory", "--out", str(tmp_path / "a.svg"))
+    assert (status, list(tmp_path.iterdir())) == (2, [])
+    assert "a broken matplotlib" in err and "failed to import" in err and "--force-reinstall" in err

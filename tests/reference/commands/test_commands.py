@@ -56,9 +56,61 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
     assert "or the run ends before" in foucault("show", "paris", "--set", "run.t_end=10")[1]
     motion = json.loads(foucault("show", "damped", "--set", "run.t_end=120", "--json")[1])["motion"]
     assert motion["full_turn_h"] == pytest.approx(31.7, rel=0.05)
-    assert {"period_s", "period_error_s", "over_s"} == {
+    assert {"period_s", "period_error_s", "over_s", "left_out"} == {
         *json.loads(foucault("show", "fast_pole", "--json")[1])["motion"]
     }
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "left_out"),
+    [
+        ("fast_pole", ("run.t_end=10",), {"precession_deg_per_h": "right angle", "full_turn_h": "not known"}),
+        (
+            "paris",
+            ("run.t_end=20", "site.gravity_is=effective", "release.x=0.005", "release.y=0"),
+            {"precession_deg_per_h": "off the plumb line", "full_turn_h": "not known"},
+        ),
+        ("paris", ("run.t_end=60", "site.rotation_rate=0"), {"full_turn_h": "may not turn"}),
+        ("paris", ("run.t_end=60",), {}),
+    ],
+)
+def test_every_number_of_a_swing_that_is_left_out_has_its_reason(foucault, scene, changes, left_out):
+    words = ["show", scene, "--proved", *(word for change in changes for word in ("--set", change))]
+    document, out = json.loads(foucault(*words, "--json")[1]), foucault(*words)[1]
+    for part in ("motion", "proved"):
+        reasons = document[part]["left_out"]
+        assert reasons.keys() == left_out.keys()
+        assert all(text in reasons[name] for name, text in left_out.items())
+        line = next(line for line in out.splitlines() if line.startswith(f"[{part}"))
+        for name in ("period_s", "precession_deg_per_h", "full_turn_h"):
+            assert f"no {name}: {reasons[name]}" in line if name in reasons else f"{name} = " in line
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (("paris", "--set", "run.t_end=10"), "the run ends before"),
+        (("nanometre_paris", "--set", "run.t_end=60"), "less than 16 times as wide"),
+        (("conical", "--set", "run.t_end=10"), "not decided which of its points are the highest"),
+    ],
+)
+def test_a_proof_without_a_swing_says_why(foucault, words, reason):
+    line = foucault("show", *words, "--proved")[1].splitlines()[-1]
+    assert line.startswith("[proved, over ") and "no period: " in line and reason in line
+
+
+def test_uncertain_inputs_that_leave_the_swing_open_say_so(foucault):
+    line = foucault("show", "paris", "--set", "run.t_end=20", "--uncertain", "y0=0.1")[1].splitlines()[-1]
+    assert "no period: the intervals of these inputs leave it open" in line
+
+
+def test_show_of_a_folder_says_what_reads_it(foucault, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "hall").mkdir()  # as an id
+    (tmp_path / "paris+-length=0.001").mkdir()
+    for word in ("hall", "paris+-length=0.001"):
+        status, _, err = foucault("show", word)
+        assert (status, "`foucault verify` checks datasets and ranges" in err) == (2, True)
 
 
 def test_show_begins_a_scene(foucault):

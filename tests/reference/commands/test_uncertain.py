@@ -42,7 +42,7 @@ def test_show_tells_period_and_first_transits():
     "words, status, told",
     [
         (["--uncertain", "length"], 2, "expected KEY=±WIDTH"),
-        (["--uncertain", "length=0.001"], 2, "expected a width with its sign"),
+        (["--uncertain", "length=1mm"], 2, "expected half of a width"),
         (["--uncertain", "lenght=±0.001"], 2, "an input on which the motion depends"),
         (["--uncertain", "length=±1", "--uncertain", "length=±2"], 2, "expected one width of length"),
         ([*BOX, "--level", "confirmed"], 2, "enclosed, together with uncertain"),

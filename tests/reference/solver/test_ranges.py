@@ -1,5 +1,6 @@
 """A scene with uncertain inputs: intervals that are proved, or a refusal that says why."""
 
+from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -15,7 +16,7 @@ from reference.enclosure.shapes import Box
 from reference.engines.plan import Run
 from reference.engines.trajectory import Variants
 from reference.solver import swing
-from reference.solver.uncertain import UNCERTAIN
+from reference.solver.uncertain import UNCERTAIN, widths_of
 
 MEASURED = {"pendulum.length": "±0.001", "site.gravity": "+-1e-5", "latitude": "+/-0.001"}
 
@@ -94,12 +95,14 @@ def test_every_input_may_be_uncertain(name):
     [
         ({"lenght": "±1"}, "expected an input on which the motion depends"),
         ({"run.t_end": "±1"}, "expected an input on which the motion depends"),
-        ({"length": "0.001"}, "expected a width with its sign, in SI units or degrees, such as ±0.001"),
-        ({"length": "-0.001"}, "expected a width with its sign"),
+        ({"length": "1 mm"}, "expected half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001"),
+        ({"length": None}, "expected half of a width"),
+        ({3: "0.001"}, "expected an input on which the motion depends"),
+        ({"length": "-0.001"}, "expected a width above 0"),
         ({"length": "±-0.001"}, "expected a width above 0"),
         ({"length": "±0"}, "expected a width above 0"),
-        ({"length": "±1 mm"}, "expected a width with its sign"),
-        ({"length": "±nan"}, "expected a width with its sign"),
+        ({"length": "±1 mm"}, "expected half of a width"),
+        ({"length": "±nan"}, "expected half of a width"),
         ({"length": "±67"}, "up to 0', expected a number above 0"),
         ({"drag": "±0.1"}, "up to -0.1', expected a number at least 0"),
         ({"latitude": "±60"}, "expected a number at least -90 and at most 90"),
@@ -335,3 +338,11 @@ def test_derivatives_narrow_period_and_precession():
     assert least < point[0] < point[1] < most
     slope = narrow.derivative("latitude").precession  # of -Ω sin φ, in degrees an hour per degree
     assert slope[0] < -15.041 * np.cos(np.radians(50)) * np.pi / 180 < slope[1]
+
+
+@pytest.mark.parametrize("width", ["±0.001", "+-0.001", "+/-0.001", "0.001", " ± 0.001", 0.001, Decimal("0.001")])
+def test_half_of_a_width_stands_with_a_sign_or_without_in_python_and_in_a_scene(width):
+    assert widths_of(reference.load_scene("paris"), {"length": width}) == {"pendulum.length": Fraction(1, 1000)}
+    scene = {"id": "a", "release": {"x": "1", "y": "0"}, "uncertain": {"pendulum.length": width}}
+    if not isinstance(width, float):
+        assert reference.parse_scene(scene).uncertain == {"pendulum.length": "±0.001"}

@@ -28,6 +28,7 @@ from reference.solver.solution import (
     section_decimals,
     transit_decimals,
 )
+from reference.solver.swing import Swing
 
 SURE, OPEN = Fraction(1, 10**12), Fraction(1)
 
@@ -96,7 +97,10 @@ def test_passages_have_the_decimals_of_the_grid_and_those_of_the_latest_time(sol
 
 
 def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(solution, monkeypatch):
-    monkeypatch.setattr("reference.solver.solution.swing_of", lambda points, inputs, bits: (points, inputs, bits))
+    class Measured(Swing):
+        """What a swing is measured from, in place of its frequency and its precession."""
+
+    monkeypatch.setattr("reference.solver.solution.swing_or_reason", lambda *given: Measured(given, None))
     table = Table(SECTION, 7, [(1, 2, 3, 4, 5, 6, 7)], [(1,) * 7])
     unit = Fraction(1, 1 << 7)
     points = [tuple(((k - 1) * unit, (k + 1) * unit) for k in range(1, 5))]
@@ -104,7 +108,7 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
     for sections, swing in (
         ({"lowest": decided}, None),
         ({"highest": unsure}, None),
-        ({"highest": decided}, (points, solution.scene.exact, 7)),
+        ({"highest": decided}, Measured((points, solution.scene.exact, 7), None)),
     ):
         assert replace(solution, sections=sections).swing == swing
 
