@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
 from reference.dataset.golden import WITHIN, Dense
-from reference.errors import counted, in_words, unknown
+from reference.errors import counted, did_you_mean, in_words
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.numbers.precision import Array
@@ -94,7 +94,7 @@ def judge(
     if not (isinstance(covers, Real) and 0 <= covers <= 1):
         raise InputError("covers", covers, "a share of the scene's span, from 0 to 1")
     if inputs not in READINGS:
-        raise unknown("inputs", str(inputs), in_words(READINGS), READINGS, "")
+        raise InputError("inputs", inputs, in_words(READINGS), did_you_mean(str(inputs), READINGS, ""))
     if not isinstance(baseline, Score | Candidate | Mapping | str | Path | None):
         raise InputError("baseline", baseline, "a score, a trajectory, the path of a file, or a score's JSON document")
     tolerance, t_end = (None if number is None else float(number) for number in (tolerance, t_end))
