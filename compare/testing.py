@@ -118,7 +118,7 @@ def message(result: Score) -> str:
     """Return the message of a failed assertion: the worst number if it is off, and all that `foucault score` says."""
     errors, worst = result.errors, result.worst
     head = [
-        f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0]}):",
+        f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0] + 1}):",
         f"  expected   {worst.expected!r}",
         f"  got        {worst.got!r}",
         f"  difference {worst.difference:+.3e} m",

@@ -64,6 +64,17 @@ def read(source: str | Path, *, columns: Sequence[str] = (), units: Sequence[str
         return read_stream(stream, name, Naming(tuple(columns), tuple(units)))
 
 
+@contextmanager
+def named(field: str) -> Iterator[None]:
+    """Name a field in what is wrong with its file or its command: a baseline is read, and run, as a candidate is."""
+    try:
+        yield
+    except InputError as error:
+        if error.field not in ("CANDIDATE", "--run", "baseline"):
+            raise
+        raise InputError(field, error.got, error.expected, error.advice) from None
+
+
 def read_stream(stream: IO[bytes], name: str, naming: Naming | None = None) -> Candidate:
     """Read a candidate in any of the formats from a stream of bytes that can be read twice, as no pipe can."""
     head = stream.read(_TELLING)

@@ -26,7 +26,7 @@ from ..candidates.arrays import candidate_of
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing, timed
 from ..candidates.names import Naming
-from ..candidates.read import read, read_stream, read_transits
+from ..candidates.read import named, read, read_stream, read_transits
 from ..report import suite
 from ..score.baseline import document_of, rows_of
 from ..score.document import of_outcome
@@ -98,7 +98,7 @@ class Judging:
 
     def score(self, scene: Scene, candidate: Candidate | None, times: Array | None, baseline: Any = None) -> Score:
         """Judge a candidate, with its transits or transits alone, beside a baseline if there is one."""
-        with stoppable("nothing was written"), progress() as show:
+        with stoppable("nothing was written"), progress() as show, named("--baseline"):
             options = self.options | {"baseline": baseline, "announce": announce}
             report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
             return judge(candidate, scene, transits=times, report=report, **options)
@@ -107,9 +107,11 @@ class Judging:
         """Judge a file."""
         return self.outcome(name, scene.id, lambda: self.score(scene, self._read(name), times, self._earlier()))
 
-    def _earlier(self) -> Candidate | str | None:
-        """Read the baseline, if there is one, unless it is a document."""
-        return self.baseline if str(self.baseline).endswith(DOCUMENT) else self._read(self.baseline)
+    def _earlier(self) -> Candidate | dict[str, Any] | None:
+        """Read the baseline, a trajectory or a document, if there is one."""
+        with named("--baseline"):
+            document = str(self.baseline).endswith(DOCUMENT)
+            return document_of(Path(str(self.baseline))) if document else self._read(self.baseline)
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
@@ -123,7 +125,8 @@ class Judging:
             times = self.times(transits)
             candidate, timing = printed(program.command, name, repeats)
             command = self.baseline is not None and not Path(self.baseline).is_file()
-            earlier = printed(str(self.baseline), str(self.baseline), 0)[0] if command else self._earlier()
+            with named("--baseline"):
+                earlier = printed(str(self.baseline), str(self.baseline), 0)[0] if command else self._earlier()
             return replace(self.score(scene, candidate, times, earlier), timing=timing)
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
@@ -177,7 +180,8 @@ class Judging:
             return {}
         path = Path(self.baseline)
         if path.suffix == DOCUMENT:
-            return {str(row["scene"]): {"rows": [row]} for row in rows_of(document_of(path))}
+            with named("--baseline"):
+                return {str(row["scene"]): {"rows": [row]} for row in rows_of(document_of(path))}
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 

@@ -22,7 +22,7 @@ from reference.commands.terminal import (
     replacements,
     stoppable,
 )
-from reference.errors import in_words
+from reference.errors import counted, in_words
 from reference.scenes.shipped import golden_root, seals
 
 from .options import announce, completion_of_lists, listed
@@ -123,7 +123,7 @@ def atlas(
     The page of a scene plays its motion, has pictures, bounds and files, and judges a program's output dropped on it.
     """
     from ..report.atlas.entry import studies_folder
-    from ..report.atlas.pages import build, scenes_of
+    from ..report.atlas.pages import build
     from ..report.folder import PAGE
 
     with stoppable("nothing half was written"), progress() as show:
@@ -132,5 +132,5 @@ def atlas(
     if as_json:
         emit({"out": str(out), "pages": [{"page": name, "bytes": size} for name, size in sizes.items()]})
         return
-    scenes = scenes_of(sum(name.endswith(".html") for name in sizes) - 1)
+    scenes = counted(sum(name.endswith(".html") for name in sizes) - 1, "scene")
     typer.echo(f"{out / PAGE}: {scenes}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} files")

@@ -35,7 +35,12 @@ UNUSED = {  # fields of a scene that make no difference to a score
     "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
 }
-READINGS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
+
+
+def _readings() -> tuple[str, ...]:
+    from ..score.judge import READINGS
+
+    return READINGS
 
 
 def _approximation_ids() -> list[str]:
@@ -81,7 +86,7 @@ TOLERANCE = option("--tolerance", "Allow errors up to this, in m (default: 1e-6 
 COVERS = option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE")
 T_END = option("--t-end", "Ignore rows after this time, in s (default: the scene's).", "S")
 INPUTS = option(
-    "--inputs", "Read the scene as decimal or binary64; auto: by the file.", "READING", completion(lambda: READINGS)
+    "--inputs", "Read the scene as decimal or binary64; auto: by the file.", "READING", completion(_readings)
 )
 PLOT = option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE")
 TIMEOUT = option("--timeout", f"Stop --run after this many seconds (default: {TIMEOUT_S:g}).", "S")
@@ -135,7 +140,7 @@ def command(
     from .judging import Judging, ranges_named, ranges_to_prove
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
-    reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
+    reading = None if chosen("--inputs", inputs, _readings()) == "auto" else inputs
     check_positive("--tolerance", tolerance, "metres")
     if no_diagnosis:
         refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")

@@ -131,12 +131,13 @@ def study(
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
-    from ..report.approximations import document_of, report_of
+    from ..report.approximations import Swept, document_of, report_of
 
-    report = report_of(scene)
+    swept: Swept = {}
+    report = report_of(scene, swept)
     report.check(out)
     with stoppable("nothing was kept"), progress() as show:
-        document = document_of(scene, show(scene.id, unit="tables"))
+        document = document_of(scene, swept, show(scene.id, unit="tables"))
     finish(document, report.text, report.write(document, out), as_json)
 
 

@@ -25,7 +25,7 @@ from reference.system.workspace import workspace
 
 from ..candidates.external import run_program
 from .library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
-from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, Outcome, Work, adaptive, failed, outcome
 from .rhs.problem import Problem
 from .rhs.straight_line import StraightLine
 
@@ -129,8 +129,7 @@ def _native(
 ) -> Method:
     """Declare a method; arguments as in `prepare`, then further fields of `Method`."""
     work = partial(prepare, library=library, parts=parts, defines=defines, link=link)
-    fields |= {"family": Family.COMPILED, "stability": NINE_DIGITS}
-    return Method(setting="tolerance", native=library, prepare=work, **fields)
+    return adaptive(native=library, prepare=work, family=Family.COMPILED, **fields)
 
 
 _odeint = partial(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Method, Outcome, Work, leading, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Outcome, Work, adaptive, leading, outcome
 from .rhs.problem import Problem
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
@@ -64,10 +64,9 @@ def prepare(problem: Problem, setting: float) -> Work:
 
 
 METHODS = (
-    Method(
+    adaptive(
         id="diffrax_dopri8",
         title="Dormand-Prince 8(7), diffrax on JAX",
-        setting="tolerance",
         ladder=HIGH_ORDER,
         source="P. Kidger, On Neural Differential Equations (2021); P. J. Prince and J. R. Dormand (1981)",
         licence="Apache-2.0",
@@ -76,6 +75,5 @@ METHODS = (
         requires=("diffrax",),
         extra="methods-jax",
         order=8,
-        stability=NINE_DIGITS,
     ),
 )

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -158,6 +158,10 @@ class Method:
         power = math.floor(log_ratio)
         ratio = min((1.0, 2.0, 5.0, 10.0), key=lambda x: abs(math.log10(x) - (log_ratio - power))) * 10.0**power
         return tuple(float(f"{step * ratio:.6g}") for step in self.ladder)
+
+
+# a method of a library, which keeps its error below a tolerance
+adaptive = partial(Method, setting="tolerance", stability=NINE_DIGITS)
 
 
 def available(method: Method) -> str | None:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .library import captured, quoted
-from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, leading, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Family, Outcome, Work, adaptive, leading, outcome
 from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
@@ -59,12 +59,10 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
 
 
 _numbalsoda = partial(
-    Method,
-    setting="tolerance",
+    adaptive,
     requires=("numbalsoda", "numba"),
     extra="methods-fortran",
     family=Family.COMPILED,
-    stability=NINE_DIGITS,
 )
 
 METHODS = (

@@ -18,7 +18,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
+from .method import SPACE_FIRST, Family, Outcome, Work, adaptive, outcome
 from .rhs.problem import Problem
 
 POINTER = 8  # bytes
@@ -127,13 +127,11 @@ def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Ar
 
 
 _rebound = partial(
-    Method,
-    setting="tolerance",
+    adaptive,
     licence="GPL-3.0",
     requires=("rebound", "numba"),
     extra="methods-gpl",
     family=Family.REBOUND,
-    stability=NINE_DIGITS,
 )
 
 METHODS = (

@@ -16,7 +16,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .method import NINE_DIGITS, SPACE_FIRST, TRACEABLE, Family, Method, Outcome, Work, outcome
+from .method import SPACE_FIRST, TRACEABLE, Family, Outcome, Work, adaptive, outcome
 from .rhs.problem import Filling, Problem
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
@@ -56,14 +56,12 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
 
 
 _scipy = partial(
-    Method,
-    setting="tolerance",
+    adaptive,
     licence="BSD-3-Clause",
     formulations=SPACE_FIRST,
     requires=("scipy", "numba"),
     extra="methods",
     family=Family.SCIPY,
-    stability=NINE_DIGITS,
 )
 
 METHODS = (

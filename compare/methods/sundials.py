@@ -14,7 +14,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from .library import captured
-from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
+from .method import Family, Outcome, Work, adaptive, outcome
 from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times
@@ -49,15 +49,13 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
 
 
 _cvode = partial(
-    Method,
-    setting="tolerance",
+    adaptive,
     ladder=(1e-8, 1e-10, 1e-12, 1e-14),
     source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
     licence="BSD-3-Clause",
     requires=("sksundae", "numba"),
     extra="methods",
     family=Family.COMPILED,
-    stability=NINE_DIGITS,
 )
 
 METHODS = (

@@ -13,12 +13,13 @@ from reference.status import Status
 
 from ..approximations import APPROXIMATIONS, motions
 from ..studies.approximation_errors import TimeRow, error_table, quantity_table
-from ..studies.approximation_limits import LIMITS, SWEEP_S, UNITS, SweepRow, sweep
+from ..studies.approximation_limits import LIMITS, SWEEP_S, UNITS, SweepRow
 from ..studies.approximation_limits import limits as limits_of
 from .drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
 from .folder import Report
 from .page import Html, Table, figure, page, paragraph, section
 
+Swept = dict[str, list[SweepRow]]  # rows of sweeps, by what is varied
 OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time
 _SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
@@ -30,17 +31,18 @@ _NAMES = {
 }
 
 
-def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) -> dict[str, Any]:
+def document_of(scene: Scene, swept: Swept, report: Callable[[int, int], None] | None = None) -> dict[str, Any]:
     """Return errors up to 20 s, 1 h, 12000 s and the end, ranges good to 1 mm, 1 µm and 1 arcsecond, and quantities.
 
     Args:
         scene: the scene to approximate.
+        swept: is filled with the rows of the sweeps, of which the page has pictures.
         report: called with the number of tables that are measured, and of all.
     """
     t_end, chosen = float(scene.exact.t_end), [*motions().values()]
     within = min(SWEEP_S, t_end)
     tables: list[Callable[[], Iterable[Any]]] = [
-        *(partial(limits_of, scene, chosen, over, t_end if over == "time" else within) for over in OVERS),
+        *(partial(limits_of, scene, chosen, over, t_end if over == "time" else within, swept) for over in OVERS),
         partial(error_table, scene, chosen, t_end),
         partial(quantity_table, scene),
     ]
@@ -77,21 +79,19 @@ def _by_approximation(rows: Iterable[dict[str, Any]], key: str) -> dict[str, dic
     return groups
 
 
-def report_of(scene: Scene) -> Report:
-    """Return the report of a scene, whose pictures are measured when the page is made."""
-    return Report("approximations.json", text_table, partial(page_text, scene))
+def report_of(scene: Scene, swept: Swept) -> Report:
+    """Return the report of a scene; its errors over time are measured when the page is made."""
+    return Report("approximations.json", text_table, partial(page_text, scene, swept))
 
 
-def page_text(scene: Scene, report: dict[str, Any]) -> str:
+def page_text(scene: Scene, swept: Swept, report: dict[str, Any]) -> str:
     """Return the page as HTML."""
-    t_end, chosen = report["t_end"], [*motions().values()]
-    within = min(SWEEP_S, t_end)
-    over_time = error_table(scene, chosen, t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
+    t_end = report["t_end"]
+    times = [float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)]
+    over_time = error_table(scene, [*motions().values()], t_end, times=times)
     same_line = "Approximations with nearly equal errors share a line."
-    sweeps = []
-    for over in OVERS[1:]:
-        caption = f"Largest position error within {within:g} s, as a function of {over}."
-        sweeps.append(figure(chart(sweep(scene, chosen, over, within)), caption))
+    within = f"Largest position error within {min(SWEEP_S, t_end):g} s, as a function of"
+    sweeps = [figure(chart(rows), f"{within} {over}.") for over, rows in swept.items()]
     ranges = [_limits(report, over).html(f"Ranges of {over} in {UNITS[over]}") for over in OVERS]
     return page(
         f"{scene.id}: how accurate the approximations are",

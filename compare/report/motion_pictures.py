@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from reference.errors import shortened
+from reference.errors import counted, shortened
 from reference.numbers.precision import Array
 
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
@@ -90,9 +90,8 @@ def transits(axes: Any, motion: Motion) -> None:
         mine = motion.directions == direction
         t, x = _thinned(motion.transit_t[mine], DOTS // 2), _thinned(motion.transit_x[mine], DOTS // 2)
         _dots(axes, t * seconds, x * scale, colour)
-    count = len(motion.transit_t)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
-    axes.set(title=f"Where the bob turns in x: {count} transit{'' if count == 1 else 's'}")
+    axes.set(title=f"Where the bob turns in x: {counted(len(motion.transit_t), 'transit')}")
     axes.grid(True)
 
 

@@ -81,13 +81,13 @@ def _row(old: Mapping[str, Any], new: Score) -> Mapping[str, Any] | None:
 
 def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains: bool) -> Since:
     """Return what changed since the document of a baseline, and since its rows if its score is there."""
-    before, after = float(baseline["max_error_m"]), _until(new, float(baseline["covered_s"][1]))
+    end = min(float(baseline["covered_s"][1]), float(new.errors.t[-1])) * (1 + WHOLE)  # of the span that both have
+    before, after = float(baseline["max_error_m"]), _until(new, end)
     apart, level = abs(after - before), min(before, float(baseline["tolerance_m"]))
     if old is not None:
-        before, apart, level = _until(old, float(new.errors.t[-1])), _apart(new, old), 0.0
-    agreed = str(baseline["grade" if new.as_model else "verdict"]).startswith("agrees")
-    worse = tuple(_worse(new, baseline, after - before, agreed))
-    better = not worse and (before - after > new.allowed_m or (new.passes and not agreed))
+        before, apart, level = _until(old, end), _apart(new, old), 0.0
+    differences = [*_differences(new, baseline, after - before), *_of_transits(new, old, baseline["transits"], end)]
+    worse, gains = (tuple(text for is_worse, text in differences if is_worse is which) for which in (True, False))
     changed = apart > max(new.errors.bound_m, ROUNDED * new.input_floor_m)
     texts, left_m = tuple[str, ...](), None
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
@@ -101,13 +101,12 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
         texts = tuple(changes(then, now, left, math.inf if old is None else WOBBLE * apart))
         left_m = max(left) + unexplained_m(then, now) if texts else None
     name, complete = str(baseline["candidate"]), left_m is not None and left_m <= allowed
-    return Since(name, before, after, apart if changed else 0.0, worse, better, texts, left_m, complete)
+    return Since(name, before, after, apart if changed else 0.0, worse, gains, texts, left_m, complete)
 
 
 def _until(score: Score, end: float) -> float:
     """Return the largest position error in m up to a time in s."""
-    reached = score.errors.t <= end * (1 + WHOLE)
-    return float(score.errors.position[reached].max(initial=0.0))
+    return float(score.errors.position[score.errors.t <= end].max(initial=0.0))
 
 
 def _apart(new: Score, old: Score) -> float:
@@ -120,17 +119,31 @@ def _apart(new: Score, old: Score) -> float:
     return float(np.linalg.norm(gaps, axis=0).max())
 
 
-def _worse(new: Score, baseline: Mapping[str, Any], more: float, agreed: bool) -> Iterator[str]:
-    """Yield what became worse by more than the tolerance."""
-    if more > new.allowed_m:
-        yield f"{more:.3g} m more, {more / new.allowed_m:.2g} tolerances"
-    if agreed and not new.passes:
-        yield "it agreed before"
+def _differences(new: Score, baseline: Mapping[str, Any], more: float) -> Iterator[tuple[bool, str]]:
+    """Yield what changed by more than the tolerance: whether it became worse, and a text."""
+    if abs(more) > new.allowed_m:
+        size = f"{abs(more):.3g} m {'more' if more > 0 else 'less'}"
+        yield more > 0, f"{size}, {abs(more) / new.allowed_m:.2g} tolerances"
+    agreed = str(baseline["grade" if new.as_model else "verdict"]).startswith("agrees")
+    if agreed != new.passes:
+        yield agreed, f"it {'agreed' if agreed else 'disagreed'} before"
     end, last = float(baseline["covered_s"][1]), float(new.errors.t[-1])
     if last < end * (1 - WHOLE):
-        yield f"it ends at t = {last:.6g} s, and ended at {end:.6g} s"
-    if new.transits is not None and baseline["transits"]:
-        before = sum(len(baseline["transits"][key]) for key in ("missed_at", "extra_at"))
-        now = len(new.transits.missed) + len(new.transits.extra)
-        if now > before:
-            yield f"of transits {now} are missed or extra, and {before} were"
+        yield True, f"it ends at t = {last:.6g} s, and ended at {end:.6g} s"
+
+
+def _of_transits(
+    new: Score, old: Score | None, before: Mapping[str, Any] | None, end: float
+) -> Iterator[tuple[bool, str]]:
+    """Yield the same of the transits up to a time in s; a document tells the largest error of all that it has."""
+    if new.transits is None or not before:
+        return
+    now = new.transits.until(end).document(0.0)
+    if old is not None and old.transits is not None:
+        before = old.transits.until(end).document(0.0)
+    count, was = (sum(t <= end for key in ("missed_at", "extra_at") for t in each[key]) for each in (now, before))
+    if count != was:
+        yield count > was, f"of transits {count} are missed or extra, and {was} were"
+    off, was_off = (float(each["max_conditioned_error_m"]) for each in (now, before))
+    if abs(off - was_off) > new.allowed_m and new.candidate.positions:
+        yield off > was_off, f"transits are off by {off:.3g} m, weighted by |ax|, and were by {was_off:.3g} m"

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..candidates.candidate import Deviation
 from .explanation.case import BEGIN, Explanation
+from .since import Since
 from .verdict import REFUSED, Outcome, Score
 
 
@@ -53,7 +54,7 @@ def document(score: Score) -> dict[str, Any]:
         "reference": {"level": score.golden.level, "bound_m": errors.bound_m},
         "grade": score.grade,
         **explained(score.explanation or Explanation(), readings),
-        "baseline": None if score.since is None else vars(score.since) | {"text": score.since.text},
+        "baseline": None if score.since is None else _changed(score.since),
         "problem": score.problem,
         "notes": list(score.notes),
     }
@@ -94,6 +95,10 @@ def diagnosis(explanation: Explanation) -> dict[str, Any] | None:
         "shift": first.shift,
         "also": tuple(cause.id for cause in known if cause is not first),
     }
+
+
+def _changed(since: Since) -> dict[str, Any]:
+    return vars(since) | {"better": since.better, "text": since.text}
 
 
 def _as_document(subject: str, deviation: Deviation) -> dict[str, Any]:

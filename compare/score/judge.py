@@ -20,16 +20,17 @@ import numpy.typing as npt
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
 from reference.dataset.golden import WITHIN, Dense
-from reference.errors import counted
+from reference.errors import counted, did_you_mean, in_words
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
+from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
 from ..candidates.arrays import candidate_from, real_array
 from ..candidates.candidate import Candidate, Deviation, checked_transits
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
-from ..candidates.read import read
+from ..candidates.read import named, read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
@@ -37,6 +38,7 @@ from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
+READINGS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
 BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
@@ -91,6 +93,10 @@ def judge(
         raise InputError("t_end", t_end, "a number of seconds")
     if not (isinstance(covers, Real) and 0 <= covers <= 1):
         raise InputError("covers", covers, "a share of the scene's span, from 0 to 1")
+    if inputs not in READINGS:
+        raise InputError("inputs", inputs, in_words(READINGS), did_you_mean(str(inputs), READINGS, ""))
+    if not isinstance(baseline, Score | Candidate | Mapping | str | Path | None):
+        raise InputError("baseline", baseline, "a score, a trajectory, the path of a file, or a score's JSON document")
     tolerance, t_end = (None if number is None else float(number) for number in (tolerance, t_end))
     if isinstance(scene, Mapping) and "t" in scene:
         got = f"columns {', '.join(map(str, scene))}"
@@ -106,8 +112,6 @@ def judge(
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
     _check_times(candidate, scene)
-    if candidate.positions and (scale := _beyond_the_cord(candidate, scene)):
-        candidate = replace(candidate, conventions=(*candidate.conventions, scale))
     problem, why = _reading(candidate, scene, inputs)
     for golden, truth in _truths(candidate, problem, times is not None, announce, report):
         errors = trajectory_errors(candidate, truth, golden)
@@ -131,6 +135,8 @@ def judge(
         )
         if not in_doubt(result) and (isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed):
             break
+    if candidate.positions and (scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])):
+        result = replace(result, candidate=replace(candidate, conventions=(*candidate.conventions, scale)))
     if explain and result.off_path and candidate.positions and result.covered:
         from .explanation.explain import explain as explained  # heyoka too
 
@@ -139,7 +145,8 @@ def judge(
         return result
     if isinstance(baseline, str | Path):
         path = Path(baseline)
-        baseline = document_of(path) if path.suffix == ".json" else read(path)
+        with named("baseline"):
+            baseline = document_of(path) if path.suffix == ".json" else read(path)
     if isinstance(baseline, Candidate):
         same: dict[str, Any] = {"tolerance": tolerance, "inputs": inputs, "t_end": t_end, "as_model": as_model}
         baseline = judge(baseline, scene, **same, explain=explain and as_model)
@@ -215,8 +222,11 @@ def _check_times(candidate: Candidate, scene: Scene) -> None:
     raise InputError(f"{candidate.name}: t", f"{last:.10g} at the end", expected, longer)
 
 
-def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
-    """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None."""
+def _beyond_the_cord(candidate: Candidate, scene: Scene, truth: Array) -> Deviation | None:
+    """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None.
+
+    A unit is named if the rows, in metres then, leave less than all of the truth: another pendulum does not follow it.
+    """
     x, y, length = candidate.columns["x"], candidate.columns["y"], float(scene.exact.length)
     reach = float(np.hypot(x, y).max())
     if reach <= BEYOND * length:
@@ -230,8 +240,11 @@ def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
-        return Deviation("scale", f"{far}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it")
-    return Deviation("scale", f"{far}: {times}, so they are {LONG_NAMES[unit]}; --units {unit} reads them so")
+        question = f"is it another pendulum, or are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
+        return Deviation("scale", f"{far}: {times}; {question}")
+    follows = np.linalg.norm(np.column_stack([x, y]) / scale - truth) < np.linalg.norm(truth)
+    what = f", so they are {LONG_NAMES[unit]};" if follows else f"; is it another pendulum, or {LONG_NAMES[unit]}?"
+    return Deviation("scale", f"{far}: {times}{what} --units {unit} reads them so")
 
 
 def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, str]:

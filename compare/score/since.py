@@ -25,7 +25,7 @@ class Since:
         apart_m: the largest distance in m between both, of a document the difference of their errors; 0 if it is no
             more than rounding.
         worse: what became worse by more than the tolerance; empty if nothing did.
-        better: whether it became better by more than the tolerance.
+        gains: what became better by more than the tolerance; empty if nothing did.
         changes: what came and what went.
         left_m: what they leave of both errors, at most, in m; None if it is not known.
         complete: whether that is all, down to the tolerance or a tenth of `apart_m`.
@@ -36,10 +36,15 @@ class Since:
     after_m: float
     apart_m: float
     worse: tuple[str, ...] = ()
-    better: bool = False
+    gains: tuple[str, ...] = ()
     changes: tuple[str, ...] = ()
     left_m: float | None = None
     complete: bool = False
+
+    @property
+    def better(self) -> bool:
+        """Whether something became better by more than the tolerance, and nothing worse."""
+        return bool(self.gains) and not self.worse
 
     @property
     def text(self) -> str:
@@ -54,7 +59,7 @@ class Since:
             what = f"{numbers}; what lies between them, {self.apart_m:.2g} m, is no known mistake"
         else:
             what = f"no position changed, {numbers}"
-        return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in self.worse)}"
+        return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in (*self.worse, *self.gains))}"
 
 
 def _known(document: Document) -> Iterator[Document]:

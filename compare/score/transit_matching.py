@@ -65,6 +65,12 @@ class TransitErrors:
         """Largest weighted error in m."""
         return float(np.abs(self.conditioned_m).max()) if self.matched else 0.0
 
+    def until(self, end: float) -> TransitErrors:
+        """Return those up to a time in s."""
+        kept = self.at <= end
+        missed, extra = ([t for t in times if t <= end] for times in (self.missed, self.extra))
+        return TransitErrors(self.errors_s[kept], self.conditioned_m[kept], missed, extra, self.at[kept])
+
     def shifted(self, tolerance_m: float) -> list[tuple[float, float]]:
         """Return times and errors in s of the transits whose weighted error is above a tolerance."""
         off = np.abs(self.conditioned_m) > tolerance_m

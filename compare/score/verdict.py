@@ -177,8 +177,9 @@ def lines(score: Score) -> Iterator[str]:
     yield entry("largest error", f"{errors.max_m:.3g} m", _largest(score))
     growth = "" if errors.growth_exponent is None else f"grows like t^{errors.growth_exponent:.2f}"
     yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", growth)
-    scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
-    yield entry("digits", _one_decimal(errors.digits), scale)
+    size, least = ("the reference's bound", "at least ") if score.at_bound else ("largest error", "")
+    over = f"{size} over the amplitude {errors.amplitude_m:.4g} m"
+    yield entry("digits", f"{least}{_one_decimal(errors.digits)}", over)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
     yield entry("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
     worst = score.worst

@@ -67,7 +67,9 @@ def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[S
     return rows
 
 
-def limits(scene: Scene, chosen: Sequence[Motion], over: str, t_end: float) -> list[LimitRow]:
+def limits(
+    scene: Scene, chosen: Sequence[Motion], over: str, t_end: float, swept: dict[str, list[SweepRow]] | None = None
+) -> list[LimitRow]:
     """Find where each approximation is good to 1 mm, 1 µm and 1 arcsecond of swing plane.
 
     Args:
@@ -76,10 +78,13 @@ def limits(scene: Scene, chosen: Sequence[Motion], over: str, t_end: float) -> l
         over: `time` up to t_end, or `amplitude`, `latitude`, `length` with all errors up to t_end. Between the values
             of a sweep the logarithm of the error is interpolated.
         t_end: in s.
+        swept: where to keep the rows of a sweep, by what is varied; None for nowhere.
     """
     if over == "time":
         return _time_limits(scene, chosen, t_end)
     rows, limit_rows = sweep(scene, chosen, over, t_end), []
+    if swept is not None:
+        swept[over] = rows
     for motion in chosen:
         of_motion = [row for row in rows if row.approximation == motion.id]
         nowhere = all(row.error_m is None for row in of_motion)

@@ -54,7 +54,7 @@ def test_a_failure_tells_time_component_expected_got_difference_and_allowed(gold
     with pytest.raises(AssertionError) as caught:
         assert_agrees("paris", golden.t[:50], wrong, tolerance=1e-6)
     said = str(caught.value)
-    assert "y at t = 1800.0 s (row 30)" in said
+    assert "y at t = 1800.0 s (row 31)" in said
     assert f"expected   {float(golden.y[30])!r}" in said
     assert f"got        {float(wrong[30, 1])!r}" in said
     assert "difference +1.000e-03 m" in said
@@ -128,7 +128,18 @@ def test_long_doubles_keep_their_digits(golden, states):
         ([1e9], [[0.3, 0.4]], {}, "from 0 to 86400 s"),
         ([0.0], [[0.3, 0.4]], {"tolerance": -1.0}, "tolerance"),
         ([0.0], [[0.3, 0.4]], {"tolerance": float("nan")}, "tolerance"),
-        ([60.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
+        (
+            [60.0],
+            [[0.3, 0.4]],
+            {"inputs": "Auto"},
+            "inputs: got 'Auto', expected auto, decimal or binary64. Did you mean",
+        ),
+        (
+            [60.0],
+            [[0.3, 0.4]],
+            {"baseline": 3},
+            "baseline: got '3', expected a score, a trajectory, the path of a file",
+        ),
         ([60.0], [[0.3, 0.4]], {"covers": 2.0}, "covers"),
         ([0.0], [[0.3, 0.4]], {"transits": [2.0, 1.0]}, "transits"),
         ([0.0], [[0.3, 0.4]], {"transits": [float("inf")]}, "transits"),
@@ -214,7 +225,7 @@ def test_the_fixtures_are_found_in_somebody_elses_tests_with_a_tolerance_for_eac
     (tmp_path / "test_scenes.py").write_text(SCENES)
     said = run_tests(tmp_path).stdout
     assert "2 failed, 5 passed" in said, said
-    assert "y at t = 0.0 s (row 0)" in said
+    assert "y at t = 0.0 s (row 1)" in said
     assert "got        0.5" in said
     for name in ("right[conical]", "right[paris]", "release[hard]"):
         assert f"PASSED test_scenes.py::test_{name}" in said

@@ -116,6 +116,7 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
         InputError: a folder cannot be read, or holds no dataset; a file is no study.
         DatasetError: a dataset is damaged.
     """
+    kept = kept_studies(studies)
     with usable("--data", folder, "a folder of golden datasets"):
         paths = sorted(path.parent for path in folder.glob(f"*/{MANIFEST}"))
     if not paths:
@@ -125,7 +126,6 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
     for path in paths:
         golden = load(path)
         readings.setdefault(_name(golden), {})[golden.manifest.inputs] = golden
-    kept = kept_studies(studies)
     scenes = []
     for name, by_inputs in sorted(readings.items()):
         either = next(iter(by_inputs.values()))
@@ -148,8 +148,10 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     """Return what the studies in a folder say, by scene; nothing if there is no folder.
 
     Raises:
-        InputError: a file is no study.
+        InputError: there is no such folder, or a file is no study.
     """
+    if folder is not None and not folder.is_dir():
+        raise InputError("--studies", str(folder), "a folder of results", "`foucault study … --out DIR` writes one.")
     results: dict[str, StudyResults] = defaultdict(StudyResults)
     cells = TypeAdapter(list[Cell])
     for path in sorted(folder.glob("*.json")) if folder is not None else ():

@@ -11,6 +11,7 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from reference.errors import counted
 from reference.scenes.fields import LEVELS
 from reference.scenes.shipped import data_root, in_checkout
 
@@ -47,8 +48,8 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
         "Atlas of the Foucault pendulum",
         [_filters(scenes), *sections],
         lead=paragraph(
-            f"{scenes_of(len(scenes))} and {datasets} golden datasets. The page of a scene plays its motion, says what "
-            "it catches and what stands behind its numbers, and judges the output of your program in the browser."
+            f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene plays its motion, "
+            "says what it catches and what stands behind its numbers, and judges your program's output in the browser."
         ),
         script=_script("filtering.js"),
         styles=source("atlas.css"),
@@ -94,11 +95,6 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any
         ),
         styles=source("atlas.css"),
     )
-
-
-def scenes_of(count: int) -> str:
-    """Return how many scenes there are, in words."""
-    return f"{count} scene{'' if count == 1 else 's'}"
 
 
 def _card(entry: Entry, thumb: str) -> str:

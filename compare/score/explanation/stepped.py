@@ -143,10 +143,10 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
     theta, best = fit.theta, None
     moved = steps.rows(theta, rows.times, 2)
     for _ in range(READINGS):
-        effect = moved - pendulum.rows(theta, rows.times, 2)
-        if not fit.rest <= max(case.floor, STEP_LEFT * rms(effect)):
+        effect, left = moved - pendulum.rows(theta, rows.times, 2), rms(rows.positions - moved)
+        if not left <= max(case.floor, STEP_LEFT * rms(effect)):
             return None
-        if best is not None and rms(rows.positions - moved) <= case.floor:
+        if best is not None and left <= case.floor:
             break
         seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
         best = best_of(seen, stepped=True)

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from sampled import one_in
 
-from compare import assert_agrees
+from compare import assert_agrees, judge
+from compare.score.document import document
 from compare.score.explanation.case import Explanation
 from compare.testing import SceneCase
-from reference import InputError, load_scene, trajectory
+from reference import InputError, load_scene, solve, trajectory
 
 SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
 SCENE = (
@@ -97,6 +98,50 @@ def test_what_became_worse_is_said(foucault, rows):
     ]
     lost = ("--transits", rows / "right.csv")
     assert judged(foucault, rows, "wrong", rows / "wrong.csv", *lost)[0] == 0  # the baseline has no transits
+
+
+def test_transits_that_moved_are_told_where_no_position_did(rows):
+    """Also where both versions disagree; a document tells as much as a score."""
+    scene, t = load_scene(rows / "mine.toml"), np.linspace(0, 20, 41)
+    columns = {"t": t, **dict(zip("xy", trajectory(scene, t)[:, :2].T, strict=True))}
+    zeros = solve(scene).transits.array("t")
+
+    def version(late, baseline=None):
+        return judge(columns, scene, transits=zeros + late, explain=False, baseline=baseline)
+
+    right, late = version(0.0), version(1e-3)
+    for old in (late, document(late)):
+        worse, better = version(2e-3, old).since, version(0.0, old).since
+        assert worse.text.startswith("Worse since candidate: no position changed") and better.better
+        (reason,) = worse.worse
+        assert reason.startswith("transits are off by 0.000") and "weighted by |ax|, and were by 0.000" in reason
+        assert better.text.startswith("Better since candidate: no position changed")
+        assert better.gains[0] == "it disagreed before" and better.gains[1].startswith("transits are off by ")
+    same = version(1e-3, late).since
+    assert (same.worse, same.gains) == ((), ())
+    fewer = judge(columns, scene, transits=zeros[1:], explain=False, baseline=right).since
+    assert fewer.worse == ("it agreed before", "of transits 1 are missed or extra, and 0 were")
+    early = {name: column[:20] for name, column in columns.items()}  # what is missed later says nothing of this span
+    short = judge(early, scene, transits=zeros[zeros < 9.5], explain=False)
+    assert judge(columns, scene, transits=zeros[:-1], explain=False, baseline=short).since.worse == (
+        "it agreed before",
+    )
+
+
+def test_a_baseline_that_cannot_be_read_is_told_by_its_own_name(foucault, rows, tmp_path):
+    words = ("score", rows / "mine.toml")
+    for name in ("nowhere.csv", "nowhere.json"):
+        for more in ((rows / "right.csv",), ("--run", f"cat {rows / 'right.csv'}", "--repeats", "0")):
+            status, _, err = foucault(*words, *more, "--baseline", tmp_path / name)
+            assert status == 2 and f"--baseline: got '{tmp_path / name}'" in err, err
+    status, _, err = foucault(*words, rows / "right.csv", "--baseline", tmp_path)
+    assert status == 2 and "--baseline: got" in err and "Is a directory" in err
+    (tmp_path / "suite").mkdir()
+    shutil.copy(rows / "right.csv", tmp_path / "suite" / "paris.csv")
+    assert "--baseline: got" in foucault("score", "--suite", tmp_path / "suite", "--baseline", "nowhere.json")[2]
+    for wrong in ("nowhere.csv", "nowhere.json", 3, [3]):
+        with pytest.raises(InputError, match=r"^baseline: got '(nowhere|3|\[3)"):
+            judge(rows / "right.csv", rows / "mine.toml", baseline=wrong)
 
 
 def test_commands_are_compared_too(foucault, rows):

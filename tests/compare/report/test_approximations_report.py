@@ -23,6 +23,8 @@ def test_the_study_of_approximations_writes_its_page_and_json(
     monkeypatch.setattr(approximation_report, "motions", lambda: some)
     monkeypatch.setattr(approximation_report, "OVERS", ("time", "amplitude"))
     monkeypatch.setattr(approximation_limits, "sweep_values", lambda *_: (1e-3, 1e-2, 1e-1))
+    swept, sweep = list[str](), approximation_limits.sweep
+    monkeypatch.setattr(approximation_limits, "sweep", lambda *words: swept.append(words[2]) or sweep(*words))
     arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
     result = CliRunner().invoke(commands(), [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
@@ -30,6 +32,7 @@ def test_the_study_of_approximations_writes_its_page_and_json(
     assert {row["t"] for row in document["rows"]} == {20.0, 60.0}
     assert {row["over"] for row in document["limits"]} == {"time", "amplitude"}
     assert {row["approximation"] for row in document["rows"]} == {*some}
+    assert swept == ["amplitude"]  # once for the document and the page
     page = (tmp_path / "index.html").read_text()
     assert all(row["approximation"] in page for row in document["rows"])
 

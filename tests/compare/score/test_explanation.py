@@ -37,7 +37,7 @@ from compare.score.explanation.slips import _sentence, falls, slip
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from foucault import commands
-from reference import Scene, load_scene
+from reference import Scene, load_scene, trajectory
 from reference.engines.trajectory import Variants
 from reference.model.constants import constants_in_double
 from reference.solver.sensitivity import with_value
@@ -409,6 +409,22 @@ def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
 
 
 DRIFT = "semi_implicit_euler_drift"
+
+
+def test_steps_that_no_cause_accounts_for_are_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Short steps of Euler's move much like the drag and the pull of another pendulum; a second reading takes long."""
+    scene, t = load_scene("paris", ["inputs=binary64"]), np.linspace(0, 3600, 361)
+    rows = trajectory(scene.with_values(["pendulum.length=60"]), t)
+    read: list[Any] = []
+
+    def poor(case: Any, stepped: bool) -> SimpleNamespace:
+        read.append(case)
+        reader = SimpleNamespace(right=SimpleNamespace(kind="sphere"))
+        return SimpleNamespace(program=case.right, reader=reader, causes=())
+
+    monkeypatch.setattr("compare.score.explanation.stepped.best_of", poor)
+    explain(t, dict(zip("xy", rows.T, strict=False)), scene, 7e-7)
+    assert len(read) == 2  # one for each length of a step that is likely
 
 
 FEW = [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)]

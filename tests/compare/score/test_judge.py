@@ -680,9 +680,10 @@ def test_a_candidate_that_swings_less_than_a_tenth_has_a_tolerance_of_its_own_si
 def test_beyond_the_cord_begins_a_hundredth_beyond_it_and_a_unit_fits_to_a_thousandth():
     paris = load_scene("paris")
 
-    def said(*points, t=0.0):
+    def said(*points, t=0.0, truth=((0.3, 0.4), (0.3, 0.4))):
         x, y = np.array(points).T
-        found = _beyond_the_cord(SimpleNamespace(t=np.array([t, 1.0]), columns={"x": x, "y": y}), paris)
+        candidate = SimpleNamespace(t=np.array([t, 1.0]), columns={"x": x, "y": y})
+        found = _beyond_the_cord(candidate, paris, np.array(truth))
         return found and found.text
 
     assert said((0.3, 0.4), (1.01 * 67, 0)) is None
@@ -694,9 +695,11 @@ def test_beyond_the_cord_begins_a_hundredth_beyond_it_and_a_unit_fits_to_a_thous
         first = scale * (0.3 + 0.4j)
         assert words in said((first.real, first.imag), (300, 400)), scale
     assert "Metres are wanted" in said((300, 400), (0, 0), t=0.5)
+    elsewhere = said((300, 400), (300, 400), truth=((0.3, 0.4), (-0.3, -0.4)))  # where no unit puts the bob
+    assert elsewhere.endswith("is it another pendulum, or millimetres? --units mm reads them so")
     at_rest = load_scene("paris", ["release.x=0", "release.y=0"])
     far = SimpleNamespace(t=np.zeros(1), columns={"x": np.array([99.0]), "y": np.zeros(1)})
-    assert _beyond_the_cord(far, at_rest).id == "beyond_the_cord"
+    assert _beyond_the_cord(far, at_rest, np.zeros((1, 2))).id == "beyond_the_cord"
 
 
 def test_times_may_end_a_grid_step_late_and_ten_spans_look_like_another_unit():

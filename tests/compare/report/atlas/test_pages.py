@@ -155,12 +155,14 @@ def test_the_command_to_score_says_what_differs_from_the_scene(readings):
     [
         (("--data", "nowhere"), "a folder of golden datasets"),
         (("--data", "SOME", "--studies", "."), "a study as `foucault study` writes it"),
+        (("--data", "SOME", "--studies", "nowhere"), "a folder of results"),
         (("--out", "mine"), "a new folder, or one that an earlier run wrote"),
     ],
 )
 def test_wrong_folders_are_refused_and_nothing_is_written(
     foucault, tmp_path, tmp_path_factory, monkeypatch, words, said
 ):
+    monkeypatch.setattr("compare.report.atlas.entry.load", lambda path: pytest.fail(f"{path} was read before"))
     some = tmp_path_factory.mktemp("data")
     (some / "hard").symlink_to(golden_root() / "hard")
     words = [some if word == "SOME" else word for word in words]
