@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -71,7 +70,6 @@ def plot(
         chosen("--what", word, PICTURES)
     target = out or Path(f"{'stdin' if source == '-' else Path(source).stem}.svg")
     check_target(target, "--out")
-    _check_matplotlib()
     motion = _motion(source, t_end, set_)
     available = list(panels(motion))
     missing = next((word for word in requested or () if word not in available), None)
@@ -79,15 +77,6 @@ def plot(
         raise InputError("--what", missing, f"what there is of {source}: {in_words(available)}")
     write_file(target, motion_picture(motion, requested or available, target), "--out")
     typer.echo(f"{target}: the picture")
-
-
-def _check_matplotlib() -> None:
-    """Refuse to draw, before anything is solved, where matplotlib is installed and cannot be imported."""
-    try:
-        import_module("matplotlib.figure")
-    except ImportError as error:
-        advice = f"{error}. Install it anew: pip install --force-reinstall matplotlib."
-        raise InputError("--out", "a broken matplotlib", "the extra plot", advice) from None
 
 
 def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> Motion:

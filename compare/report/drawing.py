@@ -13,6 +13,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -62,10 +63,14 @@ def check_matplotlib(field: str) -> None:
         field: option or function that needs the picture, for the error message.
 
     Raises:
-        InputError: matplotlib is not installed.
+        InputError: matplotlib is not installed, or cannot be imported.
     """
-    if missing(["matplotlib"]):
-        raise InputError(field, "no matplotlib", "the extra plot", "pip install 'foucault-reference[plot]'.")
+    try:
+        import_module("matplotlib.figure")
+    except ImportError as error:
+        got, again = ("no matplotlib", "") if missing(["matplotlib"]) else (str(error), "--force-reinstall ")
+        advice = f"pip install {again}'foucault-reference[plot]'."
+        raise InputError(field, got, "the extra plot", advice) from None
 
 
 def check_target(path: Path, field: str = "--plot") -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -58,7 +57,6 @@ _LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # squares that the key needs
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
-_APART = 1e6  # lines whose errors are closer than this factor where guide lines begin share one fan of them
 _FAN, _BEFORE = 50.0, 5.0  # length of the guide lines, and how far before the line's end they end, as factors of time
 _ABOVE = 0.045  # distance of the fan from the lines, as a power of the span of errors: room for its names
 _OVER = 20.0  # room above the lines, as a factor of error
@@ -158,22 +156,8 @@ def _line(run: LongRun, place: int) -> Line:
 
 
 def _guides(lines: Sequence[Line]) -> list[Line]:
-    """Return fans of guide lines, one fan above each group of lines that have similar errors where the fan begins."""
-    groups: list[list[tuple[float, Line]]] = []
-    for low, line in sorted(((_error_at(line, line.x[-1]), line) for line in lines), key=itemgetter(0)):
-        if groups and low < groups[-1][-1][0] * _APART:
-            groups[-1].append((low, line))
-        else:
-            groups.append([(low, line)])
-    guides = []
-    above = max(4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE)
-    for group in groups:
-        last = max(line.x[-1] for _, line in group)
-        end, low = last / _BEFORE, above * max(_error_at(line, last) for _, line in group)
-        guides += [Line(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]
-    return guides
-
-
-def _error_at(line: Line, last: float) -> float:
-    """Return a line's error where the guide lines begin that belong to lines with this last time."""
-    return float(np.interp(last / _BEFORE / _FAN, line.x, line.y))
+    """Return a fan of guide lines above all lines: slopes are the same everywhere."""
+    end = max(line.x[-1] for line in lines) / _BEFORE
+    highest = max(float(np.interp(end / _FAN, line.x, line.y)) for line in lines)
+    low = highest * max(4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE)
+    return [Line(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]

@@ -14,8 +14,6 @@ from functools import partial
 from operator import attrgetter
 from typing import Any
 
-import numpy as np
-
 from ..methods import METHODS
 from ..methods.method import Family
 from ..studies.row import Row
@@ -171,9 +169,8 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
 
 def _staircase(best: Sequence[Row], bound_m: float) -> Line:
     """Return the Pareto front as a broad line: across at the error of each row, then down to that of the next."""
-    x, y = [cost_of(row) for row in best], [error_of(row, bound_m) for row in best]
-    style = {"color": RULE, "linewidth": 7, "solid_joinstyle": "miter"}
-    return Line("", np.repeat(x, 2)[1:].tolist(), np.repeat(y, 2)[:-1].tolist(), style)
+    style = {"color": RULE, "linewidth": 7, "solid_joinstyle": "miter", "drawstyle": "steps-post"}
+    return Line("", [cost_of(row) for row in best], [error_of(row, bound_m) for row in best], style)
 
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:

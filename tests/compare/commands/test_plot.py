@@ -116,7 +116,7 @@ def test_a_matplotlib_that_cannot_be_imported_is_told_before_anything_is_solved(
     def broken(name):
         raise ImportError("numpy.core.multiarray failed to import")
 
-    monkeypatch.setattr("compare.commands.pictures.import_module", broken)
+    monkeypatch.setattr("compare.report.drawing.import_module", broken)
     status, _, err = foucault("plot", "laboratory", "--out", str(tmp_path / "a.svg"))
     assert (status, list(tmp_path.iterdir())) == (2, [])
-    assert "a broken matplotlib" in err and "failed to import" in err and "--force-reinstall" in err
+    assert "failed to import" in err and "--force-reinstall" in err
