@@ -94,12 +94,14 @@ def text(swept: Swept, out: Path | None) -> str:
     cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s"
     if tally.promoted:
         cost += f", {tally.promoted_s:.2f} s of them for {counted(tally.promoted, 'row')} that went to the solver"
-    cost += f", compiling {swept.compile_s:.2f} s; {swept.request.engine}"
+    cost += f", compiling {swept.compile_s:.2f} s; {swept.request.solved_by}"
     lines = []
     if out is None:
         columns = {column.name: column for column in swept.request.columns}
         sections = swept.request.sections
         heads = SHOWN | {f"{word}: {name}": f"{word}: {head}" for word in sections for name, head in OF_SECTION.items()}
+        if swept.request.level == "enclosed":
+            heads["position_error_m"] = "bound (m)"
         shown = [columns[name] for name in heads if name in columns]
         keys = list(swept.request.table.values)
         rows = []

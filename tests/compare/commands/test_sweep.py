@@ -106,6 +106,15 @@ def test_a_sweep_says_what_the_solver_took_of_it(foucault):
     assert 0 < solver <= every
 
 
+@pytest.mark.parametrize(("level", "head"), [("enclosed", "bound (m)"), ("confirmed", "estimated error (m)")])
+def test_where_every_row_goes_through_the_solver_no_engine_is_named(foucault, level, head):
+    if level == "enclosed":
+        pytest.importorskip("flint")
+    out = foucault("sweep", "paris", "--t-end", "20", "--over", "latitude=45", "--level", level)[1]
+    assert head in out.partition("\n")[0]
+    assert out.endswith("; the solver\n")
+
+
 def test_a_row_that_fails_is_named_and_the_others_stand(foucault):
     status, out, err = foucault("sweep", *SMALL, "--over", "pendulum.length=0.4,67")
     assert status == 1
