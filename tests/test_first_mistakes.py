@@ -153,6 +153,7 @@ PYTHON = {
     "reference.load(None)": "PATH: got 'None', expected the id of a dataset, or the path of its folder",
     "reference.load(3)": "the id of a dataset",
     "reference.load_ranges(None)": "the id of a dataset",
+    "compare.read(3)": "CANDIDATE: got '3', expected a readable file",
     "reference.load_sweep(3)": "folder: got '3', expected the folder of a sweep",
     "reference.parse_scene(3)": "scene: got '3', expected nested mappings",
     'reference.load_scene("paris", 3)': "section.key=value",

@@ -30,7 +30,7 @@ from typing import IO
 import numpy as np
 
 from reference import InputError
-from reference.errors import plain
+from reference.errors import checked_path, plain
 from reference.numbers.precision import Array
 from reference.scenes.scene import MAX_ROWS
 from reference.system.documents import open_at_once
@@ -105,7 +105,10 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
                     raise OSError(errno.EBADF, "Standard input is closed")
                 stream, name = sys.stdin.buffer, "standard input"
             else:
-                stream, name = stack.enter_context(open_at_once(Path(source))), plain(str(source))
+                stream, name = (
+                    stack.enter_context(open_at_once(checked_path(field, source, expected))),
+                    plain(str(source)),
+                )
                 os.set_blocking(stream.fileno(), True)
             if not stream.seekable():
                 pipe, stream = stream, stack.enter_context(SpooledTemporaryFile(CHUNK))
