@@ -25,10 +25,10 @@ FLOORS = {
         ["solver"],
         ["engines", "enclosure"],
         ["model"],
-        ["scenes"],
+        ["scenes", "status"],
         ["system"],
         ["numbers"],
-        ["errors", "status"],
+        ["errors"],
     ],
     "reference/engines": [
         ["registry", "trajectory"],

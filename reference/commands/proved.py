@@ -100,15 +100,13 @@ def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
         for name in MEAN
         if any(ranges[name] for name in MEAN) and name not in ranges["left_out"]
     ]
-    texts += left_out_texts(ranges["left_out"]) or (
-        [] if texts else ["no period: the intervals of these inputs leave it open"]
-    )
+    texts += left_out_texts(ranges["left_out"])
+    texts = texts or ["no period: the intervals of these inputs leave it open"]
     texts += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
     for word, passages in ranges["first_passages_s"].items():
         texts += [f"passage {k} of {word} = {low} to {high} s" for k, (low, high) in enumerate(passages, 1)]
         texts += [] if passages else [f"no passage of {word} is decided"]
-    decided = ", ".join(texts) or "no transit is decided"
-    yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] {decided}"
+    yield f"[ranges, over {ranges['over_s']} s, proved for every {box}] {', '.join(texts)}"
     limits = sorted(ranges["limits"].items(), key=lambda item: -item[1]["share"])
     if limits:
         yield "which input limits you: what each alone moves the period by, to first order, and its share"

@@ -228,9 +228,8 @@ def _motion_line(motion: dict[str, Any]) -> str:
     names = [name for name in motion if name not in ("over_s", "left_out")]
     pairs = zip(names[::2], names[1::2], strict=True)
     texts = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
-    return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(
-        [*texts, *left_out_texts(motion["left_out"])]
-    )
+    texts += left_out_texts(motion["left_out"])
+    return f"[motion, over {motion['over_s']} s, errors estimated] {', '.join(texts)}"
 
 
 def scene_file(scene: Scene | None) -> str:

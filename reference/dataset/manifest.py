@@ -207,6 +207,9 @@ class Manifest(Part):
         bounds, transits = self.bounds, TRANSITS if self.counts.transits else ()
         needed = [*ALWAYS, *["transits.csv"] * bool(transits), *["sections.csv"] * bool(self.sections)]
         lacking = [] if self.alone else [name for name in needed if name not in self.files]
+        sections, function = bool(self.sections), [name in self.files for name in FUNCTION]
+        numbers = map(float, (*bounds.grid.values(), *bounds.transits.values()))
+        of_grid, of_transits = ({*self.decimals.get(kind, ())} for kind in ("grid", "transits"))
         rules = {
             "level: a proof and the level enclosed belong together": (self.level == "enclosed") == bool(self.enclosure),
             "level: no run agrees with the published one": bool(self.cross_checks) or self.level == "computed",
@@ -215,21 +218,15 @@ class Manifest(Part):
             "counts: a grid has two times at least": self.counts.grid >= 2,
             f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(bounds.grid) == GRID,
             f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(bounds.transits) == transits,
-            "bounds: a number beyond the range of binary64": all(
-                math.isfinite(float(bound)) for bound in (*bounds.grid.values(), *bounds.transits.values())
-            ),
-            f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": {*self.decimals.get("grid", ())}
-            == {"t", *GRID},
-            f"decimals.transits: must name the columns {', '.join(TRANSITS)}": {*self.decimals.get("transits", ())}
+            "bounds: a number beyond the range of binary64": all(map(math.isfinite, numbers)),
+            f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": of_grid == {"t", *GRID},
+            f"decimals.transits: must name the columns {', '.join(TRANSITS)}": of_transits
             in ({*TRANSITS}, {*transits}),
             f"files: {' and '.join(lacking)} must be there, but for a golden function alone": not lacking,
-            "sections: they belong to a scene that asks for some": bool(self.sections)
+            "sections: they belong to a scene that asks for some": sections
             == ("sections" in self.scene.get("run", ())),
-            "files: sections.csv belongs to a dataset with sections": bool(self.sections)
-            or "sections.csv" not in self.files,
-            "files: a golden function has two files, and a proof": (FUNCTION[0] in self.files)
-            == (FUNCTION[1] in self.files)
-            <= bool(self.enclosure),
+            "files: sections.csv belongs to a dataset with sections": sections or "sections.csv" not in self.files,
+            "files: a golden function has two files, and a proof": function[0] == function[1] <= bool(self.enclosure),
         }
         if broken := [rule for rule, holds in rules.items() if not holds]:
             raise ValueError(broken[0])

@@ -10,6 +10,7 @@ from ..errors import DatasetError
 from ..numbers.columns import KINDS, UNITS
 from ..scenes.fields import Confirmation, Level
 from ..solver.solution import SAMPLED, Solution
+from ..system.documents import texts_of
 from .function import FunctionRecord
 from .manifest import ALWAYS, FORMAT, FUNCTION, MANIFEST, Content, Decimal, FileRecord, Manifest, Name, Part, Text
 from .record import CONFIRM, Making, manifest_of
@@ -26,27 +27,11 @@ from .sheets import (
 )
 
 MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles
-MEANING: dict[Level, str] = {
-    "computed": "One run; its error is estimated, not checked.",
-    "self_consistent": "Two runs with different precisions, tolerances and steps agree to every printed digit.",
-    "confirmed": "Two runs in different formulations, precisions and tolerances agree to every printed digit.",
-    "enclosed": "A proof encloses every printed digit (interval arithmetic, rounding included).",
-}
-CONFIRMED: dict[Confirmation, str] = {
-    "whole": "heyoka's run in another formulation agrees to every printed digit.",
-    "sampled": "heyoka agrees to {} of {} rows, each reached from the row before.",
-    "none": "No other run confirms it.",
-}
-_GRAVITY = {
-    "ellipsoid": "gravity g points along the ellipsoid's normal, the centrifugal force is explicit.",
-    "effective": "gravity g is effective: it points along the plumb line and contains the centrifugal force there.",
-}
+TEXTS = texts_of(__file__)
+MEANING: dict[Level, str] = TEXTS["levels"]
+CONFIRMED: dict[Confirmation, str] = TEXTS["confirmations"]
+NOTES: dict[str, str] = TEXTS["notes"]  # on the vectors
 MOST = 16  # states, and as many transits
-NOTES = {
-    "release": "The exact release: an error here is one of reading the inputs.",
-    "end": "The last of the run, where the error of an integrator is usually largest.",
-    "closest_pair": "One of the two transits nearest to each other: an event search with long steps loses both.",
-}
 
 
 def render(solution: Solution, name: str | None = None, *, tables: bool = True) -> dict[str, Content]:
@@ -131,7 +116,7 @@ def _inputs(manifest: Manifest) -> list[str]:
         *(f"  {field:26} {value}" for field, value in by_field(manifest.scene).items()),
         "",
         "Model: full Lagrangian of the Foucault pendulum (Mathar), axes x east, y north, z up, origin at the",
-        f"suspension; {_GRAVITY[manifest.scene['site']['gravity_is']]}",
+        f"suspension; {TEXTS['gravity'][manifest.scene['site']['gravity_is']]}",
         "",
     ]
 

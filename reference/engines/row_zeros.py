@@ -13,7 +13,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from ..model.algebra import add, cross, dot, minus, plus, subtract
+from ..model.algebra import add, cross, dot, minus, plus, scale, subtract
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..numbers.precision import Array
@@ -69,11 +69,7 @@ class RowMotion:
 
     def earlier(self, by: Array) -> Self:
         """Return the motion a little earlier than at its times, n'' as it is."""
-        n, v = (
-            tuple(part - by * rate for part, rate in zip(parts, rates, strict=True))
-            for parts, rates in ((self.n, self.v), (self.v, self.a))
-        )
-        return type(self)(n, v, self.a)
+        return type(self)(subtract(self.n, scale(by, self.v)), subtract(self.v, scale(by, self.a)), self.a)
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return the motion at some of its times."""

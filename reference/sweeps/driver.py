@@ -106,11 +106,7 @@ def _crashed(request: Request, rows: range, reason: str) -> Part:
 
 
 def solve_and_save(
-    request: Request,
-    rows: range,
-    folder: Path | None,
-    promote: Promote = promoted,
-    stop: threading.Event | None = None,
+    request: Request, rows: range, folder: Path | None, promote: Promote = promoted, stop: threading.Event | None = None
 ) -> Part:
     """Return rows solved; where they are a whole part and there is a folder, save them and return their tally alone.
 

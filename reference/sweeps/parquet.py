@@ -6,8 +6,8 @@ A file that is written here is sealed: at its end stands the sha256 of all other
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -16,11 +16,11 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ..numbers.columns import POSITION, VELOCITY
+from ..system.documents import texts_of
 
 FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
 TIMES = "transit-times"
 WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)  # what `all` means; the times of the transits are more
-SWING = (FREQUENCY, PRECESSION)
 WORDS = "dictionary"  # the kind of a column of words that repeat
 
 _PART, _SEAL = "foucault.part", "foucault.seal"  # keys of a file's metadata
@@ -34,7 +34,7 @@ class Column:
     name: str
     kind: str
     meaning: str
-    wants: tuple[str, ...] = ()  # present where one of these is wanted; always if empty
+    wants: Sequence[str] = ()  # present where one of these is wanted; always if empty
     error: str = ""  # the column of its error
 
     def empty(self, count: int) -> Any:
@@ -45,34 +45,9 @@ class Column:
 
 STATE_COLUMNS = tuple([f"{name}_m" for name in POSITION] + [f"{name}_m_s" for name in VELOCITY])
 
-COLUMNS = (
-    Column("row", "int64", "number of the row, from 0, the last axis fastest"),
-    Column("status", "dictionary", "ok, or what went wrong: a word of `reference.status.Status`"),
-    Column("reason", "dictionary", "a sentence where the status is not ok"),
-    Column("level", "dictionary", "level of trust: computed, or that of the solver where the row was promoted"),
-    Column("engine", "dictionary", "the engine that computed the row"),
-    Column("digits", "int16", "significant digits of the largest number; 0 where the level is computed"),
-    Column("steps", "int32", "steps taken"),
-    Column("transits", "int32", "zeros of xdot in 0 < t <= t_end", (TRANSITS, FREQUENCY)),
-    Column("close_pairs", "int32", "pairs of transits nearer than a quarter of a swing", (TRANSITS, FREQUENCY)),
-    Column("t_first_s", "float64", "time of the first transit", (TRANSITS, FREQUENCY), "transit_error_s"),
-    Column("t_last_s", "float64", "time of the last transit", (TRANSITS, FREQUENCY), "transit_error_s"),
-    Column("transit_error_s", "float64", "error of the worst transit's time", (TRANSITS, FREQUENCY)),
-    Column("frequency_hz", "float64", "(n - 1)/(2 (t_n - t_1)) over the transits", (FREQUENCY,), "frequency_error_hz"),
-    Column("frequency_error_hz", "float64", "its error", (FREQUENCY,)),
-    Column("swing_hz", "float64", "(m - 1)/(2 (τ_m - τ_1)) over the highest points", SWING, "swing_error_hz"),
-    Column("swing_error_hz", "float64", "its error", SWING),
-    Column("precession_deg_per_h", "float64", "its turn, east to north", (PRECESSION,), "precession_error_deg_per_h"),
-    Column("precession_error_deg_per_h", "float64", "its error", (PRECESSION,)),
-    Column("precession_ratio", "float64", "precession over -Ω sin(latitude)", (PRECESSION,), "precession_ratio_error"),
-    Column("precession_ratio_error", "float64", "its error", (PRECESSION,)),
-    *(Column(f"{name}_m", "float64", f"{name} at t_end", (STATE,), "position_error_m") for name in POSITION),
-    *(Column(f"{name}_m_s", "float64", f"{name} at t_end", (STATE,), "velocity_error_m_s") for name in VELOCITY),
-    Column("position_error_m", "float64", "error of the position at t_end"),
-    Column("velocity_error_m_s", "float64", "error of the velocity at t_end", (STATE,)),
-    Column("max_angle_deg", "float64", "largest angle from the plumb line", (AMPLITUDE,), "max_angle_error_deg"),
-    Column("max_angle_error_deg", "float64", "its error", (AMPLITUDE,)),
-)  # fmt: skip
+COLUMNS, TRANSIT_COLUMNS, _OF_SECTION = (
+    tuple(Column(name, *described) for name, described in table.items()) for table in texts_of(__file__).values()
+)
 
 
 def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
@@ -82,23 +57,10 @@ def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
     of the highest or the lowest points.
     """
     return tuple(
-        Column(f"{word}: {name}", kind, meaning, error=error and f"{word}: {error}")
+        replace(column, name=f"{word}: {column.name}", error=column.error and f"{word}: {column.error}")
         for word in words
-        for name, kind, meaning, error in (
-            ("passages", "int32", "passages of the section in 0 < t <= t_end", ""),
-            ("t_first_s", "float64", "time of the first one", "t_error_s"),
-            ("t_error_s", "float64", "error of the worst one's time", ""),
-            ("interval_s", "float64", "mean time between passages in the direction of the first", "interval_error_s"),
-            ("interval_error_s", "float64", "its error", ""),
-        )
+        for column in _OF_SECTION
     )
-
-
-TRANSIT_COLUMNS = (
-    Column("row", "int64", "number of the row"),
-    Column("t_s", "float64", "time of the transit"),
-    Column("direction", "int8", "+1 where xdot goes from - to +"),
-)
 
 
 def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> bytes:

@@ -99,10 +99,7 @@ class Store:
         if differing:
             expected = f"the sweep that is there, which differs in {', '.join(differing)}"
             raise InputError("--out", str(self.folder), expected, "Take another folder.")
-        versions = {
-            request.identity: self.request.identity,
-            f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}",
-        }
+        versions = {request.identity: self.request.identity, f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}"}
         for got, expected in versions.items():
             if got != expected:
                 advice = "Install the versions that the sweep was begun with, or begin it anew in another folder."

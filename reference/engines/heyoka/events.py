@@ -86,10 +86,7 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
 
 
 def march(
-    stepper: Stepper,
-    times: Sequence[Any],
-    multiplicity: int = 0,
-    report: Callable[[float], None] | None = None,
+    stepper: Stepper, times: Sequence[Any], multiplicity: int = 0, report: Callable[[float], None] | None = None
 ) -> tuple[Any, list[Zero]]:
     """Step to the last of `times`; return the states, shape (times, variables), and the zeros of xdot.
 

@@ -5,17 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .lanes import LANES, compiled, load, merged, occupied, plus_product, shuffled, spread, store
-from .limb import (
-    DOUBLED,
-    RADIX,
-    UNIT,
-    Array,
-    add_product,
-    carry,
-    carry_scalar,
-    divide,
-    double_of,
-)
+from .limb import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, divide, double_of
 from .series import TENSION, VM, VX, M, Series, Step, X, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from functools import wraps
+from functools import partial, wraps
 from typing import Any, TypeVar
 
 import numba.extending
@@ -75,11 +75,6 @@ _BLANK, _FIRST = ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.IntType(32), 
 _EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 
 
-def _spread(builder: Any, value: Any) -> Any:
-    """Return the same double in every lane."""
-    return builder.shuffle_vector(builder.insert_element(_BLANK, value, _FIRST), _BLANK, _EVERYWHERE)
-
-
 def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
     """Return what LLVM's function of this name makes of vectors."""
     function = _insert(builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64")
@@ -92,15 +87,21 @@ def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any)
     return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
 
 
-def lanewise(write: Callable[..., Any]) -> Any:
-    """Register `write(builder, *vectors)`, which makes eight doubles of one or more eights, as a compiled function."""
+def lanewise(write: Callable[..., Any], taken: Any = Lanes, result: Any = Lanes) -> Any:
+    """Register `write(builder, *vectors)`, which makes eight doubles of one or more eights, as a compiled function.
+
+    Args:
+        write: makes the instructions.
+        taken: the type of what it takes, where that is not eights.
+        result: the type of what it makes, likewise.
+    """
 
     @wraps(write)
     def typed(_: Any, *vectors: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             return write(builder, *arguments)
 
-        return Lanes(*[Lanes] * len(vectors)), generate
+        return result(*[taken] * len(vectors)), generate
 
     return instruction(typed)
 
@@ -129,14 +130,10 @@ def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     return types.void(array, types.intp, Lanes), generate
 
 
-@instruction
-def spread(_: Any, value: Any) -> Any:
+@partial(lanewise, taken=types.float64)
+def spread(builder: Any, value: Any) -> Any:
     """Return the same double in every lane."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _spread(builder, arguments[0])
-
-    return Lanes(types.float64), generate
+    return builder.shuffle_vector(builder.insert_element(_BLANK, value, _FIRST), _BLANK, _EVERYWHERE)
 
 
 @lanewise
@@ -157,16 +154,11 @@ def nearest(builder: Any, a: Any) -> Any:
     return _by_name(builder, "rint", a)
 
 
-@instruction
-def occupied(_: Any, a: Any) -> Any:
+@partial(lanewise, result=types.boolean)
+def occupied(builder: Any, a: Any) -> Any:
     """Return true if any lane is not zero."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        bits = builder.fcmp_unordered("!=", arguments[0], ZERO)
-        whole = builder.bitcast(bits, ir.IntType(LANES))
-        return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
-
-    return types.boolean(Lanes), generate
+    whole = builder.bitcast(builder.fcmp_unordered("!=", a, ZERO), ir.IntType(LANES))
+    return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
 
 @lanewise

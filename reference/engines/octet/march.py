@@ -12,19 +12,7 @@ import numpy.typing as npt
 
 from ...system.machine_code import kept
 from ..batch_interface import DOUBTFUL, LEAST_BEND, STOPPED
-from ..limbs.lanes import (
-    LANES,
-    OPTIONS,
-    at_least,
-    compiled,
-    larger,
-    load,
-    magnitude,
-    occupied,
-    spread,
-    store,
-    where,
-)
+from ..limbs.lanes import LANES, OPTIONS, at_least, compiled, larger, load, magnitude, occupied, spread, store, where
 from ..limbs.limb import Array, aligned
 from . import rows
 from .lane_zeros import (
