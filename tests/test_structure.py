@@ -130,8 +130,8 @@ PUBLIC = {
     "reference.engines.heyoka.model": "Numbers Propagator RoundedModel compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "MAX_STEPS Variants",
-    "reference.errors": "BeyondDoublesError Stopped counted did_you_mean finite in_words plain plain_json plain_lines "
-    "shortened usable",
+    "reference.errors": "BeyondDoublesError Stopped checked_path counted did_you_mean finite in_words plain plain_json "
+    "plain_lines shortened usable",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
     "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero",

@@ -139,13 +139,14 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
         still: whether the precession may be 0.
     """
     if reason:
-        return {"precession_deg_per_h": reason, "full_turn_h": "the precession is not known"}
+        return dict.fromkeys(("precession_deg_per_h", "full_turn_h"), reason)
     return {"full_turn_h": "the plane may not turn at all"} if still else {}
 
 
 def left_out_texts(reasons: dict[str, str]) -> list[str]:
     """Return what `left_out` gives as words of a line."""
-    return [f"no {name}: {reason}" for name, reason in reasons.items()]
+    groups = {reason: [name for name in reasons if reasons[name] == reason] for reason in reasons.values()}
+    return [f"no {' and no '.join(names)} ({reason})" for reason, names in groups.items()]
 
 
 def offset(start: Start, far: Any) -> float:
