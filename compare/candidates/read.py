@@ -105,10 +105,8 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
                     raise OSError(errno.EBADF, "Standard input is closed")
                 stream, name = sys.stdin.buffer, "standard input"
             else:
-                stream, name = (
-                    stack.enter_context(open_at_once(checked_path(field, source, expected))),
-                    plain(str(source)),
-                )
+                path, name = checked_path(field, source, expected), plain(str(source))
+                stream = stack.enter_context(open_at_once(path))
                 os.set_blocking(stream.fileno(), True)
             if not stream.seekable():
                 pipe, stream = stream, stack.enter_context(SpooledTemporaryFile(CHUNK))
