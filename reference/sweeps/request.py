@@ -280,7 +280,7 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
         return min(
             serving, key=lambda engine: engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
         )
-    if name not in [*engines]:
+    if name not in engines:
         raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
     engines[name].check_installed()
     return engines[name]

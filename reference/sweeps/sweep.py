@@ -274,8 +274,8 @@ def _workers(
     request: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
 ) -> AbstractContextManager[Executor]:
     if cluster is not None:
-        needed("distributed", "cluster", "--cluster", str(cluster), "which sends the rows to its workers")
+        needed("distributed", "cluster", "--cluster", cluster, "which sends the rows to its workers")
         from .cluster import on_cluster
 
-        return on_cluster(request, out, str(cluster))
+        return on_cluster(request, out, cluster)
     return on_this_machine(request, out, min(workers or usable_cores(), parts))
