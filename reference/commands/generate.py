@@ -140,6 +140,7 @@ def command(
         refuse(proving, "without --level enclosed")
     if no_confirm:
         refuse({"--confirm": confirm}, "with --no-confirm")
+    # what ships as the index says; else by the fastest engine, with a function, a tenth of it confirmed
     usual = making_of(scene, name, folder)
     if confirm is not None:
         chosen("--confirm", confirm, CONFIRMATIONS)

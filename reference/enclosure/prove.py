@@ -176,6 +176,7 @@ class _Run:
                 self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
             if self.progress:
                 self.progress(float((step.centre + step.h * step.high) / end) if end else 1.0)
+        # the proof of a function finishes the course, and hands on what that has proved
         begun, function = process_time(), fit.finish() if fit else None
         proved = function.proved if function else course.finish()
         passages = sections.finish(proved) if sections else None

@@ -37,7 +37,7 @@ class EngineChanged(Exception):
 
 
 class Feed:
-    """The run whose Taylor steps the proof takes: called with a precision, it starts one and returns its steps."""
+    """The run whose Taylor steps a proof takes: called with the proof's bits, it starts one and returns its steps."""
 
     def __init__(self, inputs: Inputs, times: tuple[Fraction, ...], engine: str, steps: int = MANY_STEPS) -> None:
         """Declare the run.
@@ -58,8 +58,8 @@ class Feed:
         self._run: Run | None = None
         self.run_s = self.proof_s = self.discarded_s = 0.0
 
-    def __call__(self, prec: int) -> Iterator[TaylorStep]:
-        """Start a run at `prec` bits and return its steps, in order from t = 0.
+    def __call__(self, bits: int) -> Iterator[TaylorStep]:
+        """Start the run for a proof in so many bits and return its steps, in order from t = 0.
 
         Raises:
             EngineChanged: another engine has to do it than at the first call. All that a proof has tried is to be of
@@ -69,6 +69,7 @@ class Feed:
         self._steps.close()  # which ends its clock
         self.discarded_s += self.run_s + self.proof_s
         self.run_s = self.proof_s = 0.0
+        prec = bits - COEFFICIENT_BITS
         engine = fastest(prec, self._engine, self._count, proof=True)
         if self.begun not in ("", engine.name):
             raise EngineChanged(engine.name)

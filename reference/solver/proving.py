@@ -24,7 +24,7 @@ from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .agreement import with_passage_errors
 from .pilot import ESTIMATE_FACTOR, Pilot, second_order_bits
-from .proof_steps import COEFFICIENT_BITS, EngineChanged, Feed
+from .proof_steps import EngineChanged, Feed
 from .solution import CrossCheck, Passages, Proof, Solution, Source, UndecidedRounding, check_decided, separated
 
 MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
@@ -81,7 +81,7 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
                 times,
                 radius=radius,
                 transits=scene.run.transits,
-                approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
+                approximant=feed,
                 lost=feed.lost,
                 function=problem.function,
                 sections=scene.run.sections or (),

@@ -18,7 +18,7 @@ from ..scenes.scene import Scene, checked_value, full_name
 from ..scenes.texts import without_sign
 from ..system.imports import needed
 from .pilot import check_reach
-from .proof_steps import COEFFICIENT_BITS, Feed
+from .proof_steps import Feed
 from .ranges import Intervals, Ranges
 from .solution import exact_decimals, separated
 
@@ -121,7 +121,7 @@ def solve_ranges(
     def approximant(bits: int, latest: Fraction) -> Any:
         check_reach(steps, bits, scene.run.digits)
         feeds.append(Feed(inputs, (latest,), engine, steps))
-        return feeds[-1](bits - COEFFICIENT_BITS)
+        return feeds[-1](bits)
 
     try:
         tell = report and (lambda part: report(part * float(end)))

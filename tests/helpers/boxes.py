@@ -20,7 +20,7 @@ from reference.engines.registry import engines
 from reference.engines.registry import run as limbs_run
 from reference.numbers.columns import GRID, SECTION, TRANSITS
 from reference.scenes.inputs import Inputs
-from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
+from reference.solver.proof_steps import Feed
 
 TRUTH_BITS = 133  # forty digits
 APSES = ("highest",)
@@ -102,7 +102,7 @@ def proof_of(box: Box, times: list[Fraction], halves: dict[str, Fraction] | None
     """Return the `BoxEnclosure`, by limbs; with derivatives to the inputs whose half-widths are given."""
 
     def steps(bits: int, end: Fraction) -> Any:
-        return Feed(box.inputs, (end,), "limbs", 1)(bits - COEFFICIENT_BITS)
+        return Feed(box.inputs, (end,), "limbs", 1)(bits)
 
     return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, sections=APSES)
 

@@ -12,7 +12,7 @@ from reference.enclosure import Enclosure, enclose
 from reference.numbers.columns import STATE
 from reference.numbers.function import GoldenFunction
 from reference.scenes.scene import Scene, load_scene
-from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
+from reference.solver.proof_steps import Feed
 
 TRUTH_BITS = 137  # of the run in limbs, 40 digits; its states are sums of two doubles, so that they are off by
 TRUTH = 1e-29  # of the length, at most
@@ -28,7 +28,7 @@ def proved_function(scene: Scene | str, radius: Fraction = Fraction(1, 10**30), 
             scene.exact,
             times,
             radius=radius,
-            approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
+            approximant=feed,
             transits=False,
             function=True,
         )

@@ -79,11 +79,10 @@ scene = reference.load_scene("paris", ["run.t_end=10", "run.grid_step=5"])
 reference.solve(scene, digits=12, level="confirmed")
 print(*(m for m in sys.modules if m == "flint" or "enclosure" in m or m == "reference.solver.enclosed"))
 from reference.enclosure import enclose
-from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
+from reference.solver.proof_steps import Feed
 for function in (False, True):
     feed = Feed(scene.exact, tuple(scene.exact.grid), "limbs")
-    steps = lambda bits: feed(bits - COEFFICIENT_BITS)
-    enclose(scene.exact, scene.exact.grid, radius=Fraction(1, 10**20), approximant=steps, function=function)
+    enclose(scene.exact, scene.exact.grid, radius=Fraction(1, 10**20), approximant=feed, function=function)
     names = "function", "fit", "box", "prove_box", "derivatives", "sections"
     print(*(f"reference.enclosure.{name}" in sys.modules for name in names))
 """

@@ -295,7 +295,7 @@ def test_the_feed_joins_step_to_step_without_a_gap(paris):
 
 def test_a_feed_that_dies_is_an_error_and_leaves_no_process(paris):
     feed = Feed(paris.exact, (Fraction(0), Fraction(86400)), "heyoka")
-    steps = feed(160)
+    steps = feed(180)
     next(steps)
     feed._worker.kill()
     with pytest.raises(IntegrationError, match="ended without"):
@@ -308,7 +308,7 @@ def test_an_error_in_the_feeds_process_arrives(paris):
     lost = make_scene(pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
     feed = Feed(lost.exact, (Fraction(0), Fraction(10**6)), "heyoka")
     with pytest.raises(IntegrationError):
-        list(feed(64))
+        list(feed(84))
     feed.stop()
 
 
