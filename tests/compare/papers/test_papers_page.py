@@ -95,7 +95,8 @@ def test_what_stands_in_a_row_cannot_break_the_page() -> None:
 
 
 def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for name in ("matplotlib", "matplotlib.figure"):
+        monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(InputError, match=r"foucault-reference\[plot\]"):
         figures.svg(1)
 

@@ -175,7 +175,7 @@ def test_the_command_writes_a_report_and_one_json_document(foucault, tmp_path: P
 
 
 def test_a_study_of_approximations_that_is_stopped_says_that_nothing_was_kept(foucault, monkeypatch) -> None:
-    def interrupted(scene: Scene, show: object) -> None:
+    def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("compare.report.approximations.document_of", interrupted)
