@@ -21,7 +21,7 @@ from ..numbers.precision import decimals_for
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
-from .swing import UNDECIDED, Swing, swing_or_reason
+from .swing import NO_SECTION, UNDECIDED, Swing, swing_or_reason
 
 Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
 T = TypeVar("T")
@@ -172,7 +172,9 @@ class Solution(GridColumns):
     def swing_or_reason(self) -> Swing | str:
         """The swing, or a sentence that says why there is none."""
         passages = self.sections.get("highest")
-        if passages is None or passages.possible:
+        if passages is None:
+            return NO_SECTION
+        if passages.possible:
             return UNDECIDED
         table, names = passages.table, ("t", "x", "y", "z")
         pairs = (zip(table.exact(name), table.bound(name), strict=True) for name in names)

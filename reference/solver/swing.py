@@ -24,6 +24,7 @@ HOUR = 3600
 # Why there is no swing, no precession or no full turn
 NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
 LEAN = f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
+NO_SECTION = "the section highest was not asked for, from which the swing follows"
 UNDECIDED = "it is not decided which of its points are the highest"
 ONE_SIDE = "highest points that follow one another lie on one side: they are not the ends of a swing"
 FAST = "the site may turn by a right angle and more from one highest point to the next: nobody can tell which way"

@@ -28,7 +28,7 @@ from reference.solver.solution import (
     section_decimals,
     transit_decimals,
 )
-from reference.solver.swing import Swing
+from reference.solver.swing import NO_SECTION, UNDECIDED, Swing
 
 SURE, OPEN = Fraction(1, 10**12), Fraction(1)
 
@@ -105,12 +105,15 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
     unit = Fraction(1, 1 << 7)
     points = [tuple(((k - 1) * unit, (k + 1) * unit) for k in range(1, 5))]
     decided, unsure = Passages(table, []), Passages(table, [], ((SURE, OPEN, "even"),))
-    for sections, swing in (
-        ({"lowest": decided}, None),
-        ({"highest": unsure}, None),
-        ({"highest": decided}, Measured((points, solution.scene.exact, 7), None)),
+    measured = Measured((points, solution.scene.exact, 7), None)
+    for sections, swing_or_reason in (
+        ({"lowest": decided}, NO_SECTION),
+        ({"highest": unsure}, UNDECIDED),
+        ({"highest": decided}, measured),
     ):
-        assert replace(solution, sections=sections).swing == swing
+        solved = replace(solution, sections=sections)
+        assert solved.swing_or_reason == swing_or_reason
+        assert solved.swing == (measured if swing_or_reason is measured else None)
 
 
 def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
