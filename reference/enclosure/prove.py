@@ -99,7 +99,7 @@ def enclose(
         flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
         function: also make the golden function, and bound it.
         sections: words of sections, whose passages are enclosed as well.
-        lost: see `plan_for`.
+        lost: bits that a run of so many loses besides `MARGIN_BITS`, if one radius carries its error (`Feed.lost`).
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
@@ -156,14 +156,15 @@ class _Run:
         if self.flint_only:
             course.followers.append(SumsChecked())
         fit, steps, count, known, sections, spent = None, chain([first], steps), 0, 0, None, 0.0
+        # a proof rests on the code of sections, or of a function, only where it has some
         if self.sections:
-            from .sections import Sections  # nor one without sections on theirs
+            from .sections import Sections
 
             sections = Sections(course, self.sections)
         if self.function:
-            from .fit import Fit, on_doubles  # a proof without a function does not rest on its code
+            from .fit import Fit, on_doubles
 
-            fit, steps = Fit(course), on_doubles(steps)
+            fit, steps = Fit(course), on_doubles(steps)  # the same polynomials, each ended at the double below its end
         for step in until(steps, end):
             begun = process_time()
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))

@@ -62,7 +62,7 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
 
     Args:
         problem: what is to be proved.
-        enclose: `enclosure.enclose`, or the same by FLINT alone.
+        enclose: that of enclosure/prove.py, or the same by FLINT alone.
         report: called with the simulated time reached, in s.
 
     Raises:
@@ -72,8 +72,8 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
     scene, pilot = problem.scene, problem.pilot
     times, span = tuple(scene.exact.grid), float(scene.exact.t_end)
     radius = first = first_radius(scene, pilot)
+    # `enclose` calls it with bits: it starts the run and gives its steps, paired (enclosure/approximant.py)
     feed = Feed(scene.exact, times, problem.engine, pilot.steps)
-
     try:
         for _ in range(ROUNDING_TRIES):
             enclosed = enclose(

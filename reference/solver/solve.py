@@ -124,12 +124,13 @@ def solve(
     for name, value in proving.items():
         if value and settings.level != "enclosed":
             raise InputError(name, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
+    # a proof is not imported unless it is asked for
     if uncertain is not None:
-        from .uncertain import solve_ranges  # nor that of a box
+        from .uncertain import solve_ranges
 
         return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)
     if settings.level == "enclosed":
-        from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
+        from .enclosed import solve_enclosed
 
         return solve_enclosed(scene, engine, report, audit, confirm, function)
     if settings.level == "computed":

@@ -113,6 +113,7 @@ def solve_ranges(
     inputs, times = scene.exact, times or scene.exact.grid
     end = times[-1]
     texts = exact_texts(widths)
+    # its ends are exact: the inputs, less and plus half of each width
     box = Box(inputs, *(end_of(inputs, texts, side) for side in (-1, 1)))
     swing = abs(float(inputs.gravity / inputs.length)) ** 0.5
     steps = ceil(float(end) * max(swing, abs(float(inputs.rotation_rate)), 1 / float(end)))
