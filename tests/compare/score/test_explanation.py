@@ -430,7 +430,7 @@ def test_steps_that_no_cause_accounts_for_are_read_once(monkeypatch: pytest.Monk
 FEW = [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)]
 
 
-@pytest.mark.parametrize("times", one_in(2, map(pytest.param, FEW)))
+@pytest.mark.parametrize("times", one_in(4, map(pytest.param, FEW)))
 def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(times: tuple[float, ...]) -> None:
     """A family of models fits a few rows whatever they are, and so do as many fitted numbers as the rows have."""
     scene = load_scene("paris", ["inputs=binary64"])
