@@ -18,7 +18,8 @@ from .shapes import Covered, Sizes, State, Tube
 class SceneBalls:
     """The scene's constants and release as balls at `prec` bits, from its exact inputs alone; exact zeros stay exact.
 
-    Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
+    Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z. `omega` is the scene's Ω, with
+    which K = p × (p' + Ω × p) is formed; `turning` is that of the pendulum itself: the same, but in a box of inputs.
     """
 
     def __init__(self, inputs: Any, prec: int, flint_only: bool = False) -> None:
@@ -32,6 +33,7 @@ class SceneBalls:
             push = arb(0) if inputs.gravity_is == "effective" else rate * rate * (normal + ball(inputs.altitude)) * cos
             self.tilt = (arb(1), arb(0)) if rate.is_zero() else (sin, cos)
             self.omega = [arb(0), arb(0), rate]
+            self.turning = self.omega
             weight = [arb(0), -sin * push, cos * push - ball(inputs.gravity)]
             self.release = self._release(inputs)
             self.c, self.r, v = (self.turned(a, 1) for a in (times(1 / self.length, weight), *self.release))
@@ -43,11 +45,11 @@ class SceneBalls:
 
     def begin(self, v: Vector) -> None:
         """Take the velocity at the release: H there, the weight, and what bounds the motion for all times."""
-        self.H = cross(self.r, add(v, cross(self.omega, self.r)))
-        c, w = size(self.c), size(self.omega)
+        self.H = cross(self.r, add(v, cross(self.turning, self.r)))
+        c, w = size(self.c), size(self.turning)
         # any positive number is a valid weight
         self.w0 = next(pace.mid() for pace in (c.sqrt(), w + size(self.H), arb(1)) if pace > 0)
-        energy = dot(self.H, self.H) / 2 - dot(self.omega, self.H) - dot(self.c, self.r)
+        energy = dot(self.H, self.H) / 2 - dot(self.turning, self.H) - dot(self.c, self.r)
         self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
         self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)
 
@@ -81,15 +83,29 @@ class Scaled:
 scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each other
 
 
+def frozen(step: TaylorStep) -> TaylorStep:
+    """Return a copy of a step, whose coefficients are read once."""
+    rows: Any = step.coefficients
+    if isinstance(rows, Digits):
+        rows = Digits(np.array(rows.table, np.int32))
+        rows.table.setflags(write=False)
+    else:
+        rows = tuple(fmpz_poly(row) for row in rows)
+    centre, h, low, high = (Fraction(x) for x in (step.centre, step.h, step.low, step.high))
+    return TaylorStep(centre, h, low, high, int(step.bits), rows, step.columns)
+
+
 class Piece:
-    """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s)."""
+    """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s).
+
+    Its `step` is a copy: all that rests on this step rests on the same numbers, whatever its source does afterwards.
+    """
 
     def __init__(self, balls: SceneBalls, step: TaylorStep) -> None:
+        step = frozen(step)
         demand(-1 <= step.low < step.high <= 1 and step.h > 0, "a step must lie in -1 <= s <= 1, where its sizes hold")
-        rows = step.coefficients
-        if isinstance(rows, Digits):  # copied and frozen, as p and its defect must be of the same ones
-            rows = Digits(np.array(rows.table, np.int32))
-            rows.table.setflags(write=False)
+        rows: Any = step.rows
+        if isinstance(rows, Digits):
             demand(step.bits == DIGIT_BITS * rows.table.shape[1] - 1, "coefficients have 22 bits a digit, but one")
         self.balls, self.step, self.k = balls, step, scaled(balls, step.h, step.bits)
         self.unit, self.rows, self.p = fmpz(1) << step.bits, rows, polynomials(rows, slice(3))

@@ -29,7 +29,10 @@ def hull(low: Any, high: Any) -> Any:
 
 
 class BoxBalls(SceneBalls):
-    """The balls of a scene, but for those that hold the box: release, lengths, Ω `turning`, γ `damping`, `pace`."""
+    """The balls of a scene, but for those that hold the box: release, lengths, Ω `turning`, γ `damping`, `pace`.
+
+    `omega` and `drag` are the scene's own.
+    """
 
     def __init__(self, box: Box, prec: int) -> None:
         demand(min(box.low.drag, box.high.drag) >= 0, "the theorems take a drag >= 0")
@@ -42,9 +45,10 @@ class BoxBalls(SceneBalls):
             self.given = [ball(q) for q in wide["position"] or ()]  # in m and m/s, without the length
             self.inputs, self.wide, self.own, self.c = box, wide, own, own.c
             self.measure(wide)
-            self.omega, self.paces = self.turning, interval(self.pace)
+            self.paces = interval(self.pace)
             self.begin(self.v)
-            self.omega, self.drag = own.omega, own.drag
+            self.omega = own.omega
+            self.drag = own.drag
             self.H = cross(self.r, add(self.v, cross(self.omega, self.r)))  # with the scene's Ω
 
     def measure(self, wide: dict[str, Any]) -> None:

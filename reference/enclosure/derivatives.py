@@ -258,7 +258,10 @@ def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) 
     if not far.is_finite():
         return wide
     reach = interval(far).high
-    return Interval(max(wide.low, own.low - reach), min(wide.high, own.high + reach))
+    low = max(wide.low, own.low - reach)
+    high = min(wide.high, own.high + reach)
+    demand(low <= high, "two bounds of one number contradict each other")
+    return Interval(low, high)
 
 
 def motion(covered: Covered, s: arb) -> list[Vector]:

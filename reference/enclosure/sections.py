@@ -27,7 +27,7 @@ def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
     if azimuth.endswith("@0"):
         return balls.turned([-sin, cos, arb(0)], 1), zero, arb(0)
     for _ in range(balls.prec):
-        pull = add(balls.c, times(-1, cross(balls.omega, cross(balls.omega, rest))))
+        pull = add(balls.c, times(-1, cross(balls.turning, cross(balls.turning, rest))))
         demand(dot(pull, pull) > 0, "so fast a rotation singles out no rest position, which the gate goes through")
         rest = times(1 / dot(pull, pull).sqrt(), pull)
     return (across := cross(along, balls.c)), zero, dot(across, rest)

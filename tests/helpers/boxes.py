@@ -23,14 +23,14 @@ from reference.scenes.inputs import Inputs
 from reference.solver.proof_steps import Feed
 
 TRUTH_BITS = 133  # forty digits
-APSES = ("highest",)
+SECTIONS = ("highest", "gate 0", "turn 100")
 ROUNDING = Fraction(1, 10**30)  # of such a run, in parts of the largest number
 NAMES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
 PLAIN = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 
 # scene, end in s, halves of widths
-BOXES: dict[str, tuple[dict[str, Any], int, dict[str, str]]] = {
+BOXES: dict[str, tuple[dict[str, Any], int | Fraction, dict[str, str]]] = {
     "paris": ({}, 300, {"length": "0.001", "gravity": "1e-5", "latitude": "0.001"}),
     "release": ({}, 200, {"x": "0.001", "y": "0.002", "vx": "0.0001", "vy": "0.0002"}),
     "damped": ({"length": "10", "drag": "0.01", "x": "0.5", "y": "0.1"}, 100, {"length": "0.001", "drag": "1e-4"}),
@@ -70,6 +70,17 @@ BOXES: dict[str, tuple[dict[str, Any], int, dict[str, str]]] = {
         {"gravity": "1e-3", "latitude": "0.05"},
     ),
     "no turning": ({"rotation_rate": "0"}, 100, {"length": "0.01", "rotation_rate": "1e-5"}),
+    # the rest position of each pendulum, through which its gate goes, is another one
+    "turning table": (
+        {"gravity_is": "effective", "length": "1", "x": "0.1", "y": "0", "vy": "0.5", "rotation_rate": "0.3"},
+        Fraction(3, 250),
+        {"rotation_rate": "0.03"},
+    ),
+    "turning table, all inputs": (
+        {"length": "2", "x": "0.2", "y": "0.05", "vy": "0.3", "rotation_rate": "0.2", "equatorial_radius": "20"},
+        2,
+        {"rotation_rate": "1e-4", "latitude": "0.01", "length": "1e-4"},
+    ),
     "1 mm": ({"length": "0.001", "x": "0.0001", "y": "0.00002"}, 1, {"length": "1e-8", "x": "1e-9"}),
     "10 km": ({"length": "10000", "x": "100", "y": "50"}, 1000, {"length": "1", "gravity": "1e-4", "vy": "0.01"}),
     # a transit may be later than the next one of another
@@ -104,7 +115,7 @@ def proof_of(box: Box, times: list[Fraction], halves: dict[str, Fraction] | None
     def steps(bits: int, end: Fraction) -> Any:
         return Feed(box.inputs, (end,), "limbs", 1)(bits)
 
-    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, sections=APSES)
+    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, sections=SECTIONS)
 
 
 def inputs_of(box: Box) -> dict[str, Fraction]:
@@ -180,12 +191,12 @@ def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
 def truth(inputs: Inputs, times: Sequence[Fraction]) -> Run:
     """Return a run by limbs, with 40 digits."""
     limbs = engines()["limbs"]
-    return limbs_run(replace(limbs.plan(inputs, TRUTH_BITS, tuple(times), True), sections=APSES))
+    return limbs_run(replace(limbs.plan(inputs, TRUTH_BITS, tuple(times), True), sections=SECTIONS))
 
 
-def apses(run: Run) -> list[tuple[Fraction, ...]]:
-    """Return t, x, y, z, vx, vy, vz of the highest points of a run."""
-    table, _ = run.passages["highest"]
+def passages(run: Run, word: str) -> list[tuple[Fraction, ...]]:
+    """Return t, x, y, z, vx, vy, vz of the passages of a section in a run."""
+    table, _ = run.passages[word]
     return [*zip(*(table.exact(name) for name in SECTION), strict=True)]
 
 
@@ -194,7 +205,7 @@ def azimuths(run: Run) -> list[tuple[Fraction, Fraction]]:
     found = []
     with mp.workprec(TRUTH_BITS):
         (_, north, up), _ = plumb(run.plan.inputs)
-        for t, *place in ((row[0], *row[1:4]) for row in apses(run)):
+        for t, *place in ((row[0], *row[1:4]) for row in passages(run, "highest")):
             x, y, z = (mp.mpf(q.numerator) / q.denominator for q in place)
             angle = mp.atan2((north * z - up * y) / mp.hypot(north, up), x) * 180 / mp.pi
             found.append((t, Fraction(int(angle * 2**120), 2**120)))
@@ -213,15 +224,20 @@ def outside(proved: ProvedBox, run: Run) -> list[str]:
     for i, name in enumerate(GRID):
         for time, value, state in zip(proved.times, run.grid.exact(name), proved.states, strict=True):
             check(f"{name} at {float(time)}:", value, state[i].low, state[i].high)
-    for row in apses(run):
-        zeros = proved.sections["highest"]
-        inside = [z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING]
-        if len(inside) == 1 and inside[0].parity == "one":
-            for name, value in zip(SECTION, row, strict=True):
-                interval = getattr(inside[0], name)
-                check(f"{name} at a highest point:", value, interval.low, interval.high)
-        elif not inside:
-            found.append(f"highest point at {float(row[0])} is lost")
+    for word, zeros in proved.sections.items():
+        rows = passages(run, word)
+        for row in rows:
+            inside = [z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING]
+            if len(inside) == 1 and inside[0].parity == "one":
+                for name, value in zip(SECTION, row, strict=True):
+                    interval = getattr(inside[0], name)
+                    check(f"{name} at a passage of {word}:", value, interval.low, interval.high)
+            elif not inside:
+                found.append(f"passage of {word} at {float(row[0])} is lost")
+        for z in zeros:
+            single = z.parity == "one" and z.t.high < proved.times[-1]
+            if single and not any(z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING for row in rows):
+                found.append(f"no passage of {word} in {float(z.t.low)} to {float(z.t.high)}")
     rows = list(zip(*(run.transits.exact(name) for name in TRANSITS), strict=True))
     ones = [z for z in proved.transits if z.parity == "one"]
     if len(ones) < len(proved.transits):  # some are undecided: each zero has to lie in one of all
@@ -260,7 +276,7 @@ def ordered(proved: ProvedBox) -> bool:
 def check_runs(name: str, box: Box, proved: ProvedBox, count: int) -> None:
     """Hold runs that are drawn from a box against what is proved for it, and print how wide that is."""
     rng = Random(name)
-    assert proved.transits
+    assert proved.transits or any(proved.sections.values()), "nothing is claimed"
     assert ordered(proved)
     runs = [truth(drawn(box, rng, corner=k % 2 == 0), proved.times) for k in range(count)]
     for run in runs:

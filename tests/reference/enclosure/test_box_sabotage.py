@@ -5,7 +5,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from boxes import APSES, drawn, outside, truth, widened
+from boxes import SECTIONS, drawn, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb
@@ -117,7 +117,7 @@ def runs_hold(module, names=SHORT_RUNS):
         changes, widths, end = SHORT_RUNS[name]
         box = widened(scene(t_end=str(end), **{"drag": "1e-3", **changes} if name == "drag" else changes), widths)
         times = [Fraction(end * k, 40) for k in range(41)]
-        windows = module.Windows(box, BITS + 64, times, True, APSES)
+        windows = module.Windows(box, BITS + 64, times, True, SECTIONS)
         chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), BITS, 24).chain(Fraction(1, 16)))
         for step in until(chain, windows.course.times[-1]):
             windows.course.advance(step)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from boxes import APSES, azimuths, drawn, inputs_of, moved, outside, truth, widened
+from boxes import SECTIONS, azimuths, drawn, inputs_of, moved, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb, arb_poly, ctx
@@ -202,7 +202,7 @@ def runs_hold(module, names=RUNS, kinds=("box", "point", "poor", "poor box", "co
             halves = halves if whole else dict.fromkeys(halves, Fraction(0))
             rows = 13 if not poor else 5 if kind == "poor" and name == "damped" else 2
             bits = COARSE if kind == "coarse" else BITS
-            windows = Windows(here, BITS + 64, times[:rows], True, APSES)
+            windows = Windows(here, BITS + 64, times[:rows], True, SECTIONS)
             follower = module.Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             ways = follower.bound.ways
             source = Poor(ways) if poor else TangentSource(windows.balls, ways)

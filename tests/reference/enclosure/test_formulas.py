@@ -68,7 +68,7 @@ def of_digits(rng):
 
 def defects(piece, s):
     """d1, d2, p, K, τ, d1' from their definitions in (1), not from Lemma 0."""
-    rows = [[Fraction(c, 1 << piece.step.bits) for c in row] for row in piece.step.coefficients]
+    rows = [[Fraction(int(c), 1 << piece.step.bits) for c in row] for row in piece.step.coefficients]
     k = piece.k
     W, c, g = [exact(x) for x in k.omega], [exact(x) for x in k.c], exact(k.drag)
     p, p1, p2 = ([poly(row, s, n) for row in rows[:3]] for n in range(3))
