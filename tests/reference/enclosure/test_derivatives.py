@@ -14,7 +14,8 @@ from reference.enclosure.prove_box import enclose_box
 from reference.enclosure.shapes import Box, Interval
 from reference.solver.proof_steps import Feed
 
-# by position with drag, by angles with all inputs at once, above the horizontal, with effective gravity, with a rest position of each pendulum's own
+# by position with drag, by angles with all inputs at once, above the horizontal, with effective gravity,
+# with a rest position of each pendulum's own
 IN_EVERY_RUN = ("only drag", "fast", "very wide", "effective, fast", "turning table, all inputs")
 NAMES = [name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long) for name in BOXES]
 
@@ -72,7 +73,7 @@ def turned_inside(step, angle):
 
 
 def test_a_source_whose_steps_change_when_they_are_read_again_proves_nothing_false():
-    """As a buffer does that is used again: the radius of the scene's own motion must be that of the same polynomials."""
+    """As a buffer does that is used again: the radius of the scene's own motion is that of the same polynomials."""
     inputs = scene(t_end="20")
     box = widened(inputs, {"length": "1e-12"})
     times = [Fraction(k, 2) for k in range(41)]
