@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +20,8 @@ HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventio
 UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
 AS_IF = "as_if"  # stage of a number that no person typed: the motion is like that, the cause is not known
 BEGIN = "It seems that your program"
+EQUAL = 1.01  # ratio of two residuals that may be one: fits of the same motion end a little apart
+FINEST = 1e-2  # of the tolerance: smaller residuals are rounding and steps of a program's own, or ours
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,15 @@ def largest(difference: Array) -> float:
 def rms(difference: Array) -> float:
     """Return the root mean square distance in m that they make."""
     return float(np.linalg.norm(difference)) / math.sqrt(len(difference))
+
+
+def first_least(residuals: Sequence[float], resolution: float = 0.0) -> int:
+    """Return the index of the first of the least residuals; those below a resolution are equal.
+
+    So rounding errors, which are others on another processor, choose between no two fits.
+    """
+    enough = EQUAL * max(min(residuals), resolution)
+    return next(i for i, residual in enumerate(residuals) if residual <= enough)
 
 
 @dataclass(frozen=True)
@@ -171,6 +182,11 @@ class Case:
     def floor(self) -> float:
         """Root mean square in m below which no error needs a cause."""
         return max(self.rows.noise, self.allowed_m / 3)
+
+    @property
+    def resolution(self) -> float:
+        """Root mean square in m below which residuals are rounding, and equal."""
+        return max(self.rows.noise, FINEST * self.allowed_m)
 
     @property
     def enough(self) -> float:

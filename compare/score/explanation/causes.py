@@ -17,6 +17,7 @@ from .programs import Program
 NAMED = 0.3  # decades by which a named cause has to lower what is left, to be believed
 RARE = 0.5  # one that is met less often
 FITTED = 0.7  # and a fitted number
+PRINTED_DIGITS = 12  # of a fitted number at most
 PUSHED = 0.2  # more, for a velocity where the scene releases at rest
 SOLAR_DAY = 86400.0
 SIDEREAL_DAYS = (86164.0, 86160.0, 86164.1, 86164.0905, 86164.09)
@@ -54,15 +55,26 @@ class Cause:
     free: str = ""
     stage: str = "input"
 
-    def sentence(self, value: float, right: Program) -> str:
-        """Return the text with a fitted number, beside what a right program has in its place."""
+    def sentence(self, value: float, uncertainty: float, right: Program) -> str:
+        """Return the text with a fitted number to the digits that are known, beside what a right program has."""
         if self.free == "rate":
-            number = f"{value / right.rate:.8g}"
+            factor, _ = shortest_decimal(value / right.rate, uncertainty / abs(right.rate))
+            number = f"{factor:.{PRINTED_DIGITS}g}"
         elif self.free == "step":
             number = f"{value:.3g} s"
         else:
-            number = f"{value:.10g} and not {getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
+            decimal, _ = shortest_decimal(value, uncertainty)
+            number = f"{decimal:.{PRINTED_DIGITS}g} and not {getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
         return self.text.format(value=number)
+
+
+def shortest_decimal(value: float, doubt: float) -> tuple[float, int]:
+    """Return the shortest decimal that is no further from a number than its doubt, and how many digits it has."""
+    for digits in range(1, PRINTED_DIGITS):
+        decimal = float(f"{value:.{digits}g}")
+        if abs(decimal - value) <= doubt:
+            return decimal, digits
+    return float(f"{value:.{PRINTED_DIGITS}g}"), PRINTED_DIGITS
 
 
 def causes_of(case: Case, kind: str) -> Iterator[Cause]:

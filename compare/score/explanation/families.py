@@ -9,14 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import best_change
-from .case import Case, rms
+from .case import EQUAL, Case, first_least, rms
 from .phasors import ComplexArray, Phasors, as_angles, fit_phasors
 from .programs import NAMES, Pendulum, Program, phasors_of, theta_of
 
@@ -145,7 +144,7 @@ def fit_pendulum(case: Case, pendulum: Pendulum, guesses: Sequence[Array]) -> Fi
     first, *longer = (case.part(count) for count in windows(case.rows.times, WINDOWS, 16, 24))
     small = np.full(len(NAMES), 1e-6)
     fits = [_in_window(first, pendulum, guess, guess, small) for guess in guesses]
-    best, guess = min(zip(fits, guesses, strict=True), key=lambda pair: pair[0].rest)
+    best, guess = _nearest_of_equals(first, fits, guesses)
     size = float(np.abs(case.rows.plane).max())
     for part in longer:
         if not best.rest <= HOPELESS * float(np.abs(part.rows.plane).max()):
@@ -153,9 +152,21 @@ def fit_pendulum(case: Case, pendulum: Pendulum, guesses: Sequence[Array]) -> Fi
         answers = np.linalg.norm(best.slopes * case.scales, axis=0) * WINDOWS
         nudges = np.clip(SEEN * size / np.maximum(answers, 1e-300), 1e-13, 1e-2)
         # what a short window hardly tells may have been led astray: a guess may be nearer
-        start = min((best.theta, *guesses), key=partial(_left, part, pendulum))
+        starts = [best.theta, *guesses]
+        residuals = [_left(part, pendulum, theta) for theta in starts]
+        start = starts[first_least(residuals, part.resolution)]
         best = _in_window(part, pendulum, start, guess, nudges)
     return best if best.rest <= HOPELESS * size else None
+
+
+def _nearest_of_equals(case: Case, fits: Sequence[Fit], guesses: Sequence[Array]) -> tuple[Fit, Array]:
+    """Return the fit that leaves least, and its guess; of fits that leave as little, the nearest to its guess."""
+    enough = EQUAL * max(min(fit.rest for fit in fits), case.resolution)
+    equals = [(fit, guess) for fit, guess in zip(fits, guesses, strict=True) if fit.rest <= enough]
+    if not equals:
+        return fits[0], guesses[0]
+    moves = [float(np.linalg.norm((fit.theta - guess) / case.scales / WIDTHS)) for fit, guess in equals]
+    return equals[first_least(moves)]
 
 
 def _left(case: Case, pendulum: Pendulum, theta: Array) -> float:
@@ -166,20 +177,28 @@ def _left(case: Case, pendulum: Pendulum, theta: Array) -> float:
 
 
 def _in_window(case: Case, pendulum: Pendulum, theta: Array, guess: Array, nudges: Array) -> Fit:
-    """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped."""
+    """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped.
+
+    One more step is taken from where the residual is rounding: up to it the numbers that rows hardly tell are those of
+    the guess, and of chance.
+    """
     times, rows, scales = case.rows.times, case.rows.positions, case.scales
-    columns, root, noise = rows.shape[1], math.sqrt(len(times)), max(case.rows.noise, case.floor / 100)
+    columns = rows.shape[1]
+    root = math.sqrt(len(times))
+    noise = case.resolution
     slopes, fresh, damping = None, False, list(DAMPING)
     best, least = theta, math.inf
+    settled = False
     residual = np.zeros(rows.size)
     for _ in range(STEPS):
         left = (rows - pendulum.rows(theta, times, columns)).ravel()
         size = float(np.linalg.norm(left)) / root
         stuck = not size < 0.5 * least
-        if size < least:
+        if size < max(least, noise):
             best, least, residual = theta, size, left
-        if least < noise:
+        if settled:
             break
+        settled = least < noise
         if slopes is None or (stuck and not fresh):
             slopes, fresh = pendulum.slopes(best, times, columns, scales, nudges), True
         elif not stuck:

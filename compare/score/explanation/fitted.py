@@ -9,18 +9,18 @@ from dataclasses import replace
 import numpy as np
 
 from ...candidates.candidate import Deviation
-from .case import AS_IF, HARMLESS, Case, Explanation, Model, largest, rms
+from .case import AS_IF, EQUAL, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
-from .gate import CLEAN, Evidence, loose, supported_causes, without_doubtful_steps
+from .gate import CLEAN, Evidence, divides, is_typed, loose, supported_causes, without_doubtful_steps
 from .programs import NAMES, Program
 from .readings import Reader, Reading, adjusted
 
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
+NEAR = 1.0  # decades above the best reading within which others are polished before they are compared
 POLISHED = 3  # steps by which fitted numbers are moved
 TIE = 0.2  # decades: readings that may as well be true, and are distinguished by what they leave below the tolerance
-FINEST = 1e-3  # of the tolerance: below it a program's own rounding begins
 EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
 BETTER = 0.9  # of what was left, for a step that is taken
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
@@ -60,11 +60,11 @@ def best_of(case: Case, stepped: bool = False) -> Reading | None:
         return [cause for cause in causes_of(case, kind) if not stepped or cause.stage != "integrator"]
 
     run = ranked(case, readers_of(case, fits), causes)
-    finest = max(case.rows.noise, 1.2 * least, FINEST * case.floor)
-    if not stepped and run and _is_tied(run):
+    finest = max(case.resolution, 1.2 * least)
+    if not stepped and run and _is_tied(case, run):
         exact = ranked(case, readers_of(case, fits, finest), causes)
         run = next((readings for readings in (exact, run) if readings[0].rest <= EXACT * finest), [])
-    best = polished(case, run[0]) if run else None
+    best = run[0] if run else None
     if best is None or stepped:
         return best
     if case.rows.plane.size <= len(NAMES):  # a family fits any such rows: what leaves much of them says nothing
@@ -74,17 +74,60 @@ def best_of(case: Case, stepped: bool = False) -> Reading | None:
     return best if best.rest <= max(share * case.error, noise) else None
 
 
-def _is_tied(run: Sequence[Reading]) -> bool:
+def _price(reading: Reading) -> float:
+    """Return the score of a reading in decades, with what a simpler family costs: less is better."""
+    return reading.score + EXTRA[reading.reader.right.kind]
+
+
+def _is_tied(case: Case, run: Sequence[Reading]) -> bool:
     """Return whether a reading of another motion, with nothing in common with the best one, is about as likely."""
-    best, groups = run[0], {cause.group for cause in run[0].causes}
-    likely = best.score + EXTRA[best.reader.right.kind] + TIE
-    return any(
-        reading.score + EXTRA[reading.reader.right.kind] < likely
-        and not math.isclose(reading.rest, best.rest)  # as no rotation, and neither of its two forces, are one motion
-        and reading.causes
-        and groups.isdisjoint(cause.group for cause in reading.causes)
-        for reading in run[1:]
-    )
+    best = run[0]
+    groups = {cause.group for cause in best.causes}
+    likely = [reading for reading in run[1:] if reading.causes and _price(reading) < _price(best) + TIE]
+    rivals = [reading for reading in likely if groups.isdisjoint(cause.group for cause in reading.causes)]
+    return any(not _is_same_motion(case, reading, best) for reading in rivals)
+
+
+def _is_same_motion(case: Case, reading: Reading, other: Reading) -> bool:
+    """Return whether two readings move alike, as no rotation and neither of its two forces do."""
+    return rms(case.positions(reading.program) - case.positions(other.program)) <= case.resolution
+
+
+def _first_of_equals(case: Case, run: list[Reading], places: dict[int, int]) -> Reading:
+    """Return the best reading; of those that are as good, the surest, and then the first of the catalogue.
+
+    Args:
+        case: the file.
+        run: the readings, at least one.
+        places: of each cause in the catalogue, by its identity.
+    """
+    least = min(map(_price, run))
+    equals = [reading for reading in run if _price(reading) <= least + math.log10(EQUAL)]
+    kinds = list(EXTRA)
+
+    def order(reading: Reading) -> tuple[int, int, list[int]]:
+        in_catalogue = sorted(places[id(cause)] for cause in reading.causes)
+        return unsure_causes(case, reading), kinds.index(reading.reader.right.kind), in_catalogue
+
+    return min(equals, key=order)
+
+
+def unsure_causes(case: Case, reading: Reading) -> int:
+    """Return how many numbers of a reading nobody typed, and steps that do not clearly divide the spacing of rows."""
+    spacing = float(np.ptp(case.rows.times[:2]))
+    clean = clean_share(case, reading.reader.right.kind)
+    unsure = 0
+    for cause in reading.causes:
+        if not cause.free:
+            continue
+        value = reading.value(cause)
+        if cause.stage == "integrator":
+            unsure += not divides(value, spacing, clean)
+            continue
+        shift = value - float(getattr(case.right, cause.free))
+        uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
+        unsure += not is_typed(Deviation(cause.id, cause.text, 0.0, cause.stage, value, shift, uncertainty))
+    return unsure
 
 
 def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> list[Reader]:
@@ -104,7 +147,7 @@ def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> l
 def ranked(
     case: Case, readers: Sequence[Reader], causes_of: Callable[[str], Sequence[Cause]], tried: int = TRIED
 ) -> list[Reading]:
-    """Return the likeliest readings of a case, their programs run, the best first.
+    """Return the likeliest readings of a case, their programs run and the near ones polished, the best first.
 
     Args:
         case: the file.
@@ -113,18 +156,26 @@ def ranked(
         tried: number of readings of a family that are run.
     """
     run: list[Reading] = []
+    places: dict[int, int] = {}
     numbers = case.rows.plane[int(case.released) :].size  # as many that are fitted make any rows
     for reader in sorted(readers, key=lambda reader: reader.fit.rest):
-        least = min((reading.score + EXTRA[reading.reader.right.kind] for reading in run), default=math.inf)
+        causes = causes_of(reader.right.kind)
+        places |= {id(cause): len(places) + n for n, cause in enumerate(causes)}
+        least = min(map(_price, run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
-        likely = reader.readings(causes_of(reader.right.kind), most)
+        likely = reader.readings(causes, most)
         likely = [reading for reading in likely if sum(bool(cause.free) for cause in reading.causes) < numbers][:tried]
         likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
         for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
             leaves = rms(case.left(reading.program))
             if math.isfinite(leaves):
                 run.append(reader.scored(reading.causes, reading.program, leaves))
-    return sorted(run, key=lambda reading: reading.score + EXTRA[reading.reader.right.kind])
+    if not run:
+        return []
+    near = min(map(_price, run)) + NEAR
+    run = [polished(case, reading) if _price(reading) <= near else reading for reading in run]
+    best = _first_of_equals(case, run, places)
+    return [best, *sorted((reading for reading in run if reading is not best), key=_price)]
 
 
 def polished(case: Case, reading: Reading) -> Reading:
@@ -212,8 +263,8 @@ def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
                 value = reading.value(cause)
                 program = program.changed(**{cause.free: value})
                 shift = value - float(getattr(case.right, cause.free))
-                uncertainty = reading.reader.uncertainty(reading, cause)
-                text = cause.sentence(value, case.right)
+                uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
+                text = cause.sentence(value, uncertainty, case.right)
         after = case.positions(program)
         size = largest(after - before)
         if cause is not None and size <= case.enough:  # another cause, put right before it, may have made it small

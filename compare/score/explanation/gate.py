@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from ...candidates.candidate import Deviation
 from .case import AS_IF
+from .causes import shortest_decimal
 from .readings import SAME
 
 CHANCE = 0.02  # that a number which nobody typed has as few digits, within its uncertainty
@@ -22,7 +23,7 @@ UNSURE_SHARE = 0.03  # where several steps divide the spacing of the rows
 SLIGHT = 10.0  # times the tolerance: what a number that is nearly the scene's may move
 STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
 APART = 0.02  # of a step: how far a whole number of them may be from the spacing of the rows
-FINEST = 1e-5  # over the frequency: no program makes smaller steps
+SMALLEST_STEP = 1e-5  # over the frequency: no program makes smaller steps
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 
@@ -67,9 +68,8 @@ def supported_causes(causes: Sequence[Deviation], evidence: Evidence) -> Iterato
     allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
     causes = [_in_whole_steps(cause, evidence) for cause in _drift_as_step(causes, evidence)]
     causes = [cause for cause in causes if cause.size_m > evidence.enough_m and not is_the_scenes(cause, allowed)]
-    within = allowed / left if agrees and left else 0.0
     typed = [
-        cause.stage == "integrator" or cause.value is None or cause.id in evidence.shown or is_typed(cause, within)
+        cause.stage == "integrator" or cause.value is None or cause.id in evidence.shown or is_typed(cause, agrees)
         for cause in causes
     ]
     unknown = max((cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0)
@@ -129,7 +129,7 @@ def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
     assert cause.value is not None
     steps = round(evidence.spacing / cause.value)
     doubt, off = evidence.clean * steps, abs(evidence.spacing / cause.value - steps)
-    too_fine = cause.value * evidence.frequency < FINEST
+    too_fine = cause.value * evidence.frequency < SMALLEST_STEP
     if not steps or off > max(doubt, APART) or evidence.clean >= 1 or too_fine:
         return loose(cause.size_m)
     if doubt >= 1 / 2:
@@ -137,6 +137,14 @@ def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
     step = evidence.spacing / steps
     text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
     return replace(cause, value=step, shift=step, uncertainty=0.0, text=text)
+
+
+def divides(step: float, spacing: float, clean: float) -> bool:
+    """Return whether a step, known to a share `clean` of it, plainly divides the spacing of the rows."""
+    steps = round(spacing / step)
+    doubt = clean * steps
+    off = abs(spacing / step - steps)
+    return steps > 0 and off <= max(doubt, APART) and 2 * doubt < SCARCE
 
 
 def _drift_as_step(causes: Sequence[Deviation], evidence: Evidence) -> list[Deviation]:
@@ -178,16 +186,17 @@ def is_likely(cause: Deviation) -> bool:
     return scene / FAR < cause.value < FAR * scene or is_typed(cause)
 
 
-def is_typed(cause: Deviation, within: float = 0.0) -> bool:
+def is_typed(cause: Deviation, agrees: bool = False) -> bool:
     """Return whether a person may have typed a fitted number, or the factor by which it differs from the scene's.
 
     Args:
         cause: with the number and its uncertainty.
-        within: the tolerance over what is left, if nothing else is off: then numbers that serve as well count; else 0.
+        agrees: whether nothing else is off: then a number of few digits needs less evidence.
     """
-    value, doubt = cause.value or 0.0, (cause.uncertainty or 0.0) * max(within, 1.0)
+    value = cause.value or 0.0
+    doubt = cause.uncertainty or 0.0
     scene = value - (cause.shift or 0.0)
-    lenient = within > 0 and value * scene >= 0  # another size and another sign at once take better evidence
+    lenient = agrees and value * scene >= 0  # another size and another sign at once take better evidence
     if has_few_digits(value, doubt, lenient):
         return True
     factor = cause.id == "site.rotation_rate" and scene != 0
@@ -199,8 +208,7 @@ def has_few_digits(value: float, doubt: float, lenient: bool, most: int = MOST_D
     doubt = max(doubt, 2.0**-50 * abs(value))
     if abs(value) <= doubt:
         return True
-    for digits in range(1, most + 1):
-        unit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
-        if abs(round(value / unit) * unit - value) <= doubt:
-            return 2 * doubt < (SCARCE if lenient and digits <= TYPED else CHANCE) * unit
-    return False
+    _, digits = shortest_decimal(value, doubt)
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
+    chance = SCARCE if lenient and digits <= TYPED else CHANCE
+    return digits <= most and 2 * doubt < chance * unit

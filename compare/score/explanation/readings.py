@@ -19,7 +19,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import best_change, by_differences, gauss_newton
-from .case import Case
+from .case import Case, first_least
 from .causes import Cause
 from .families import Fit
 from .programs import Program
@@ -122,7 +122,7 @@ class Reader:
             same_group = [other for other in causes if other.group == cause.group and other is not cause]
             exchanged = [self._with(fewer, other) for other in same_group if not _clash(fewer.causes, other)]
             readings += [fewer, *filter(None, exchanged)]
-        best = min(readings, key=lambda reading: reading.score)
+        best = readings[first_least([10**other.score for other in readings])]
         return best if best is reading else self._exchanged(best, causes)
 
     def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
@@ -161,7 +161,7 @@ class Reader:
             square, drag = self._shown(reading.program)
             guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
             tried = [self._judged(together, program.changed(step=step)) for step in guesses if step > 0]
-            program = min(tried, key=lambda reading: reading.rest).program
+            program = tried[first_least([reading.rest for reading in tried])].program
         goal = np.zeros(len(self._triangle))
         fitted, _ = adjusted(program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint)
         return self._judged(together, fitted)
@@ -185,13 +185,16 @@ class Reader:
 
         return left(pull, drag) <= enough < min(left(pull), left(drag))
 
-    def uncertainty(self, reading: Reading, cause: Cause) -> float:
-        """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
+    def uncertainty(self, reading: Reading, cause: Cause, resolution: float) -> float:
+        """Return by how much a fitted number may be off: the residual over how the rows answer to it.
+
+        A residual below the resolution, in m, is rounding and says nothing.
+        """
         value = reading.value(cause)
         nudge = _nudge(reading.program, cause.free)
         moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
-        return max(reading.rest, 1e-15) / answer if answer else math.inf
+        return max(reading.rest, resolution) / answer if answer else math.inf
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
         off = float(np.linalg.norm(self._off(program)))

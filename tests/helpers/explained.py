@@ -1,0 +1,83 @@
+"""Explanations of programs with drawn mistakes and of real ones, as JSON: by this process's processor and libraries.
+
+Run as `python explained.py PROGRAM NAME …`, with the compiled `mistaken.c`; a name is a seed and a number ("17-3") or
+a real program ("w21"). With a second seed behind it ("w21~1") every number is moved by an ulp, or by none.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mistakes import case
+from places import ROOT
+from wild_programs import TRUE, read_in, said
+
+from compare.score.explanation.case import Explanation
+from compare.score.explanation.explain import explain
+
+# kernels of OpenBLAS that other processors use: with them sums and factorisations round otherwise
+OTHER_KERNEL = {"x86_64": "Prescott", "aarch64": "ARMV8"}.get(platform.machine(), "Prescott")
+Found = dict[str, dict[str, Any]]
+
+
+def explained(program: Path, word: str) -> tuple[Explanation, set[str]]:
+    """Return what is said of the rows of a program, and which of these words are wrong."""
+    name, _, noise = word.partition("~")
+    if name in TRUE:
+        scene, times, columns = read_in(name)
+        x, y = (float(q) for q in scene.exact.position[:2])
+        allowed_m = 1e-6 * float(np.hypot(x, y))
+    else:
+        seed, number = map(int, name.split("-"))
+        made = case(number, seed)
+        scene, allowed_m = made.scene, made.allowed_m
+        times, columns = made.rows(program)
+    if noise:
+        rng = np.random.default_rng([int(noise), *name.encode()])
+        columns = {axis: moved(values, rng) for axis, values in columns.items()}
+    found = explain(times, columns, scene, allowed_m)
+    if name in TRUE:
+        return found, said(found) - TRUE[name]
+    return found, made.wrong(found)
+
+
+def moved(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return numbers, each moved by one unit in the last place, or by none; a zero stays one."""
+    ulps = rng.integers(-1, 2, values.shape) * (values != 0)
+    return np.where(ulps, np.nextafter(values, np.copysign(np.inf, ulps)), values)
+
+
+def start(program: Path, names: Sequence[str], kernel: str = "") -> subprocess.Popen[str]:
+    """Start a process that explains programs, with a kernel of OpenBLAS, or with the one that it chooses."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    if kernel:
+        environment["OPENBLAS_CORETYPE"] = kernel
+    command = [sys.executable, __file__, str(program), *names]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
+
+
+def result(process: subprocess.Popen[str]) -> Found:
+    """Return what such a process printed."""
+    output, _ = process.communicate()
+    assert process.returncode == 0
+    found: Found = json.loads(output)
+    return found
+
+
+if __name__ == "__main__":
+    document: Found = {}
+    for word in sys.argv[2:]:
+        explanation, wrong = explained(Path(sys.argv[1]), word)
+        causes = [part.id for part in (*explanation.conventions, *explanation.causes)]
+        causes += ["slip"] * bool(explanation.slip)
+        causes += [explanation.model.id] if explanation.model else []
+        document[word] = {"causes": sorted(causes), "lines": [*explanation.lines()], "wrong": sorted(wrong)}
+    print(json.dumps(document))
