@@ -1,9 +1,13 @@
-// The picture of a verdict: the position error against time on a logarithmic scale, as SVG text.
+// Numbers as text, and the picture of a verdict: the position error against time on a logarithmic scale, as SVG text.
+// Pure functions, without the page.
 "use strict";
 
 const [TALL, LEFT, TOP, BOTTOM] = [260, 48, 12, 36];
 const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
+// A number of so many digits, without zeros at its end. String drops them; a pattern would take 1e-10 for 1e-1.
+const rounded = (value, digits) => String(Number(value.toPrecision(digits)));
+const small = (value) => rounded(value, 3);
 const raised = (exponent) => `10${exponent < 0 ? "⁻" : ""}${[...String(Math.abs(exponent))].map((digit) => RAISED[digit]).join("")}`;
 
 // Points [[t, error], …] and lines at the tolerance and at the bound; it spans the file.
@@ -22,7 +26,7 @@ function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, 
   }
   for (const share of wide < 450 ? [0, 0.5, 1] : [0, 0.25, 0.5, 0.75, 1]) {
     const t = begin + share * (end - begin);
-    parts.push(`<text x="${x(t)}" y="${TALL - BOTTOM + 16}" text-anchor="${share === 1 ? "end" : "middle"}">${Number(t.toPrecision(6))}</text>`);
+    parts.push(`<text x="${x(t)}" y="${TALL - BOTTOM + 16}" text-anchor="${share === 1 ? "end" : "middle"}">${rounded(t, 6)}</text>`);
   }
   const line = (value, word) => `<path class="guide" d="M${LEFT} ${y(value)}H${wide - 10}"/><text x="${wide - 12}" y="${Number(y(value)) - 4}" text-anchor="end">${word}</text>`;
   parts.push(line(tolerance, "tolerance"), line(bound, "bound of the truth"));

@@ -10,8 +10,6 @@ let last = [];
 let drops = 0; // so far: of two the later one is shown
 
 const escaped = (text) => String(text).replace(/[&<>"]/g, (letter) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[letter]);
-// Three digits; a bound is given 1.005 times as large, so that rounding does not take from it.
-const small = (value) => (value === 0 ? "0" : value.toPrecision(3).replace(/\.?0+(e|$)/, "$1"));
 
 // The golden function {record, coefficients, end}: in the page, or in a script beside it; null without one.
 let made = null;
@@ -54,6 +52,7 @@ function marked(value, place) {
   return `${digits.slice(0, at)}<mark>${digits[at]}</mark>${digits.slice(at + 1)}`;
 }
 
+// A bound is given 1.005 times as large, so that rounding to three digits does not take from it.
 function rowsOf({ path, transits, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude, at_any_time: exact }) {
   const rows = [];
   if (path) {

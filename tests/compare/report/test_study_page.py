@@ -224,6 +224,14 @@ def test_settings_are_short(value, text):
     assert setting(row("x", value, 1.0, 1.0, kind="step")) == f"{text} s"
 
 
+def test_a_short_number_is_its_value_to_three_digits():
+    """A zero of an exponent or of a whole number stays."""
+    powers = [float(f"1e{k}") for k in range(-40, 7)]
+    errors = [float(f"2.56e{k}") for k in range(-40, 7)]
+    numbers = [*powers, *errors, *(-number for number in errors)]
+    assert [float(tidy(number)) for number in numbers] == numbers
+
+
 @pytest.mark.parametrize(
     ("value", "text"), [(0.012345, "0.0123"), (1.2345, "1.23"), (123.4, "123"), (0.0, "0"), (None, "")]
 )

@@ -52,6 +52,22 @@ def run(golden, cases=(), headers=()):
     return json.loads(done.stdout)
 
 
+def printed(numbers):
+    """Return numbers as the page prints them."""
+    script = source("drawing.js") + 'console.log(JSON.stringify(JSON.parse(require("fs").readFileSync(0)).map(small)));'
+    done = subprocess.run(["node", "-e", script], input=json.dumps(numbers), capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def test_a_number_of_the_page_is_its_value_to_three_digits():
+    """A zero of an exponent or of a whole number stays."""
+    assert printed([2.5649e-10, 1e-20, 0.3001, 0.0, 100.0, 250.0]) == ["2.56e-10", "1e-20", "0.3", "0", "100", "250"]
+    powers = [float(f"1e{k}") for k in range(-40, 7)]
+    errors = [float(f"2.56e{k}") for k in range(-40, 7)]
+    numbers = [*powers, *errors, *(-number for number in errors)]
+    assert [float(text) for text in printed(numbers)] == numbers
+
+
 @pytest.fixture(scope="module")
 def golden():
     return reference.load("paris.binary64")
