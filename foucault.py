@@ -8,11 +8,13 @@ import os
 import re
 import signal
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     import typer
 
+UNFORESEEN = 70  # a fault of this program, EX_SOFTWARE of sysexits.h; 1 would be a verdict, 2 the user's mistake
 INTERRUPTED = 130
 UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
 GROUPS = {
@@ -50,6 +52,8 @@ def commands() -> typer.Typer:
                 if told:
                     error.message = f"expected a {'whole ' * (told[1] == 'integer')}number, without a unit"
                 raise
+            except EOFError as error:  # typer takes it for a user's Ctrl-D: "Aborted!", status 1
+                raise RuntimeError("a file or a pipe ended too early") from error
 
     app = typer.Typer(
         cls=Grouped,
@@ -94,16 +98,29 @@ def _version(wanted: bool) -> None:
 
 
 def main() -> None:
-    """Run the command line; a mistake, a full disk or an interruption ends with a message and its exit status."""
+    """Run the command line; a mistake, a full disk or an interruption ends with a message and its exit status.
+
+    So does an error that nobody foresaw.
+    """
     gc.set_threshold(SELDOM)
+    _open_closed_streams()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: more threads only wait
     try:
         ended = _run()
     except KeyboardInterrupt:
         ended = INTERRUPTED, "", True
+    except Exception as error:
+        ended = UNFORESEEN, _report(error), False
     # here no exception is left, which would keep what a signal has interrupted from being cleared away
     if ended:
         _end(*ended)
+
+
+def _open_closed_streams() -> None:
+    """Have what is written to a stream that a shell has closed, as by 2>&-, go nowhere; Python leaves it None."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
 
 
 def _run() -> tuple[str | int | None, str, bool] | None:
@@ -137,11 +154,23 @@ def _run() -> tuple[str | int | None, str, bool] | None:
     return None
 
 
+def _report(error: Exception) -> str:
+    """Return what a user is to do about an error that nobody foresaw, and what a maintainer needs, its traceback."""
+    import traceback
+
+    from reference.errors import plain_lines
+
+    asked = "Please report the command, what `foucault --version` prints, and all that follows."
+    lines = "".join(traceback.format_exception(error)).rstrip()
+    return plain_lines(f"This is a fault of foucault, not yours. {asked}\n{lines}")
+
+
 def _end(status: str | int | None, message: str, interrupted: bool) -> NoReturn:
     """End with a message and an exit status; an interrupted run waits for no thread that is still at work."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
     if message:
-        print(f"foucault: {message}", file=sys.stderr)
+        with suppress(OSError):  # nobody reads it; the exit status stays
+            print(f"foucault: {message}", file=sys.stderr)
     if interrupted and isinstance(status, int):
         _flush_output()
         atexit._run_exitfuncs()

@@ -27,9 +27,13 @@ SECTION_WORD = f"highest|lowest|turn {_AZIMUTH}|gate {_AZIMUTH}(?:@0)?"  # as a 
 
 
 def _section_words(value: Any) -> Any:
-    """Return words from a text, in which they stand between semicolons or commas, each with single spaces."""
+    """Return words from a list, or from a text with semicolons or commas between them; each has single spaces."""
     listed = re.split("[;,]", value) if isinstance(value, str) else value
-    words = [" ".join(word.split()) if isinstance(word, str) else word for word in listed or ()]
+    if listed is None:
+        return None
+    if not isinstance(listed, list | tuple) or not all(isinstance(word, str) for word in listed):
+        raise Refused(f"a list of words: {SECTION_WORDS}", 'Write each in quotes: sections = ["highest", "gate 45"].')
+    words = (" ".join(word.split()) for word in listed)
     return tuple(word for word in words if word) or None
 
 
@@ -108,7 +112,16 @@ class Release(SceneTable):
     azimuth_rate: Number | None = field(None, "degrees/s", "rate of the azimuth")
 
 
-Digits = Annotated[int, checked(lambda digits: 1 <= digits <= MAX_DIGITS, f"a whole number from 1 to {MAX_DIGITS}")]
+_DIGITS = f"a whole number from 1 to {MAX_DIGITS}"
+
+
+def _no_truth_value(value: Any) -> Any:
+    if isinstance(value, bool):  # Python counts with them: true would be one digit
+        raise Refused(_DIGITS)
+    return value
+
+
+Digits = Annotated[int, BeforeValidator(_no_truth_value), checked(lambda digits: 1 <= digits <= MAX_DIGITS, _DIGITS)]
 
 
 class RunTable(SceneTable):

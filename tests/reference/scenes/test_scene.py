@@ -20,7 +20,7 @@ from reference.commands.show import scene_file
 from reference.commands.terminal import replacements
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs
-from reference.scenes.scene import as_scene, is_scene_id, load_scene, parse_scene
+from reference.scenes.scene import as_scene, field_names, is_scene_id, load_scene, parse_scene
 from reference.scenes.shipped import scene_ids
 
 
@@ -96,6 +96,7 @@ REFUSED = [
     ("angle beyond the top", {"release": {"angle": "181", "azimuth": "0"}}, "release.angle", "at most 180"),
     ("digits 0", {"run": {"digits": 0}}, "run.digits", "from 1 to 1000"),
     ("digits absurd", {"run": {"digits": 10**9}}, "run.digits", "from 1 to 1000"),
+    ("digits as a truth value", {"run": {"digits": True}}, "run.digits", "from 1 to 1000"),
     ("digits as a word", {"run": {"digits": "many"}}, "run.digits", "whole number"),
     ("half a digit", {"run": {"digits": 3.5}}, "run.digits", "whole number"),
     ("unknown level", {"run": {"level": "perfect"}}, "run.level", "computed"),
@@ -186,6 +187,40 @@ def test_a_folder_is_no_scene(tmp_path):
 def test_a_broken_assignment_is_refused(paris, assignment):
     with pytest.raises(InputError):
         paris.with_values([assignment])
+
+
+EVERY_TYPE = [
+    "true", "false", "0", "5", "1.5", "nan", "inf", "1979-05-27", "1979-05-27T07:32:00Z", "07:32:00", '""', '"x"',
+    "[]", "[5]", "[true]", "[1.5]", "[[]]", "[{}]", '["highest", 5]', "{}", "{ a = 1 }", "{ a = { b = 1 } }",
+]  # fmt: skip
+
+
+FIELDS = [*field_names(), "pendulum", "site", "release", "run", "uncertain", "uncertain.pendulum.length"]
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_a_value_of_any_type_is_taken_or_refused_by_the_name_of_its_field(tmp_path, name):
+    table = name.partition(".")[0]
+    others = "" if table == "release" else 'release.x = "1"\nrelease.y = "0"\n'
+    path = tmp_path / "typed.toml"
+    for value in EVERY_TYPE:
+        path.write_text(f"{name} = {value}\n{others}")
+        try:
+            load_scene(path)
+        except InputError as error:
+            assert error.field.partition(".")[0] == table
+
+
+NO_SECTIONS = ["true", "false", "0", "5", "1.5", "1979-05-27", "[5]", "[[]]", "[{}]", '["highest", true]', "{ a = 1 }"]
+
+
+@pytest.mark.parametrize("value", NO_SECTIONS)
+def test_sections_are_a_list_of_words(tmp_path, value):
+    path = tmp_path / "mine.toml"
+    path.write_text(f'[release]\nx = "1"\ny = "0"\n[run]\nsections = {value}\n')
+    with pytest.raises(InputError, match=r"a list of words: highest, .* Write each in quotes: sections = ") as caught:
+        load_scene(path)
+    assert caught.value.field == "run.sections"
 
 
 @given(st.lists(st.sampled_from("ab_7-.A/ \n\0é٣"), max_size=9).map("".join))
