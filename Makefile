@@ -12,7 +12,7 @@ LOCKED := $(INSTALL) --no-deps --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test all-tests quick atlas docs peers campaign coverage mutants studies lint lock clean
+.PHONY: golden test pytest quick atlas docs peers campaign coverage mutants studies lint lock locale clean
 
 golden: .venv/solving
 	@echo "Proving 24 h of the pendulum in Paris, and confirming the proof by a second run: one to three minutes"
@@ -22,9 +22,9 @@ golden: .venv/solving
 
 # Each worker takes whole files: what a file prepares is prepared once.
 test: .venv/testing
-	@$(MAKE) --no-print-directory --jobs=2 lint all-tests
+	@$(MAKE) --no-print-directory --jobs=2 lint pytest
 
-all-tests: .venv/testing
+pytest: .venv/testing
 	@echo "Running the tests: four to nine minutes on two cores"
 	$(PYTEST)
 
@@ -41,7 +41,8 @@ atlas: .venv/testing
 	$(BIN)/foucault generate --all
 	$(BIN)/foucault atlas --out atlas
 
-# Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.
+# The cases that `make test` skips "under --long", and tests by the thousand (damaged files, forgeries, fuzzed inputs,
+# kills) of which it runs a short form.
 campaign: .venv/testing
 	$(PYTEST) --long -m campaign
 
@@ -75,7 +76,17 @@ lint: .venv/testing
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-.venv/solving: requirements.lock pyproject.toml
+# Python 3.11 and 3.12 read the paths in .venv in the encoding of the locale. One that lacks a letter of this folder's
+# path, as C lacks ä, would end every Python of .venv as it starts; a locale that is not installed counts as C.
+READABLE := import locale, os, sys; \
+  encoding = "utf-8" if sys.version_info >= (3, 13) else locale.nl_langinfo(locale.CODESET); \
+  path = os.fsencode(os.getcwd()).decode(encoding, "replace"); \
+  advice = "This locale cannot encode the path of this folder. Run: export LC_ALL=C.UTF-8, then make again."; \
+  sys.exit(advice if "\ufffd" in path else 0)
+locale:
+	@$(PYTHON) -c '$(READABLE)'
+
+.venv/solving: requirements.lock pyproject.toml | locale
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "foucault needs Python 3.11 or newer; $(PYTHON) is older. Try: make PYTHON=python3.12 golden" >&2; exit 2; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
@@ -93,7 +104,7 @@ lint: .venv/testing
 	@$(LOCKED) requirements-test.lock
 	@touch $@
 
-.venv-peers/ready: requirements-peers.lock pyproject.toml
+.venv-peers/ready: requirements-peers.lock pyproject.toml | locale
 	@command -v gfortran >/dev/null && command -v cmake >/dev/null && command -v g++ >/dev/null || { echo "numbalsoda and \
 	  the native methods are compiled. On Debian and Ubuntu: apt install gfortran g++ cmake libgsl-dev libsundials-dev" >&2; exit 2; }
 	@echo "Downloading and installing $(call packages,requirements-peers.lock) packages into .venv-peers"

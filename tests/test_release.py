@@ -79,12 +79,29 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def names_of(root: Path, *parts: str) -> set[str]:
-    """Return the files that git keeps below some folders, or all of them where this is no checkout."""
-    if (root / ".git").exists():
-        listed = subprocess.run(["git", "ls-files", *parts], cwd=root, capture_output=True, text=True, check=True)
-        return {name for name in listed.stdout.splitlines() if (root / name).is_file()}
+    """Return the files that git keeps below some folders, or all of them where git does not tell."""
+    try:
+        if not (root / ".git").exists():
+            return _all_of(root, *parts)
+        listed = subprocess.run(["git", "ls-files", "-z", *parts], cwd=root, capture_output=True, text=True, check=True)
+        return {name for name in listed.stdout.split("\0") if (root / name).is_file()}
+    except (FileNotFoundError, subprocess.CalledProcessError):  # no git here, or a checkout of another owner
+        return _all_of(root, *parts)
+
+
+def _all_of(root: Path, *parts: str) -> set[str]:
     files = (path for part in parts for path in [root / part, *(root / part).rglob("*")])
     return {str(path.relative_to(root)) for path in files if path.is_file() and "__pycache__" not in path.parts}
+
+
+@pytest.mark.parametrize("tools", ["", os.environ["PATH"]], ids=["no git", "git refuses"])
+def test_files_are_listed_where_git_does_not_tell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tools: str) -> None:
+    monkeypatch.setenv("PATH", tools)
+    (tmp_path / ".git").write_text("gitdir: of somebody else")
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs/page.md").touch()
+    (tmp_path / "alone.py").touch()
+    assert names_of(tmp_path, "docs", "alone.py") == {"docs/page.md", "alone.py"}
 
 
 EVALUATOR = "compare/report/atlas/function.mjs"  # of docs/readers, which the pages of the atlas evaluate by

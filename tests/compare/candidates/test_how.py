@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import subprocess
 import sys
@@ -71,6 +72,7 @@ PROGRAMS = {
         "[{}, {}, {}]",
     ),
 }
+PYTHON = shlex.quote(sys.executable)
 COMPILE = {
     "c": "cc program.c -o program",
     "c++": "c++ program.cc -o program",
@@ -82,8 +84,8 @@ COMPILE = {
 RUN = {
     "matlab": "octave program.m",
     "octave": "octave program.m",
-    "python": f"{sys.executable} program.py",
-    "numpy": f"{sys.executable} program.py",
+    "python": f"{PYTHON} program.py",
+    "numpy": f"{PYTHON} program.py",
     "java": "java -cp . Program",
 }
 NEEDS = {
@@ -93,13 +95,14 @@ NEEDS = {
 ALWAYS = ("c", "javascript", "numpy", "python")  # the others take seconds to compile: under --long
 
 
-@pytest.mark.parametrize("language", SNIPPETS)
-def test_the_lines_of_a_language_write_what_is_read_back(language, tmp_path, pytestconfig, monkeypatch):
+CASES = [one if one in ALWAYS else pytest.param(one, marks=pytest.mark.long) for one in SNIPPETS]
+
+
+@pytest.mark.parametrize("language", CASES)
+def test_the_lines_of_a_language_write_what_is_read_back(language, tmp_path, monkeypatch):
     tool = NEEDS.get(language)
     if tool is not None and shutil.which(tool) is None:
         pytest.skip(f"{tool} is not installed")
-    if language not in ALWAYS and not pytestconfig.getoption("--long"):
-        pytest.skip("compiled under --long")
     golden = load("paris.binary64")
     rows = [(0.0, 0.3, 0.4), (60.0, float(golden.x[1]), float(golden.y[1])), (86400 - 1 / 3, 1e-5 / 3, -1e-300)]
     file, frame, row = PROGRAMS[language]
@@ -113,9 +116,9 @@ def test_the_lines_of_a_language_write_what_is_read_back(language, tmp_path, pyt
     (tmp_path / file).write_text(program)
     monkeypatch.chdir(tmp_path)
     if language in COMPILE:
-        subprocess.run(COMPILE[language].split(), check=True, capture_output=True)
+        subprocess.run(shlex.split(COMPILE[language]), check=True, capture_output=True)
     command, *_ = snippet.shell.partition(" > ")
-    done = subprocess.run(RUN.get(language, command).split(), check=True, capture_output=True, text=True)
+    done = subprocess.run(shlex.split(RUN.get(language, command)), check=True, capture_output=True, text=True)
     path = Path("mine.csv")
     if not path.exists():
         path.write_text(done.stdout)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import shutil
 from importlib.resources import files
 from xml.etree import ElementTree
@@ -131,7 +132,7 @@ def test_transits_that_moved_are_told_where_no_position_did(rows):
 def test_a_baseline_that_cannot_be_read_is_told_by_its_own_name(foucault, rows, tmp_path):
     words = ("score", rows / "mine.toml")
     for name in ("nowhere.csv", "nowhere.json"):
-        for more in ((rows / "right.csv",), ("--run", f"cat {rows / 'right.csv'}", "--repeats", "0")):
+        for more in ((rows / "right.csv",), ("--run", f"cat {shlex.quote(str(rows / 'right.csv'))}", "--repeats", "0")):
             status, _, err = foucault(*words, *more, "--baseline", tmp_path / name)
             assert status == 2 and f"--baseline: got '{tmp_path / name}'" in err, err
     status, _, err = foucault(*words, rows / "right.csv", "--baseline", tmp_path)
@@ -145,9 +146,11 @@ def test_a_baseline_that_cannot_be_read_is_told_by_its_own_name(foucault, rows, 
 
 
 def test_commands_are_compared_too(foucault, rows):
-    words = ("score", rows / "mine.toml", "--repeats", "0", "--no-diagnosis", "--run", f"cat {rows / 'worse.csv'}")
-    status, out, _ = foucault(*words, "--baseline", f"cat {rows / 'wrong.csv'}")
-    assert status == 1 and f"Worse since cat {rows / 'wrong.csv'}: 0.001 → 0.002 m" in out
+    run = f"cat {shlex.quote(str(rows / 'worse.csv'))}"
+    words = ("score", rows / "mine.toml", "--repeats", "0", "--no-diagnosis", "--run", run)
+    baseline = f"cat {shlex.quote(str(rows / 'wrong.csv'))}"
+    status, out, _ = foucault(*words, "--baseline", baseline)
+    assert status == 1 and f"Worse since {baseline}: 0.001 → 0.002 m" in out
     assert foucault(*words, "--baseline", rows / "worse.csv")[0] == 0
     status, _, err = foucault(*words, "--baseline", "no_such_program at all")
     assert status == 2 and "a program that can be started" in err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
 import sys
 
@@ -71,7 +72,7 @@ for k in range(601):
 def test_stdout_of_a_program_that_diverges_is_one_json_document(foucault, tmp_path, pull, power):
     """In a process of its own, whose stdout LAPACK would write to."""
     (tmp_path / "falls.py").write_text("print('t,x,y')" + FALLS.format(pull, power))
-    run = ["--run", f"{sys.executable} falls.py", "--repeats", "0", "--set", "t_end=20", "--json"]
+    run = ["--run", f"{shlex.quote(sys.executable)} falls.py", "--repeats", "0", "--set", "t_end=20", "--json"]
     command = [sys.executable, "-m", "foucault", "score", "paris", *run]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1

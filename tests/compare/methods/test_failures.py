@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 
 import numpy as np
@@ -78,7 +79,7 @@ def test_an_unstable_step_ends_in_numbers_that_are_not_finite(installed):
 
 
 def program(body):
-    return f'{sys.executable} -c "{body}" {{x0}} {{t_end}} {{grid_step}} {{setting}}'
+    return f'{shlex.quote(sys.executable)} -c "{body}" {{x0}} {{t_end}} {{grid_step}} {{setting}}'
 
 
 def test_a_program_of_somebody_else_is_a_method_too():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 from importlib.resources import files
@@ -184,7 +185,7 @@ def test_documents_keep_their_schema(foucault, folder, tmp_path):
             ("paris", paris, "--transits", folder / "paris.transits.csv"),
             ("paris", "--transits", folder / "paris.transits.csv"),
             (folder / "wrong.toml", exchanged),
-            ("paris", "--run", f"cat {folder / 'wrong.csv'}", "--repeats", "0", "--no-diagnosis"),
+            ("paris", "--run", f"cat {shlex.quote(str(folder / 'wrong.csv'))}", "--repeats", "0", "--no-diagnosis"),
             ("--suite", folder, "--no-diagnosis"),
         )
     ]
@@ -207,7 +208,8 @@ def test_c_and_javascript_are_judged_through_run(foucault, tmp_path):
             pytest.skip(f"{tool} is not installed")
         if tool == "cc":
             subprocess.run(["cc", "-O2", ROOT / "docs/pendulum.c", "-o", program, "-lm"], check=True)
-        run = f"{program} {command}" if tool == "cc" else f"node {program} {command}"
+        words = [str(program)] if tool == "cc" else ["node", str(program)]
+        run = f"{shlex.join(words)} {command}"
         words = ("score", "paris", "--t-end", "600", "--repeats", "0", "--covers", "1", "--name", tool)
         status, out, _ = foucault(*words, "--run", run)
         assert (status, out.splitlines()[0]) == (0, f"{tool} agrees with paris (11 rows, t = 0 to 600 of 600 s: 100 %)")

@@ -41,6 +41,9 @@ def test_the_workflow_of_the_project_itself_calls_what_there_is():
     assert jobs["bytes"]["strategy"]["matrix"]["machine"] == ["ubuntu-24.04", "ubuntu-24.04-arm"]
     commands = [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
     targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
-    assert {command.split()[1] for command in commands if command.startswith("make ")} <= set(targets)
+    nightly = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))["jobs"]
+    by_night = [step["run"] for job in nightly.values() for step in job["steps"] if "run" in step]
+    assert {"make test", "make campaign", "make peers"} <= {*commands, *by_night}
+    assert {command.split()[1] for command in commands + by_night if command.startswith("make ")} <= set(targets)
     (verify,) = (command.split() for command in commands if "verify" in command)
     assert verify[:3] == [".venv/bin/foucault", "verify", "--recompute"] and set(verify[3:]) <= set(scene_ids())

@@ -111,13 +111,13 @@ def test_no_program_drawn_at_random_is_told_a_wrong_cause(
     assert wrong == {}
 
 
-def command(program: str, *words: str) -> str:
-    return " ".join([program, *(f"{key}={value}" for key, value in GIVEN.items()), *words])
+def command(program: list[str], *words: str) -> str:
+    return " ".join([shlex.join(program), *(f"{key}={value}" for key, value in GIVEN.items()), *words])
 
 
 def test_what_is_measured_is_told_and_kept(foucault: Any, mistaken: Path, tmp_path: Path) -> None:
     out = tmp_path / "runs"
-    words = ("score", "paris", *SHORT, "--run", command(str(mistaken), "lat=48.5"), "--experiments", "--out", out)
+    words = ("score", "paris", *SHORT, "--run", command([str(mistaken)], "lat=48.5"), "--experiments", "--out", out)
     status, text, _ = foucault(*words)
     assert status == 1
     assert "no rotation (site.rotation_rate = 0)" in text and "what is wrong is in what the rotation does" in text
@@ -137,7 +137,7 @@ def test_what_is_measured_is_told_and_kept(foucault: Any, mistaken: Path, tmp_pa
 
 def test_a_number_in_proportion_is_told_from_one_that_is_typed(foucault: Any, mistaken: Path) -> None:
     for words, said in (("gtimes=1.001", "in proportion to what it is given"), ("g=9.8165", "whatever it is given")):
-        text = foucault("score", "paris", *SHORT, "--run", command(str(mistaken), words), "--experiments")[1]
+        text = foucault("score", "paris", *SHORT, "--run", command([str(mistaken)], words), "--experiments")[1]
         found = re.search(r"takes site.gravity to be (\S+) and not 9.80665 m/s², (.*): ", text)
         assert found is not None and float(found[1]) == pytest.approx(9.8165, abs=1e-3) and found[2] == said
 
@@ -146,7 +146,7 @@ def test_a_program_that_fails_or_is_killed_draws_no_conclusion(foucault: Any, tm
     source = tmp_path / "fails.py"
     inner = (ROOT / "tests/helpers/mistaken.py").read_text()
     source.write_text(inner.replace("\nrows, h = ", "\nassert turn and given('lat', 0) < 90, 'no pole'\nrows, h = "))
-    run = command(f"{shlex.quote(sys.executable)} {shlex.quote(str(source))}", "lat=48.5")
+    run = command([sys.executable, str(source)], "lat=48.5")
     run = run.replace(" lat=48.5", " lat=48.5 lat={latitude} ratetimes=1.01").replace("h=0.01", "h=0.05")
     document = json.loads(foucault("score", "paris", *SHORT, "--run", run, "--experiments", "--json")[1])
     runs = {one["id"]: one for one in document["experiments"]["runs"]}
@@ -166,7 +166,7 @@ def test_a_mistake_that_nobody_knows_has_no_name(
     source = tmp_path / "hard.py"
     inner = (ROOT / "tests/helpers/mistaken.py").read_text()
     source.write_text(inner.replace("    pull = (", "    fx, fy = fx - 0.02 * x**3, fy - 0.02 * y**3\n    pull = ("))
-    run = command(f"{shlex.quote(sys.executable)} {shlex.quote(str(source))}").replace("h=0.01", "h=0.05")
+    run = command([sys.executable, str(source)]).replace("h=0.01", "h=0.05")
     for word in ("length", "latitude", "x0", "y0", "vx0", "vy0", "t_end"):  # two runs are enough
         run = run.replace(f"{{{word}}}", placeholders(load_scene("paris", fields))[word])
     words = ["--t-end", t_end, *(part for field in fields for part in ("--set", field)), "--repeats", "0"]
@@ -196,7 +196,7 @@ def test_experiments_that_cannot_be_made_are_refused(
 
 
 def test_a_program_that_agrees_is_not_run_again(foucault: Any, mistaken: Path) -> None:
-    run = command(str(mistaken))
+    run = command([str(mistaken)])
     status, text, _ = foucault("score", "paris", *SHORT, "--run", run, "--experiments")
     assert status == 0 and "Experiment" not in text
 

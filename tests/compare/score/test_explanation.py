@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -73,7 +74,7 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def scored(program: Path, fault: str, *options: str, span: str = SPAN) -> tuple[int, dict[str, Any]]:
-    run = ["--run", f"{program} {fault} {WORDS} 0.01 3000", "--repeats", "0", "--set", span]
+    run = ["--run", f"{shlex.quote(str(program))} {fault} {WORDS} 0.01 3000", "--repeats", "0", "--set", span]
     result = CliRunner().invoke(commands(), ["score", "paris", *run, "--json", *options])
     return result.exit_code, json.loads(result.stdout)
 
@@ -467,7 +468,7 @@ def test_programs_in_other_languages_are_explained(interpreter: str, name: str, 
         pytest.skip(f"no {interpreter}")
     source = tmp_path / name
     source.write_text(PYTHON if interpreter == "python3" else JAVASCRIPT)
-    words = f"{where} {source} {{x0}} {{y0}} {{length}} {{latitude}} {{gravity}}"
+    words = f"{shlex.join([where, str(source)])} {{x0}} {{y0}} {{length}} {{latitude}} {{gravity}}"
     options = ["--t-end", "600"]
     run = ["score", "paris", "--run", words, "--repeats", "0", "--json", *options]
     result = CliRunner().invoke(commands(), run)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import sys
 from contextlib import contextmanager
 from dataclasses import replace
@@ -223,12 +224,12 @@ def test_standard_input_is_a_candidate(foucault, good):
 
 
 def test_a_program_is_run_and_timed(foucault, good):
-    status, out, _ = foucault("score", "paris", "--run", f"cat {good}", "--repeats", "1", "--json")
+    status, out, _ = foucault("score", "paris", "--run", f"cat {shlex.quote(str(good))}", "--repeats", "1", "--json")
     said = json.loads(out)
     assert status == 0
     assert said["timing"]["runs"] == 1
     assert said["timing"]["warm"]
-    assert "no warm-up" in foucault("score", "paris", "--run", f"cat {good}", "--repeats", "0")[1]
+    assert "no warm-up" in foucault("score", "paris", "--run", f"cat {shlex.quote(str(good))}", "--repeats", "0")[1]
 
 
 def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden, tmp_path):

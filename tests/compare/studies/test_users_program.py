@@ -103,7 +103,7 @@ def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole
     times = np.linspace(0, 10, 41)
     states = trajectory(cut(load_scene(path)), times)
     np.savetxt(tmp_path / "rows.txt", np.column_stack([times, states[:, :2]]), fmt="%.17g")
-    words = command.replace(command.split()[2], str(tmp_path / "rows.txt"))
+    words = command.replace(shlex.split(command)[2], str(tmp_path / "rows.txt"))
     out = tmp_path / "out"
     programs = {"right": f"{words} works", "<drifting>": f"{words} drifts {'x' * 3000}"}
     options = [word for name, run in programs.items() for word in ("--run", run, "--name", name)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 import re
+import shlex
 import subprocess
 import sys
 from importlib.metadata import version
@@ -66,7 +67,8 @@ def test_what_the_help_of_score_leaves_out_works_and_stands_on_the_page_that_it_
         assert f"* `{option} {value}`: " in page
     file = tmp_path / "mine.csv"
     file.write_text("t,x,y\n0,0.3,0.4\n", encoding="utf-8")
-    command = ["score", "paris", "--t-end", "60", "--run", f"cat {file}", "--name", "mine", "--repeats", "0"]
+    run = f"cat {shlex.quote(str(file))}"
+    command = ["score", "paris", "--t-end", "60", "--run", run, "--name", "mine", "--repeats", "0"]
     assert foucault(*command)[1].startswith("mine ")
 
 
