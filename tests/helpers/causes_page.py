@@ -84,6 +84,7 @@ HABITS = {  # of a file: words, what is said of it, what to do
     "single_precision": ("holds numbers in single precision", "Compute and write in double."),
     "z_down": ("counts z downwards", "Nothing: it is converted."),
     "z_from_lowest": ("counts z from the lowest point", "Nothing: it is converted."),
+    "z_offset": ("has z too high or too low by the same in every row", "Count z from the suspension, upwards."),
     "vertical_is_not_z": ("calls the vertical x or y", "Nothing: it is converted."),
     "z_constant": (conventions.FLAT, "Write the height, or leave the column out."),
     "off_the_sphere": (conventions.SPRING, "Put the bob back on the sphere after each step."),

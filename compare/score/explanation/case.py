@@ -21,6 +21,7 @@ UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is p
 AS_IF = "as_if"  # stage of a number that no person typed: the motion is like that, the cause is not known
 BEGIN = "It seems that your program"
 EQUAL = 1.01  # ratio of two residuals that may be one: fits of the same motion end a little apart
+HARM = 3.0  # times a column's own error: an explanation that leaves more of it is refuted by the file
 FINEST = 1e-2  # of the tolerance: smaller residuals are rounding and steps of a program's own, or ours
 
 
@@ -214,6 +215,22 @@ class Case:
         """Return the case of the first `count` rows."""
         rows = replace(self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count])
         return replace(self, rows=rows, truth=self.truth[:count])
+
+    def tested(self, causes: tuple[Deviation, ...], residuals: Array, price: float) -> Explanation:
+        """Return the explanation that some causes make up; the one without causes where they spoil a column.
+
+        A cause that leaves a column worse than the file has it is refuted by the file.
+
+        Args:
+            causes: as in `Explanation`.
+            residuals: what they leave in m, shape (rows, 2 or 3).
+            price: as of `explanation`.
+        """
+        errors = self.rows.positions - self.truth
+        own = np.maximum(np.abs(errors).max(axis=0), self.resolution)
+        if causes and (np.abs(residuals).max(axis=0) > HARM * own).any():
+            return self.explanation((), largest(errors), self.error, 0.0)
+        return self.explanation(causes, largest(residuals), rms(residuals), price)
 
     def explanation(self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float) -> Explanation:
         """Return the explanation that some causes make up.

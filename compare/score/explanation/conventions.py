@@ -91,6 +91,11 @@ def heights(rows: Rows, length: float) -> Rows:
     """Find the vertical: another column, upside down, from the lowest point; or no height of a sphere at all."""
     if rows.positions.shape[1] < 3:
         return rows
+    offset = _offset_of_heights(rows, length)
+    if offset:
+        text = f"has z {abs(offset):.6g} m too {'high' if offset > 0 else 'low'} in every row"
+        moved = rows.positions - [0.0, 0.0, offset]
+        rows = rows.changed(Deviation("z_offset", text, abs(offset)), positions=moved)
     orders = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
     down = "counts z downwards"
     ways = ((1, 0.0, ""), (-1, 0.0, down), (1, length, "counts z from the lowest point"), (-1, length, down))
@@ -120,6 +125,20 @@ def heights(rows: Rows, length: float) -> Rows:
         # a slight drift is no matter of its own, but no height to fit either
         return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or rows.relative else rows
     return _flat(rows)
+
+
+def _offset_of_heights(rows: Rows, length: float) -> float:
+    """Return by how much z is too high in every row, in m; 0 if it is not, or counted from the lowest point."""
+    x, y, z = rows.positions.T
+    square = x * x + y * y
+    if (square >= length * length).any():
+        return 0.0
+    above = z + np.sqrt(length * length - square)
+    offset = float(np.median(above))
+    same = max(20 * rows.noise, OFF * length)
+    if np.ptp(above) > same or min(abs(offset), abs(offset - length)) <= same:
+        return 0.0
+    return offset
 
 
 def _flat(rows: Rows) -> Rows:

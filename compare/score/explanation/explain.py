@@ -13,7 +13,7 @@ from reference.numbers.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
-from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest, rms
+from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest
 from .causes import NAMED
 from .conventions import ROUGHLY, axes, clock, digits, heights, other_conventions, rounded_clock, shifted, unit_of_time
 from .fitted import MODELS, best_of, explanation_of
@@ -177,7 +177,8 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     cause, model, left = best
     corrected = model.exact_to_m
     exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
-    return replace(case.explanation((cause,), corrected, rms(left), NAMED), model=model if exact else None)
+    explanation = case.tested((cause,), left, NAMED)
+    return replace(explanation, model=model) if exact and explanation.causes else explanation
 
 
 def _is_mirrored(cause: Deviation) -> bool:

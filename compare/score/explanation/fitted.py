@@ -12,13 +12,14 @@ from ...candidates.candidate import Deviation
 from .case import AS_IF, EQUAL, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of
-from .gate import CLEAN, Evidence, divides, is_typed, loose, supported_causes, without_doubtful_steps
+from .gate import CLEAN, Evidence, divides, hedged, is_typed, loose, supported_causes, without_doubtful_steps
 from .programs import NAMES, Program
 from .readings import Reader, Reading, adjusted
 
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
 NEAR = 1.0  # decades above the best reading within which others are polished before they are compared
+RIVAL = 3.0  # times what a reading leaves: another that leaves no more may be meant
 POLISHED = 3  # steps by which fitted numbers are moved
 TIE = 0.2  # decades: readings that may as well be true, and are distinguished by what they leave below the tolerance
 EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
@@ -209,6 +210,9 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
         left = case.left(program)
         corrected = largest(left)
         causes = without_doubtful_steps(causes, corrected, enough)
+    if any(cause.stage == AS_IF for cause in causes) and _may_be_a_clock(case, program):
+        rates = {cause.id for cause in reading.causes if cause.group == "rate"}
+        causes = [hedged(cause) if cause.id in rates else cause for cause in causes]
     more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
     if more and reader.drifts(case, reading.program):
         causes.append(loose(corrected))
@@ -217,7 +221,22 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     if simple and corrected <= case.allowed_m and all(convention.id in HARMLESS for convention in rows.conventions):
         model = _model_of(kind, case.right, causes, corrected, largest(rows.positions - case.truth))
     price = sum(cause.cost for cause in reading.causes)
-    return replace(case.explanation(tuple(causes), corrected, rms(left), price), model=model)
+    explanation = case.tested(tuple(causes), left, price)
+    return replace(explanation, model=model) if explanation.causes else explanation
+
+
+def _may_be_a_clock(case: Case, program: Program) -> bool:
+    """Return whether a clock that is off makes of the scene's own g, length and rate what a program's make.
+
+    A clock too fast by k is a g of k⁻² and a rotation of k⁻¹ at once.
+    """
+    right = case.right
+    pull = program.g / program.length
+    if not right.rate or pull * right.g <= 0 or program.rate == right.rate:
+        return False
+    pace = math.sqrt(pull * right.length / right.g)
+    clock = program.changed(g=right.g, length=right.length, rate=right.rate, pace=pace * program.pace)
+    return rms(case.left(clock)) <= RIVAL * max(rms(case.left(program)), case.resolution, case.floor)
 
 
 def clean_share(case: Case, kind: str) -> float:

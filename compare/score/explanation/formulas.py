@@ -35,6 +35,7 @@ HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
 SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
 FLAT = 1e-12  # of the largest: products whose share in the rows is less are not distinguished
 MOST = 3  # coefficients that are off
+SLIGHT = 0.05  # of the amplitude: a coefficient that is off by less may be so by an integrator's step
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ class Formula:
     def slips(self, program: Program, same: float) -> list[str]:
         """Return what is said of each coefficient that differs by more than `same` from that of a linear model.
 
-        Its own are those of e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt).
+        Nothing is said where one is off slightly: an integrator's step does that. The model's own are those of
+        e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt).
         """
         theta = program.theta()
         start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
@@ -88,9 +90,12 @@ class Formula:
         for i, name in enumerate("xy"):
             for product, value, both in zip(PRODUCTS, self.coefficients[:, i], model, strict=True):
                 right = (both.real, both.imag)[i]
-                if abs(value - right) > same:
-                    where = f"in the formula of {name}, {product} has {number(value)} m"
-                    sentences.append(f"{where} where the model has {number(right)} m")
+                if abs(value - right) <= same:
+                    continue
+                if abs(value - right) < SLIGHT * size:
+                    return []
+                where = f"in the formula of {name}, {product} has {number(value)} m"
+                sentences.append(f"{where} where the model has {number(right)} m")
         return sentences
 
 
@@ -118,7 +123,7 @@ def of_formula(case: Case) -> Explanation | None:
         for likely in (reading, *released):
             slips = turned.slips(likely.program, same)
             price = NAMED * len(slips) + sum(cause.cost for cause in likely.causes)
-            if slips and len(slips) <= MOST and (best is None or price < best[0]):
+            if 0 < len(slips) <= MOST and (best is None or price < best[0]):
                 best = price, likely, f"It follows a closed formula with a slip: {'; '.join(slips)}."
     if best is None:
         return None

@@ -61,6 +61,12 @@ def loose(size_m: float, stage: str = "integrator") -> Deviation:
     return Deviation("integrator_loose", LOOSE, size_m, stage)
 
 
+def hedged(cause: Deviation) -> Deviation:
+    """Return a cause as one that the motion is merely like."""
+    text = f"moves like one that {cause.text}; a clock, a step or another term may do the same"
+    return replace(cause, id=f"{AS_IF}.{cause.id}", stage=AS_IF, text=text)
+
+
 def supported_causes(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Deviation]:
     """Yield the causes, read from the rows, that these speak for; a number that nobody typed as a motion like it."""
     if any(not is_likely(cause) or not math.isfinite(cause.size_m) for cause in causes):
@@ -92,8 +98,7 @@ def supported_causes(causes: Sequence[Deviation], evidence: Evidence) -> Iterato
         if sure:
             yield cause
         elif agrees or cause.size_m > steps:  # else it is part of the step's error
-            text = f"moves like one that {cause.text}; a clock, a step or another term may do the same"
-            yield replace(cause, id=f"{AS_IF}.{cause.id}", stage=AS_IF, text=text)
+            yield hedged(cause)
 
 
 def _as_known(cause: Deviation, evidence: Evidence, unknown: float) -> Deviation:

@@ -156,13 +156,14 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
         steps = replace(steps, **vars(pendulum))
         moved = steps.rows(theta, rows.times, 2)
     effect = moved - pendulum.rows(theta, rows.times, 2)
-    left = rms(rows.positions - moved)
-    if best is None or not largest(rows.positions - moved) <= case.enough:
+    residuals = rows.positions - moved
+    if best is None or not largest(residuals) <= case.enough:
         return None
     cause = step_cause(steps, effect)
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
     explanation, price = explanation_of(seen, best, cause), sum(cause.cost for cause in best.causes) + FITTED
-    return case.explanation(explanation.causes, explanation.corrected_m, left, price)
+    tested = case.tested(explanation.causes, residuals, price)
+    return tested if tested.causes else None
 
 
 def step_cause(steps: Steps, effect: Array) -> Deviation:
