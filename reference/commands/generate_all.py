@@ -11,6 +11,7 @@ from typing import Any, cast
 
 import typer
 
+from ..dataset.evidence import check_evidence
 from ..dataset.files import read_files
 from ..dataset.manifest import Content
 from ..dataset.place import dataset_id, default_folder, ships
@@ -83,7 +84,9 @@ def made(job: Job) -> tuple[Row, dict[str, Content]]:
         making = making_of(job.scene, job.name, job.folder)
         solution = solve(job.scene, **making.solve_options(job.scene))
         texts = render(solution, job.name, tables=making.tables)
-        check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
+        # here, where the proof was made; what is written has these hashes
+        check_evidence(texts, solution)
+        check_proved(texts, solution)
         return job.row(Status.OK) | summary(solution, job.folder), texts
     except UnreachableError as error:
         status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE

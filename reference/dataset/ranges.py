@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import json
+from collections.abc import Iterator, Sequence
 from dataclasses import replace as with_fields
 from fractions import Fraction
 from pathlib import Path
@@ -18,7 +19,7 @@ from ..solver.ranges import Ends, Intervals, Ranges
 from ..solver.solution import Passages, exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
-from .manifest import text_of
+from .manifest import differences, text_of
 from .place import RANGES, dataset_id, golden_folder, id_with
 from .sheets import open_intervals, scene_inputs
 from .write import check_target, filled, replace, writable_place
@@ -26,6 +27,7 @@ from .write import check_target, filled, replace, writable_place
 FORMAT = 1
 GRID_FILE, TRANSITS_FILE, SECTIONS_FILE = "grid.csv", "transits.csv", "sections.csv"
 DIGITS = 2  # that a width has in the tables: the ends widen it by a tenth at most
+WIDER = ("possible", "sections")  # intervals that may be wider than those that are proved
 
 
 def ranges_id(ranges: Ranges) -> str:
@@ -86,8 +88,14 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
         printed, texts = _read(folder)
     except DatasetError as error:
         return error.problems
-    again = solve(printed.scene, uncertain=printed.uncertain, engine=printed.engine, report=report)
-    problems = _misprints(texts, again)
+    again = solve(
+        printed.scene,
+        uncertain=printed.uncertain,
+        engine=printed.engine,
+        derivatives=printed.derivatives,
+        report=report,
+    )
+    problems = [*_misprints(texts, again), *_other_facts(texts, again)]
     if recompute and not problems:
         files = _texts(again)
         problems = [f"{name}: recomputing gives another text" for name in files if files[name] != texts[name]]
@@ -102,9 +110,9 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
         advice = "`foucault generate SCENE --uncertain …` makes them."
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
-        texts = {RANGES: (folder / RANGES).read_text(encoding="utf-8")}
+        texts = {RANGES: (folder / RANGES).read_bytes().decode()}
         names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in manifest else []))
-        texts |= {name: (folder / name).read_text(encoding="utf-8") for name in names}
+        texts |= {name: (folder / name).read_bytes().decode() for name in names}
         if text_of({**manifest, "seal": _seal(manifest)}) != texts[RANGES]:
             raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed"])
         for name, digest in manifest["sha256"].items():
@@ -126,6 +134,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
             *transits,
             manifest["proof"]["engine"],
             passages,
+            derivatives=manifest["proof"].get("derivatives") is True,
         )
     except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
         if isinstance(error, DatasetError):
@@ -156,6 +165,19 @@ def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
     except (ArithmeticError, LookupError, ValueError) as error:
         return [f"what is printed does not hold what is proved: {error}"]
     return []
+
+
+def _other_facts(texts: dict[str, str], again: Ranges) -> Iterator[str]:
+    """Yield where `ranges.json` says something of the box or of its proof that proving it again does not give."""
+    said = json.loads(texts[RANGES])
+    tables = {name: text for name, text in texts.items() if name != RANGES}
+    expected = _manifest(again, tables) | {"seal": said["seal"]}
+    for document in (said, expected):
+        for name in WIDER:
+            document.pop(name, None)
+        document["period_s"] = document["period_s"] and "an interval"
+    for place, old, new in differences(said, expected):
+        yield f"{RANGES}: {place} = {old}, proved again {new}"
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
@@ -226,7 +248,8 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
     proof, scene = ranges.proof, ranges.scene
     inputs = scene_inputs(scene)
     inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}  # as widths support
-    run = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
+    run: dict[str, Any] = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
+    run |= {"derivatives": True} if ranges.derivatives else {}
     sections = {word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()}
     return {
         "format": FORMAT,

@@ -12,7 +12,7 @@ from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
 from ..solver.solve import solve
-from .checks import function, motion, physics, scene_check
+from .checks import function, motion, physics, read_back, scene_check
 from .files import Files, read_files, read_manifest
 from .manifest import MANIFEST, Content, Manifest, differences
 from .record import AUDIT, Making, generator
@@ -90,10 +90,9 @@ def problems_of(folder: Path) -> list[str]:
 
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    checks = [scene_check.problems, function.problems]
-    if not files.manifest.alone:
-        checks = [scene_check.table_problems, checks[0], physics.problems, checks[1]]
-    for check in checks:
+    of_tables = [scene_check.table_problems, scene_check.problems, read_back.problems, physics.problems]
+    checks = [scene_check.problems] if files.manifest.alone else of_tables
+    for check in (*checks, function.problems):
         try:
             problems = list(islice(check(files), MAX_PROBLEMS))
         except (ArithmeticError, BeyondDoublesError):

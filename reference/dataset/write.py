@@ -16,6 +16,7 @@ from ..numbers.columns import POSITION
 from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
+from .evidence import check_evidence
 from .manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL, Content
 from .place import RANGES, ships
 from .record import OPTIONS
@@ -117,6 +118,7 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
         if solution is not None:
             contents = {path.name: path.read_bytes() for path in new.iterdir()}
             kept = {name: data if name == FUNCTION[1] else data.decode() for name, data in contents.items()}
+            check_evidence(kept, solution)
             check_proved(kept, solution)
         replace(target, new, work)
         if ships(target):

@@ -7,7 +7,6 @@ What is bounded is the evaluation in doubles as docs/format.md specifies it, wit
 from array import array
 from fractions import Fraction
 from functools import lru_cache
-from json import loads
 from typing import Any
 
 from flint import arb, arb_mat, arb_poly, ctx, fmpq_mat, fmpz_poly
@@ -15,6 +14,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpq_mat, fmpz_poly
 from .balls import SHORT, Vector, ball, demand, interval, size, times, total
 from .bound import Piece
 from .course import FINISHED, Course
+from .printed import document
 from .shapes import Covered, ProvedFunction
 
 NAMES = ("x", "", "vx", "", "y", "", "vy", "", "z", "", "vz")  # of the bounds; the others are sizes
@@ -58,7 +58,9 @@ class Following:
     """Compares series with the tubes that a course gives it."""
 
     def __init__(self, course: Course, count: int) -> None:
-        self.course, self.balls, self.count, self.covered = course, course.balls, count, list[Covered]()
+        demand(count in (2, 3), "a golden function has series of x and y, or of x, y and z")
+        self.count = 2 if count == 2 else 3
+        self.course, self.balls, self.covered = course, course.balls, list[Covered]()
         self.end, self.pieces = Fraction(0), list[Any]()
         course.followers.append(self)
 
@@ -69,7 +71,11 @@ class Following:
 
     def add(self, until: Any, series: Any) -> None:
         """Take the next piece, up to the double `until`: CUT coefficients, doubles, of x, then y and perhaps z."""
-        ((piece, tube),), begin, end, series = self.covered, self.end, Fraction(until), array("d", series)
+        # copies: what is bounded is what is printed, whatever these objects say when they are asked again
+        (until,), series = array("d", [until]), array("d", series)
+        demand(len(series) == CUT * self.count, f"a piece of the function has {CUT} coefficients of each component")
+        demand(abs(until) < 1 << 1000, "a piece of the function must end at a finite time")
+        ((piece, tube),), begin, end = self.covered, self.end, Fraction(until)
         joins = piece.begin <= begin and begin + Fraction(1, 1 << 60) < end <= piece.end
         demand(joins, "a piece of the function must join, and lie in the step that was proved last")
         with ctx.workprec(self.balls.prec):
@@ -82,6 +88,8 @@ class Following:
 
     def finish(self, degree: int) -> ProvedFunction:
         """Finish the course as well; return the series, cut to `degree`, with bounds of what they evaluate to."""
+        demand(0 <= degree < CUT, f"a series has a degree from 0 to {CUT - 1}")
+        degree = range(CUT)[degree]
         proved, most, square = self.course.finish(), [TINY] * (4 * self.count), self.balls.inputs.length**2
         with ctx.workprec(SHORT):
             for _, series, late, time, off in self.pieces:
@@ -111,7 +119,7 @@ def on_sphere(balls: Any, near: arb, *most: arb) -> Vector:
 
 def check_function(text: str, data: bytes, function: Any, proved: Any) -> None:
     """Demand that function.json and function.f64 are a function that was bounded in this very proof."""
-    said, right = loads(text), function in FINISHED and function.proved is proved and data == function.data
+    said, right = document(text), function in FINISHED and function.proved is proved and data == function.data
     right &= all(said[key] == fact for key, fact in function.facts.items())
     right &= all(Fraction(said["bounds"][name]) >= bound for name, bound in function.bounds.items())
     demand(right, "misprint: the golden function")

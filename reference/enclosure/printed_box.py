@@ -3,13 +3,12 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from json import loads
 from typing import Any
 
 from ..scenes.inputs import Inputs
 from .balls import demand
 from .course import FINISHED
-from .printed import DECIMAL, PLAIN, RELEASES, asked
+from .printed import DECIMAL, PLAIN, RELEASES, asked, document, lines_of, single_and_other
 from .shapes import Interval, ProvedBox
 
 GRID, TRANSITS = ("x", "y", "z", "vx", "vy", "vz"), ("t", "x", "y", "z", "vy", "ax")
@@ -18,20 +17,22 @@ PASSAGES = ("t", *GRID)
 
 def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     """Demand that ranges.json and both tables state what was proved, or less, and of just this box."""
-    said, found = loads(texts["ranges.json"]), proved.transits or ()
+    said, found = document(texts["ranges.json"]), proved.transits or ()
     inputs, times = asked(said)
     ends = (end_of(inputs, said["uncertain"], side) for side in (-1, 1))
     demand(
         proved in FINISHED and (inputs, *ends) == proved.box and times == proved.times, "the proof is of other inputs"
     )
+    demand(said["level"] == said["scene"]["run"]["level"] == "enclosed", "misprint: the level")
     check_rows(texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True)))
     ones, others = check_zeros(texts["transits.csv"], TRANSITS, found, said["possible"], times[-1])
     words = [*proved.sections]
-    header, *parts = [line.partition(",") for line in texts["sections.csv"].splitlines()] if words else [["section"]]
+    header, *parts = lines_of(texts["sections.csv"]) if words else [["section"]]
     right = header[0] == "section" and sorted(parts, key=lambda part: words.index(part[0])) == parts
     demand(right and [*said.get("sections", {})] == words, "misprint: other sections")
     for word, zeros in proved.sections.items():
-        text = "\n".join([header[2], *(row for name, _, row in parts if name == word)])
+        own = [header, *(part for part in parts if part[0] == word)]
+        text = "".join(",".join(line[1:]) + "\n" for line in own)
         check_zeros(text, PASSAGES, zeros, said["sections"][word], times[-1])
     if said["period_s"] is not None:
         sure = [z for z in ones if all(z.t.high < x.t.low for x in others)]
@@ -47,7 +48,7 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
 
 def check_zeros(text: str, names: tuple[str, ...], found: Any, possible: Any, end: Fraction) -> tuple[Any, Any]:
     """Demand that a table has the single zeros, and that the possible ones are listed; return both."""
-    ones, others = ([z for z in found if (z.parity == "one") is single] for single in (True, False))
+    ones, others = single_and_other(found)
     rows = ([k, z.direction, *(getattr(z, name) for name in names)] for k, z in enumerate(ones, 1))
     check_rows(text, ["k", "direction"], names, rows)
     for z, part in zip(others, possible, strict=True):
@@ -70,11 +71,12 @@ def end_of(inputs: Inputs, uncertain: Mapping[str, str], side: int) -> Inputs:
 
 def check_rows(text: str, plain: list[str], names: tuple[str, ...], rows: Iterable[list[Any]]) -> None:
     """Demand that a table has these rows: exact numbers, then intervals within those that are printed."""
-    header, *lines = (line.split(",") for line in text.splitlines())
+    header, *lines = lines_of(text)
     demand(header == [*plain, *(f"{name}_{end}" for name in names for end in ("low", "high"))], "misprint: the header")
     for cells, row in zip(lines, rows, strict=True):
         exact, ends = cells[: len(plain)], cells[len(plain) :]
-        demand([*map(Fraction, exact)] == row[: len(plain)], f"misprint: {exact}")
+        right = DECIMAL.issuperset("".join(exact)) and [*map(Fraction, exact)] == row[: len(plain)]
+        demand(right, f"misprint: {exact}")
         for low, high, x in zip(ends[::2], ends[1::2], row[len(plain) :], strict=True):
             demand(holds(low, high, x), f"misprint: {low} to {high}")
 

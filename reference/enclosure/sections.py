@@ -1,7 +1,6 @@
 """TRUSTED. Sections of a motion: zeros of affine forms of position and velocity (THEOREM.md, section 13)."""
 
 from fractions import Fraction
-from json import loads
 from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpz_poly
@@ -10,7 +9,7 @@ from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, fixed, si
 from .bound import SceneBalls, state
 from .course import FINISHED, Course
 from .enclosed_transits import Scan, Slope, sign
-from .printed import check_rows
+from .printed import check_possible, check_rows, document, lines_of, single_and_other
 from .shapes import Covered, EnclosedPassage, ProvedSections
 from .six_columns import cut
 
@@ -120,18 +119,22 @@ class Sections:
 
 def check_sections(texts: Any, sections: Any, proved: Any) -> None:
     """Demand that sections.csv and the manifest state the passages that were proved, of just these sections."""
-    manifest, (header, *lines) = loads(texts["manifest.json"]), texts["sections.csv"].splitlines()
-    right = sections in FINISHED and sections.proved is proved and header == f"section,{HEADER}"
-    rows, said, least = list[Any](), manifest["sections"], manifest["sections"]["bounds"]
-    demand(right and "; ".join(sections.passages) == manifest["scene"]["run"]["sections"], "misprint: other sections")
+    manifest = document(texts["manifest.json"])
+    said, words = manifest["sections"], [*sections.passages]
+    right = sections in FINISHED and sections.proved is proved
+    right &= "; ".join(words) == manifest["scene"]["run"]["sections"]
+    demand(right and [*said["counts"]] == [*said["possible"]] == words, "misprint: other sections")
+
+    rows, names = list[Any](), list[str]()
     for word, zeros in sections.passages.items():
-        ones, others = ([z for z in zeros if (z.parity == "one") is single] for single in (True, False))
-        rows += [(word, [k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz]) for k, z in enumerate(ones, 1)]
-        for z, part in zip(others, said["possible"][word], strict=True):
-            low, high = max(z.t.low, Fraction(0)), min(z.t.high, proved.times[-1])
-            inside = Fraction(part["from_s"]) <= low and high <= Fraction(part["to_s"])
-            demand(inside and part["parity"] == z.parity, "misprint: a possible passage")
-    cells = [line.partition(",") for line in lines]
-    demand([cell[0] for cell in cells] == [row[0] for row in rows], "misprint: other sections")
-    text = "\n".join([HEADER, *(cell[2] for cell in cells)])
-    check_rows(text, HEADER, [row[1] for row in rows], {name: Fraction(x) for name, x in least.items()})
+        ones, others = single_and_other(zeros)
+        rows += [[k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)]
+        names += [word] * len(ones)
+        check_possible(others, said["possible"][word], proved.times[-1])
+        demand(said["counts"][word] == len(ones), "misprint: the count of passages")
+
+    header, *lines = lines_of(texts["sections.csv"])
+    demand([line[0] for line in lines] == names and header[0] == "section", "misprint: other sections")
+    text = "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
+    least = {name: Fraction(bound) for name, bound in said["bounds"].items()}
+    check_rows(text, HEADER, rows, least, said["decimals"])

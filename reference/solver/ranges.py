@@ -94,6 +94,7 @@ class Ranges:
         engine: whose steps were proved.
         sections: the passages of each section that the scene asks for, by its word.
         proof: the `BoxEnclosure`; None for ranges that were read from a file.
+        derivatives: whether derivatives were asked for. They may make every interval narrower.
     """
 
     scene: Scene
@@ -106,6 +107,7 @@ class Ranges:
     engine: str
     sections: Mapping[str, Passages[Intervals]] = field(default_factory=dict, repr=False)
     proof: Any = field(default=None, repr=False)
+    derivatives: bool = field(default=False, repr=False)
 
     @property
     def t(self) -> Array:

@@ -143,4 +143,5 @@ def solve_ranges(
         feeds[-1].begun,
         {word: separated(zeros, SECTION, end, Intervals) for word, zeros in proof.proved.sections.items()},
         proof,
+        derivatives,
     )

@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+import re
 from fractions import Fraction
 
 import pytest
@@ -156,3 +157,52 @@ def test_verify_takes_ranges_beside_datasets(ranges, tmp_path):
     done = CliRunner().invoke(app, ["verify", str(folder), "--json"])
     assert done.exit_code == 1
     assert "a byte was changed" in json.loads(done.stdout)["rows"][0]["problems"][0]
+
+
+def sealed_anew(folder, change):
+    """Change `ranges.json` by a function of its document, and seal it again."""
+    said = json.loads((folder / "ranges.json").read_text(encoding="utf-8"))
+    change(said)
+    for name in said["sha256"]:
+        said["sha256"][name] = hashlib.sha256((folder / name).read_bytes()).hexdigest()
+    said["seal"] = _seal(said)
+    (folder / "ranges.json").write_text(text_of(said), encoding="utf-8")
+
+
+def test_ranges_that_were_made_with_derivatives_are_proved_again_with_them(tmp_path):
+    ranges = reference.solve("paris", t_end="20", uncertain=BOX, derivatives=True)
+    folder = write_ranges(ranges, tmp_path / "out")
+    assert verify_ranges(folder, recompute=True) == []
+    assert reference.load_ranges(folder).derivatives
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda said: said.update(level="confirmed"), "the level"),
+        (lambda said: said.update(format=2), r"format = 2, proved again 1"),
+        (lambda said: said.update(id="paris"), "id = paris, proved again"),
+        (lambda said: said.update(period_s=None), "period_s = None, proved again an interval"),
+        (lambda said: said["proof"].update(radius_m="1e-30"), "proof.radius_m = 1e-30, proved again"),
+        (lambda said: said["proof"].update(bits=1000), "proof.bits = 1000, proved again"),
+        (lambda said: said["proof"].update(steps=1), "proof.steps = 1, proved again"),
+    ],
+)
+def test_verify_finds_what_ranges_say_wrongly_of_their_proof(ranges, tmp_path, change, message):
+    folder = write_ranges(ranges, tmp_path / "out")
+    sealed_anew(folder, change)
+    assert re.search(message, "; ".join(verify_ranges(folder)))
+
+
+@pytest.mark.parametrize("file", ["grid.csv", "transits.csv"])
+@pytest.mark.parametrize("spoil", [lambda text: text.replace("\n", "\r\n"), lambda text: text[:-1]])
+def test_verify_finds_tables_with_other_ends_of_lines(ranges, tmp_path, file, spoil):
+    folder = write_ranges(ranges, tmp_path / "out")
+    with (folder / file).open("rb+") as handle:
+        text = spoil(handle.read().decode())
+        handle.seek(0)
+        handle.truncate()
+        handle.write(text.encode())
+    assert "a byte was changed" in verify_ranges(folder)[0]
+    sealed_anew(folder, lambda said: None)
+    assert "does not hold what is proved" in verify_ranges(folder)[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from fractions import Fraction
 
@@ -56,7 +57,7 @@ def test_every_digit_that_is_changed_is_found(name, solution, texts):
                     new = cells[k][:place] + str((int(old) + 1) % 10) + cells[k][place:][1:]
                     spoilt = [*lines]
                     spoilt[i] = ",".join([*cells[:k], new, *cells[k + 1 :]])
-                    refuse(solution, texts, **{name: "\n".join([header, *spoilt])})
+                    refuse(solution, texts, **{name: "\n".join([header, *spoilt, ""])})
                     found += 1
     assert found > 40
 
@@ -78,7 +79,7 @@ def swapped(lines):
     ],
 )
 def test_rows_columns_directions_bounds_and_spellings_that_are_wrong_are_found(spoil, solution, texts):
-    refuse(solution, texts, transits="\n".join(spoil(texts["transits.csv"].splitlines())))
+    refuse(solution, texts, transits="\n".join([*spoil(texts["transits.csv"].splitlines()), ""]))
 
 
 def spoilt_manifest(text, *path, value):
@@ -95,7 +96,16 @@ WRONG = [
     *((("bounds", "transits", name), "1e-30") for name in ("t", "ax")),
     *((("bounds", name), "1e-30") for name in ("position_m", "velocity_m_s", "transit_s")),
     *((("counts", name), 77) for name in ("grid", "transits", "possible")),
-    *((("transits",), word) for word in ("undecided intervals", "xdot is identically zero")),
+    *((("transits",), word) for word in ("undecided intervals", "xdot is identically zero", "not asked for")),
+    *((("bounds", kind), {}) for kind in ("grid", "transits")),
+    *((("decimals", kind, name), 7) for kind, name in (("grid", "x"), ("grid", "t"), ("transits", "ax"))),
+    *((("enclosure", f"{name}_radius_{unit}"), "1e-60") for name, unit in (("position", "m"), ("velocity", "m_s"))),
+    (("enclosure", "transit_radius_s"), "1e-60"),
+    (("enclosure", "transit_radius_s"), None),
+    (("level",), "confirmed"),
+    (("units", "x, y, z"), "km"),
+    (("frame",), "topocentric, axes x west, y north, z up, origin at the suspension, z < 0 below it"),
+    (("scene", "run", "length"), "66"),
     (("possible",), [{"from_s": "1", "to_s": "2", "parity": "odd"}]),
     (("inputs",), "binary64"),
     (("scene", "pendulum", "length"), "67.000000000000000001"),
@@ -126,6 +136,54 @@ def test_every_number_of_the_page_that_is_changed_is_found(solution, texts):
     assert found > 50
     refuse(solution, texts, page=page.replace("(complete)", "(undecided intervals)"))
     refuse(solution, texts, page=page.replace("  x  ", "  y  "))
+
+
+def test_a_name_that_stands_twice_in_the_manifest_is_found(solution, texts):
+    text = texts["manifest.json"]
+    refuse(solution, texts, manifest=text.replace('"length": "67"', '"length": "66", "length": "67"'))
+
+
+@pytest.mark.parametrize("name", ["grid", "transits"])
+@pytest.mark.parametrize("spoil", [lambda text: text.replace("\n", "\r\n"), lambda text: text[:-1]])
+def test_a_table_with_other_ends_of_lines_is_found(name, spoil, solution, texts):
+    refuse(solution, texts, **{name: spoil(texts[f"{name}.csv"])})
+
+
+@pytest.mark.parametrize("kind", ["grid", "transits"])
+def test_a_double_that_is_not_the_nearest_is_found(kind, solution, texts):
+    """Also where so few digits are printed that the decimal would allow it."""
+    name = f"{kind}.binary64.csv"
+    header, *lines = texts[name].splitlines()
+    names = header.split(",")
+    for column in ("t", "x", "vy"):
+        cells = dict(zip(names, lines[-1].split(","), strict=True))
+        other = math.nextafter(float(cells[column]), math.inf)
+        for spoilt in (
+            {column: f"{other:.16e}", f"{column}_hex": other.hex()},
+            {f"{column}_hex": other.hex()},
+            {column: f"{other:.16e}"},
+        ):
+            line = ",".join((cells | spoilt).values())
+            with pytest.raises(REFUSED, match="double"):
+                check_dataset(
+                    {**texts, name: "\n".join([header, *lines[:-1], line, ""])}, solution.proof.enclosure.proved
+                )
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("Level: enclosed. A proof", "Level: confirmed. A proof"),
+        ("Level: enclosed. A proof encloses every printed", "Level: enclosed. Two runs agree to every printed"),
+        (" m, on every velocity", " km, on every velocity"),
+        (" s, direction", " min, direction"),
+        ("axes x east", "axes x west"),
+        ("explicit.", "left out."),
+    ],
+)
+def test_a_sentence_of_the_page_with_another_level_unit_or_axis_is_found(old, new, solution, texts):
+    assert old in texts["certified.txt"]
+    refuse(solution, texts, page=texts["certified.txt"].replace(old, new))
 
 
 @pytest.mark.parametrize("title", ["A Model pendulum (angles in degrees)", "State at rest", "How to score"])
