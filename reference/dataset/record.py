@@ -21,7 +21,7 @@ from ..numbers.table import FixedPoint
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..scenes.shipped import DATA_VERSION, flag_meanings, index, scene_ids
-from ..solver.solution import Proof, Solution
+from ..solver.solution import Proof, Solution, exact_decimals
 from .manifest import (
     Bounds,
     Counts,
@@ -148,7 +148,8 @@ def _possible(intervals: Iterable[tuple[Fraction, Fraction, str]], end: str) -> 
 
 def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
     """Return what a manifest says of `sections.csv`."""
-    named, bounds, end = solution.sections.items(), dict[str, str](), fixed_decimal(solution.times[-1], 2000)
+    named, bounds = solution.sections.items(), dict[str, str]()
+    end = fixed_decimal(solution.times[-1], exact_decimals(solution.times[-1:]))
     for _, passages in named if sheet.rows else ():
         of_section = column_bounds(passages.table, sheet.decimals)
         bounds = {column: max(bounds.get(column, "0"), bound, key=Fraction) for column, bound in of_section.items()}

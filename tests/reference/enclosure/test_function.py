@@ -143,6 +143,54 @@ def test_a_piece_that_does_not_join_or_lie_in_its_step_is_refused(monkeypatch):
             proved_function(short("paris", "60"))
 
 
+class Lying(float):
+    """A time that is printed as another."""
+
+    def hex(self):
+        return (float(self) * (1 - 2**-40)).hex()
+
+
+def test_the_times_that_are_printed_are_those_that_were_bounded(monkeypatch):
+    """F7 of the audit: the end of a piece was any object, asked for its value and then for its text."""
+    add, ends = Following.add, []
+
+    def lying(self, until, series):
+        ends.append((self, until.hex()))
+        add(self, Lying(until), series)
+
+    monkeypatch.setattr(Following, "add", lying)
+    function = proved_function(short("paris", "60")).function
+    last = ends[-1][0]  # of several attempts
+    assert function.facts["times"][1:] == [end for following, end in ends if following is last]
+
+
+@pytest.mark.parametrize(
+    ("name", "call"),
+    [
+        ("a degree from 0 to 35", lambda following: following.finish(36)),
+        ("a degree from 0 to 35", lambda following: following.finish(-1)),
+        ("series of x and y", lambda following: Following(following.course, 1)),
+        ("series of x and y", lambda following: Following(following.course, 4)),
+        ("36 coefficients", lambda following: following.add(1.0, [0.0])),
+        ("a finite time", lambda following: following.add(float("inf"), [0.0] * CUT * following.count)),
+        ("a finite time", lambda following: following.add(float("nan"), [0.0] * CUT * following.count)),
+    ],
+)
+def test_a_proposal_of_another_shape_is_refused_in_words(name, call, monkeypatch):
+    refusals = []
+    finish = fit.Fit.finish
+
+    def tried(self):
+        with pytest.raises(ArithmeticError, match=name):
+            call(self.following)
+        refusals.append(name)
+        return finish(self)
+
+    monkeypatch.setattr(fit.Fit, "finish", tried)
+    proved_function(short("paris", "20"))
+    assert refusals
+
+
 def test_a_gap_between_pieces_is_refused(monkeypatch):
     add, skipped = fit.Fit.add, []  # in each attempt the second step
 
