@@ -96,3 +96,15 @@ def test_all_directions_turned_are_found(grazing):
 
     forge(grazing, transits=turn)
     assert "are not the motion's" in verify(grazing).problems[0]
+
+
+def test_a_passage_that_is_possible_up_to_an_end_of_many_decimals_is_written(tmp_path):
+    """The double nearest to 6.4 has 49 decimals, and a possible passage ends there."""
+    changes = ["inputs=binary64", "run.t_end=6.4", "run.grid_step=6.4", "run.sections=highest", "run.digits=10"]
+    scene = reference.load_scene("inverted_rest", [*changes, "run.level=enclosed"])
+    solution = reference.solve(scene, confirm="none", audit=False)
+    (low, high, parity), *_ = solution.sections["highest"].possible
+    assert (low, high, parity) == (0, Fraction(6.4), "unknown")
+    folder = write(solution, tmp_path / "rest")
+    part = read_files(folder).manifest.sections.possible["highest"][0]
+    assert Fraction(part.to_s) == Fraction(6.4)
