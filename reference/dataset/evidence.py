@@ -12,10 +12,11 @@ from importlib.metadata import version
 from typing import Any
 
 from ..errors import DatasetError
+from ..numbers.precision import rounded_up
 from ..scenes.shipped import DATA_VERSION
 from ..solver.solution import Proof, Solution
 from .manifest import MANIFEST, Content
-from .record import PACKAGES
+from .record import PACKAGES, Making
 
 ROUNDED_UP = Fraction(11, 10)  # a number that is rounded up to two digits is larger by a tenth at most
 RUN = ("formulation", "number", "order", "steps")
@@ -30,7 +31,7 @@ def check_evidence(contents: Mapping[str, Content], solution: Solution) -> None:
     """
     manifest = json.loads(contents[MANIFEST])
     problems = [
-        f"{MANIFEST}: {place} = {said}, the solution has {value}"
+        f"{MANIFEST}: {place} = {said}, the solution has {_text(value)}"
         for place, said, value in _pairs(manifest, solution)
         if not _says(said, value)
     ]
@@ -45,6 +46,13 @@ def _pairs(manifest: dict[str, Any], solution: Solution) -> Iterator[tuple[str, 
         yield name, manifest[name], value
     for name, said in manifest["generator"].items():
         yield f"generator.{name}", said, version(name) if name in PACKAGES else DATA_VERSION
+
+    making = Making.of(manifest["command"])
+    yield "the engine of command", making.engine, solution.run.engine
+    if proof is not None:
+        yield "the audit of command", making.audit, proof.audited
+        yield "the confirmation of command", making.confirm, proof.confirmed
+        yield "the function of command", making.function, proof.enclosure.function is not None
 
     for name in RUN:
         yield f"run.{name}", manifest["run"][name], getattr(solution.run, name)
@@ -72,6 +80,10 @@ def _facts(proof: Proof) -> dict[str, Any]:
         "transit_radius_s": proof.transit_radius,
         "agreement_bits": proof.agreement_bits,
     }
+
+
+def _text(value: Any) -> str:
+    return rounded_up(value) if isinstance(value, Fraction) else str(value)
 
 
 def _says(said: Any, value: Any) -> bool:
