@@ -31,6 +31,8 @@ from .scene_check import largest_jerk
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 PATIENCE = 4  # times that, for all attempts together, where the first does not decide
 GRAZES = 8  # of the bounds on vx, and of xdot where a proof may not have decided whether it is zero
+UNSURE = 4  # times the time that the radius of a velocity is worth: a ball about a zero, which also holds the end
+OUTWARD = Fraction(2, 10**20)  # s, by which the ends of a possible interval are rounded outward
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
 
 Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s
@@ -163,10 +165,27 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
         inside, half = range(bisect_left(times, low), bisect_right(times, high)), (high - low) / 2
         outside.difference_update(inside)
         shown = any(slopes[k] ** 2 > near * jerk for k in inside) or part.parity == ("odd", "even")[len(inside) % 2]
+        shown = shown and not _ends_the_run(files, low, high, [slopes[k] for k in inside])
         if shown or abs(vx) > near + half * (abs(ax) + jerk * half / 2):
             place = f"possible: from {part.from_s} to {part.to_s} s"
             refuted.append(f"{MANIFEST}: {place} the motion has {len(inside)} transits, and that is decided")
     return sorted(outside), refuted
+
+
+def _ends_the_run(files: Files, low: Fraction, high: Fraction, slopes: list[Fraction]) -> bool:
+    """Return whether an interval ends with the run, and is so short that a proof could not tell if a zero comes before.
+
+    Args:
+        files: the dataset.
+        low: where it begins, in s.
+        high: where it ends, in s.
+        slopes: the rate of xdot at each zero in it, in m/s².
+    """
+    proof = files.manifest.enclosure
+    if proof is None or high != files.scene.exact.t_end or len(slopes) != 1:
+        return False
+    late = Fraction(proof.velocity_radius_m_s) / abs(slopes[0])
+    return high - low <= UNSURE * late + OUTWARD
 
 
 def _off(files: Files, kind: Kind, table: Table, apart: Mapping[str, Fraction]) -> list[str]:

@@ -16,6 +16,7 @@ import reference
 from reference.dataset.files import read_files
 from reference.dataset.verify import recompute, verify
 from reference.dataset.write import write
+from reference.numbers.precision import fixed_decimal
 
 SPEEDS = {0: "-0.0077460679307865453684", 2: "-0.0077460679307865453685"}  # m/s to the east, by the zeros in the dip
 BEND = Fraction("0.26")  # third derivative of x in the dip, in m/s³
@@ -108,3 +109,19 @@ def test_a_passage_that_is_possible_up_to_an_end_of_many_decimals_is_written(tmp
     folder = write(solution, tmp_path / "rest")
     part = read_files(folder).manifest.sections.possible["highest"][0]
     assert Fraction(part.to_s) == Fraction(6.4)
+
+
+def test_a_transit_that_no_proof_can_tell_from_the_end_of_the_run_is_possible_and_passes(tmp_path):
+    """A finer run decides that it comes before the end; the dataset says no more than that it may."""
+    plain = reference.load_scene("close_pair", ["run.t_end=2", "run.grid_step=2", "run.digits=10"])
+    fine = reference.solve(plain, digits=40, confirm="none", audit=False)
+    end = -(-fine.transits.exact("t")[0] * 10**30 // 1)
+    text = fixed_decimal(Fraction(end, 10**30), 30)
+    scene = plain.with_values([f"run.t_end={text}", f"run.grid_step={text}"])
+    folder = write(reference.solve(scene, confirm="none", audit=False), tmp_path / "end")
+    (part,) = read_files(folder).manifest.possible
+    assert part.to_s == text
+    assert verify(folder).problems == []
+    # a decided transit that is said to be possible is still found
+    forge(folder, manifest=lambda document: document["possible"][0].update(from_s="0"))
+    assert any("that is decided" in problem for problem in verify(folder).problems)
