@@ -50,7 +50,7 @@ def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
     check_radii(manifest["enclosure"], proved, ones)
 
     bounds, decimals = manifest["bounds"], manifest["decimals"]
-    demand([*bounds["grid"]] == [*POSITION, *VELOCITY], "misprint: the bounds of the grid")
+    demand([*bounds["grid"]] == GRID.split(",")[1:], "misprint: the bounds of the grid")
     least = {name: Fraction(bound) for name, bound in bounds["grid"].items()}
     least |= {name: min(least[name], Fraction(bounds["position_m"])) for name in POSITION}
     least |= {name: min(least[name], Fraction(bounds["velocity_m_s"])) for name in VELOCITY}
@@ -106,7 +106,7 @@ def check_words(manifest: Any, proved: Proved, others: Sequence[Any]) -> None:
 def check_radii(said: Any, proved: Proved, ones: Sequence[Any]) -> None:
     """Demand that no interval is wider than the radii that are told of the proof."""
     positions = [x for state in proved.states for x in state[:3]]
-    velocities = [x for state in proved.states for x in state[3:]]
+    velocities = [x for state in proved.states for x in state[3:6]]
     kinds = {"position_radius_m": positions, "velocity_radius_m_s": velocities, "transit_radius_s": [z.t for z in ones]}
     for name, intervals in kinds.items():
         widest = max((x.high - x.low for x in intervals), default=None)
@@ -231,7 +231,7 @@ def page_lines(manifest: Any, grid: Any, transits: Any) -> list[str]:
     lines += (MODEL + GRAVITY[scene["site"]["gravity_is"]]).split("\n")
     for word, row in (("State", grid[0]), ("Certified state", grid[-1])):
         lines += ["", f"{word} at t = {row[0]} s"]
-        lines += [f"{name} {text}" for name, text in zip((*POSITION, *VELOCITY), row[1:], strict=True)]
+        lines += [f"{name} {text}" for name, text in zip(GRID.split(",")[1:], row[1:], strict=True)]
     lines += ["", "Bound on every position {position_m} m, on every velocity {velocity_m_s} m/s".format(**bounds)]
     lines += ["by column: " + ", ".join(f"{name} {bound}" for name, bound in bounds["grid"].items()), ""]
     lines += [f"Transits (xdot = 0, t > 0): {len(transits)} ({manifest['transits']})"]

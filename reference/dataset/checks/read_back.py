@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 from ...errors import LONGEST_VALUE, shortened
+from ...numbers.columns import GRID, TRANSITS
 from ..files import Files
 from ..manifest import differences
 from ..render import CONFIRMED, MEANING
@@ -21,7 +22,6 @@ VECTORS, PAGE = "vectors.json", "certified.txt"
 MOST = 16  # states, and as many transits
 SAMPLE = 10  # of as many rows of a grid a sampled confirmation has one
 INPUTS = "Inputs (SI units, angles in degrees)"
-GRID_NUMBERS, TRANSIT_NUMBERS = ("t", "x", "y", "z", "vx", "vy", "vz"), ("t", "x", "y", "z", "vy", "ax")
 UNITS = {"t": "s", "x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s", "ax": "m/s^2"}
 SAME = ("schema_version", "id", "level", "digits", "inputs", "frame", "scene")  # as in the manifest
 
@@ -63,7 +63,7 @@ def _states(files: Files) -> Iterator[dict[str, Any]]:
     last = len(grid.rows)
     for row in _evenly(last, MOST):
         flags = ["release"] * (row == 1) + ["end"] * (row == last)
-        yield {"row": row, "flags": flags, "values": _values(files, "grid", row, GRID_NUMBERS, bounds)}
+        yield {"row": row, "flags": flags, "values": _values(files, "grid", row, ("t", *GRID), bounds)}
 
 
 def _transits(files: Files) -> Iterator[dict[str, Any]]:
@@ -80,7 +80,7 @@ def _transits(files: Files) -> Iterator[dict[str, Any]]:
         row = dict(zip(table.header, table.rows[k - 1], strict=True))
         flags = ["end"] * (k == last) + ["closest_pair"] * (k in pair)
         bounds = {**files.manifest.bounds.transits, "t": row["bound"]}
-        values = _values(files, "transits", k, TRANSIT_NUMBERS, bounds)
+        values = _values(files, "transits", k, TRANSITS, bounds)
         yield {"k": k, "direction": int(row["direction"]), "flags": flags, "values": values}
 
 
