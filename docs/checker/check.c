@@ -59,7 +59,11 @@
    that the rows before and after demand; or, where zeros of one direction alone count, that F is not 0 or goes the other way.
 
    6. REST.  Hanging at rest, r = G / |G| with G = c - Omega x (Omega x r). A ball that contains r contains it after this
-   map too, and begins as [-1, 1] in each direction.  */
+   map too, and begins as [-1, 1] in each direction.
+
+   7. READING.  A folder may hold anything. Files and numbers are read through a `cursor`, which does not pass the end of its
+   text, and cells of tables through `cell`, which refuses a row or column that is not there. What the program does not
+   expect it refuses: another form of a number, a line without end, a key of a JSON document that nothing asked for.  */
 
 #if __has_include(<flint/arb.h>)
 #include <flint/arb.h>
@@ -81,7 +85,12 @@
 #define MOST_DEPTH 100    /* of halvings */
 #define COLUMN_BITS 53
 #define MOST_ORDER (MOST_BITS * 9 / 20 + 8)
-#define MOST_KEYS 5000
+#define MOST_STEPS 1e7
+#define MOST_KEYS 5000    /* of a JSON document */
+#define MOST_NESTED 10    /* brackets of a JSON document */
+#define MOST_DIGITS 1000  /* significant ones */
+#define MOST_PLACES 2900  /* characters of a number */
+#define MOST_EXPONENT 500 /* an input is 0, or its size is from 1e-500 to 1e500 */
 #define COLUMNS 20        /* at most, of a table that is proved */
 #define TEXTS 8
 #define MOST_FORMS 40     /* xdot and sections */
@@ -92,8 +101,11 @@ _Static_assert(LDBL_MIN_EXP < -16000, "bounds are long doubles, and must not und
 
 /* ------------------------------------------------------------------------------------------------ verdicts and texts */
 
-static jmp_buf with_more_bits;
-static const char *doubt = "these are too many digits", *folder;
+#define stop(status, ...) (printf(__VA_ARGS__), exit(status))
+#define wrong(...) stop(1, "WRONG: " __VA_ARGS__)
+#define no_dataset(...) stop(2, "not a dataset: " __VA_ARGS__)
+
+static const char *folder;
 
 /* A formatted text; it lasts until TEXTS more are made. */
 static const char *text(const char *format, ...) {
@@ -104,96 +116,207 @@ static const char *text(const char *format, ...) {
     va_start(list, format);
     int size = vsnprintf(texts[n], sizeof texts[n], format, list);
     va_end(list);
-    return size < (int)sizeof texts[n] ? texts[n] : "a text of this dataset is too long";
+    if (size < 0 || size >= (int)sizeof texts[n])
+        no_dataset("it has a text that is too long: %.40s ...\n", texts[n]);
+    return texts[n];
 }
 
-#define stop(status, ...) (printf(__VA_ARGS__), exit(status))
-#define wrong(...) stop(1, "WRONG: " __VA_ARGS__)
-#define no_dataset(...) stop(2, "not a dataset: " __VA_ARGS__)
-/* An interval is too wide to decide: the run begins again, with more bits. */
-#define undecided(...) (doubt = text(__VA_ARGS__), longjmp(with_more_bits, 1))
+static jmp_buf with_more_bits;
+static char doubt[5000] = "these are too many digits";
 
-/* What a file contains, or NULL where there is none. */
-static char *contents(const char *name) {
-    FILE *file = fopen(text("%s/%s", folder, name), "rb");
-    if (file == NULL)
-        return NULL;
-    fseek(file, 0, SEEK_END);
-    long size = ftell(file);
-    char *all = calloc(size + 1, 1);
-    rewind(file);
-    if (all == NULL || fread(all, 1, size, file) != (size_t)size || strlen(all) != (size_t)size)
-        no_dataset("%s cannot be read\n", name);
-    fclose(file);
+/* An interval is too wide to decide: the run begins again, with more bits. */
+#define undecided(...) (snprintf(doubt, sizeof doubt, __VA_ARGS__), longjmp(with_more_bits, 1))
+
+/* Memory for a number of things, filled with 0. */
+static void *memory(size_t count, size_t size) {
+    void *all = calloc(count + 1, size);
+    if (all == NULL)
+        no_dataset("it does not fit into the memory\n");
     return all;
 }
 
-/* A JSON document as pairs, "scene.run.t_end" or "possible.0.parity" and a text. */
+/* A text that lasts. */
+static char *copy(const char *from, size_t size) {
+    char *to = memory(size, 1);
+    memcpy(to, from, size);
+    return to;
+}
+
+static const char *lasting(const char *from) {
+    return copy(from, strlen(from));
+}
+
+/* ----------------------------------------------------------------------------------------------------------- a cursor */
+
+/* A place in a text. All files and numbers are read by the six functions below, and none of them passes the end. */
+typedef struct {
+    const char *name, *at, *end;
+} cursor;
+
+static cursor reading(const char *name, const char *all) {
+    return (cursor){.name = name, .at = all, .end = all + strlen(all)};
+}
+
+static int at_end_of(const cursor *c) {
+    return c->at == c->end;
+}
+
+/* Whether a mark comes next. */
+static int sees(const cursor *c, const char *mark) {
+    size_t size = strlen(mark);
+    return (size_t)(c->end - c->at) >= size && memcmp(c->at, mark, size) == 0;
+}
+
+/* Goes past a mark, if it comes next. */
+static int pass(cursor *c, const char *mark) {
+    if (!sees(c, mark))
+        return 0;
+    c->at += strlen(mark);
+    return 1;
+}
+
+/* Goes past characters that are all in `set`. Returns how many. */
+static long pass_all(cursor *c, const char *set) {
+    const char *from = c->at;
+    while (c->at < c->end && strchr(set, *c->at))
+        c->at++;
+    return c->at - from;
+}
+
+/* Goes to the next character that is in `set`, or to the end. Returns what is before it. */
+static char *take(cursor *c, const char *set) {
+    const char *from = c->at;
+    while (c->at < c->end && !strchr(set, *c->at))
+        c->at++;
+    return copy(from, c->at - from);
+}
+
+static void demand(cursor *c, const char *mark) {
+    if (!pass(c, mark))
+        no_dataset("%s: %s should be here: %.*s\n", c->name, *mark == '\n' ? "the end of the line" : mark,
+                   (int)fmin(40, c->end - c->at), c->at);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- files */
+
+/* A JSON document as pairs, "scene.run.t_end" or "possible.0.parity" and a text; and which of them were asked for. */
 typedef struct {
     const char *name;
-    char *key[MOST_KEYS], *value[MOST_KEYS];
+    const char *key[MOST_KEYS], *value[MOST_KEYS];
+    char asked_for[MOST_KEYS];
     long count;
 } document;
 
-/* The value of a key, or NULL. */
-static const char *maybe(const document *d, const char *key) {
+static document *manifest;
+
+/* The place of a key, or -1. */
+static long place_of(const document *d, const char *key) {
     for (long i = 0; i < d->count; i++)
         if (strcmp(d->key[i], key) == 0)
-            return d->value[i];
-    return NULL;
+            return i;
+    return -1;
 }
 
-static const char *get(const document *d, const char *key) {
+/* The value of a key, or NULL. */
+static const char *maybe(document *d, const char *key) {
+    long i = place_of(d, key);
+    if (i < 0)
+        return NULL;
+    d->asked_for[i] = 1;
+    return d->value[i];
+}
+
+static const char *get(document *d, const char *key) {
     const char *value = maybe(d, key);
     if (value == NULL)
         no_dataset("%s has no %s\n", d->name, key);
     return value;
 }
 
-/* Demands the mark of JSON that comes next, and goes past it. */
-static char *past(const document *d, char *at, const char *mark) {
-    if (strncmp(at, mark, strlen(mark)) != 0)
-        no_dataset("%s: %s should be here: %.40s\n", d->name, mark, at);
-    return at + strlen(mark);
+/* What a file contains, or NULL where there is none. What the manifest lists must be there. */
+static const char *contents(const char *name) {
+    char *all = NULL;
+    size_t room = 0;
+    FILE *file = fopen(text("%s/%s", folder, name), "rb");
+    if (file == NULL && manifest && place_of(manifest, text("files.%s.bytes", name)) >= 0)
+        no_dataset("%s is in the list of manifest.json, and cannot be opened\n", name);
+    if (file == NULL)
+        return NULL;
+    ssize_t size = getdelim(&all, &room, 0, file);        /* all of it, or up to a byte 0, with a 0 behind */
+    if (size <= 0 || !feof(file) || all[size - 1] == 0)
+        no_dataset("%s cannot be read, is empty, or has a byte 0\n", name);
+    fclose(file);
+    return all;
 }
 
-/* Reads the value of a key; it begins at `at`. Returns where it ends. */
-static char *read_value(document *d, const char *key, char *at) {
-    char inner[500];
-    const char *marks = *at == '{' ? "{}" : *at == '[' ? "[]" : "";
-    if (!*marks) {
-        int quotes = *at == '"';
-        size_t size = strcspn(at + quotes, quotes ? "\"\n" : ",\n");
-        if (maybe(d, key) || d->count == MOST_KEYS)
-            no_dataset("%s: %s comes twice, or is too much\n", d->name, key);
-        d->key[d->count] = strdup(key);
-        d->value[d->count++] = strndup(at + quotes, size);
-        return quotes ? past(d, at + 1 + size, "\"") : at + size;
+static void add_pair(document *d, const char *key, const char *value) {
+    if (place_of(d, key) >= 0)
+        no_dataset("%s: %s comes twice\n", d->name, key);
+    if (d->count == MOST_KEYS)
+        no_dataset("%s has more than %d keys\n", d->name, MOST_KEYS);
+    d->key[d->count] = lasting(key);
+    d->value[d->count] = value;
+    d->count++;
+}
+
+static void pass_space(cursor *c) {
+    pass_all(c, " \n");
+}
+
+static char *quoted(cursor *c) {
+    demand(c, "\"");
+    char *inside = take(c, "\"\n");
+    demand(c, "\"");
+    return inside;
+}
+
+static void read_value(document *d, const char *key, cursor *c, int depth);
+
+/* Reads what is in brackets, after the first: items with names, or items that are numbered from 0. */
+static void read_items(document *d, const char *key, cursor *c, int depth, int has_names, const char *last) {
+    const char *prefix = lasting(*key ? text("%s.", key) : "");
+    if (depth == MOST_NESTED)
+        no_dataset("%s has more than %d brackets in one another\n", d->name, MOST_NESTED);
+    pass_space(c);
+    if (pass(c, last))
+        return;
+    for (long item = 0;; item++) {
+        pass_space(c);
+        const char *name = has_names ? quoted(c) : text("%ld", item);
+        const char *inner = lasting(text("%s%s", prefix, name));
+        if (has_names)
+            demand(c, ": ");
+        read_value(d, inner, c, depth + 1);
+        pass_space(c);
+        if (pass(c, last))
+            return;
+        demand(c, ",");
     }
-    for (long item = 0; *at != marks[1]; item++) {
-        at = past(d, at, item ? "," : text("%c", *marks));
-        at += strspn(at, " \n");
-        if (item == 0 && *at == marks[1])
-            break;
-        size_t size = *marks == '{' && *at == '"' ? strcspn(at + 1, "\"\n") : 0;
-        snprintf(inner, sizeof inner, "%s%s%s", key, *key ? "." : "", size ? text("%.*s", (int)size, at + 1) : text("%ld", item));
-        at = read_value(d, inner, *marks == '{' ? past(d, at + 1 + size, "\": ") : at);
-        at += strspn(at, " \n");
-    }
-    return at + 1;
+}
+
+/* Reads the value of a key, at whose begin the cursor is. */
+static void read_value(document *d, const char *key, cursor *c, int depth) {
+    if (pass(c, "{"))
+        read_items(d, key, c, depth, 1, "}");
+    else if (pass(c, "["))
+        read_items(d, key, c, depth, 0, "]");
+    else
+        add_pair(d, key, sees(c, "\"") ? quoted(c) : take(c, ", \n]}"));
 }
 
 /* Reads JSON without escapes; NULL where there is no such file. */
 static document *read_document(const char *name) {
-    char *at = contents(name);
-    if (at == NULL)
+    const char *all = contents(name);
+    if (all == NULL)
         return NULL;
-    document *d = calloc(1, sizeof *d);
+    document *d = memory(1, sizeof *d);
     d->name = name;
-    if (strchr(at, '\\'))
+    if (strchr(all, '\\'))
         no_dataset("%s has a \\ in it\n", name);
-    at = read_value(d, "", at);
-    if (*past(d, at, "\n"))
+    cursor c = reading(name, all);
+    read_value(d, "", &c, 0);
+    demand(&c, "\n");
+    if (!at_end_of(&c))
         no_dataset("%s goes on after its end\n", name);
     return d;
 }
@@ -203,57 +326,89 @@ typedef struct table {
     const char *name;                 /* "grid.csv" */
     const char *decimals, *bounds;    /* where the manifest has those of its columns */
     long rows, columns;
-    char **head, **cells;
+    long first;                       /* the place of column 0: 1 in sections.csv, where the word is column -1 */
+    const char **heads, **cells;
     struct table *doubles;
     double widest;                    /* distance of a printed number from the true one, in units of its last digit */
     long digits[COLUMNS];             /* most significant digits of a column */
-    double bound[COLUMNS];            /* largest bound of a column */
+    fmpq bound[COLUMNS];              /* largest bound of a column */
 } table;
 
-static char *cell(const table *t, long row, long column) {
-    return t->cells[row * t->columns + column];
+static void demand_column(const table *t, long column) {
+    if (column + t->first < 0 || column + t->first >= t->columns)
+        no_dataset("%s has no column %ld\n", t->name, column);
 }
 
-static table *read_table(const char *name, const char *header) {
-    char *at = contents(name);
-    if (at == NULL)
-        return NULL;
-    table *t = calloc(1, sizeof *t);
-    size_t lines = 0, head = strlen(header);
-    t->name = name;
-    if (strncmp(at, header, head) != 0 || at[head] != '\n')
-        no_dataset("%s: the first line must be %s\n", name, header);
-    for (char *c = at; *c; c++)
-        lines += *c == '\n';
-    for (const char *c = header; c; c = strchr(c + 1, ','))
-        t->columns++;
-    t->rows = lines - 1;
-    t->head = calloc(lines * t->columns, sizeof(char *));
-    t->cells = t->head + t->columns;
-    for (size_t i = 0; *at; i++) {
-        t->head[i] = at;
-        at += strcspn(at, ",\n");
-        if (*at != ((i + 1) % t->columns ? ',' : '\n'))
-            no_dataset("%s: line %ld has not %ld numbers\n", name, (long)i / t->columns + 1, t->columns);
-        *at++ = 0;
+static const char *head(const table *t, long column) {
+    demand_column(t, column);
+    return t->heads[column + t->first];
+}
+
+static const char *cell(const table *t, long row, long column) {
+    demand_column(t, column);
+    if (row < 0 || row >= t->rows)
+        no_dataset("%s has no row %ld\n", t->name, row + 1);
+    return t->cells[row * t->columns + column + t->first];
+}
+
+/* The column of a name, or -1. */
+static long column_of(const table *t, const char *name) {
+    for (long i = 0; i < t->columns; i++)
+        if (strcmp(t->heads[i], name) == 0)
+            return i;
+    return -1;
+}
+
+/* Reads one line into `to`: as many cells as the table has columns. */
+static void read_line(const table *t, cursor *c, const char **to) {
+    for (long i = 0; i < t->columns; i++) {
+        to[i] = take(c, ",\n");
+        demand(c, i + 1 < t->columns ? "," : "\n");
     }
+}
+
+/* Reads a table: a header, and then lines of as many cells, each with its end. NULL where there is no such file. */
+static table *read_table(const char *name, const char *header) {
+    const char *all = contents(name);
+    if (all == NULL)
+        return NULL;
+    table *t = memory(1, sizeof *t);
+    long lines = 0;
+    t->name = lasting(name);
+    t->columns = 1;
+    for (const char *c = header; *c; c++)
+        t->columns += *c == ',';
+    for (const char *c = all; *c; c++)
+        lines += *c == '\n';
+    cursor c = reading(t->name, all);
+    if (!sees(&c, text("%s\n", header)))
+        no_dataset("%s: the first line must be %s\n", name, header);
+    t->heads = memory(t->columns, sizeof *t->heads);
+    t->cells = memory(lines * t->columns, sizeof *t->cells);
+    read_line(t, &c, t->heads);
+    for (; t->rows < lines - 1; t->rows++)
+        read_line(t, &c, t->cells + t->rows * t->columns);
+    if (!at_end_of(&c))
+        no_dataset("%s: the last line has no end\n", name);
     return t;
 }
 
 /* A table, with that of its doubles, which has columns more. */
 static table *read_tables(const char *kind, const char *header, const char *more) {
-    table *t = read_table(strdup(text("%s.csv", kind)), header);
+    table *t = read_table(text("%s.csv", kind), header);
     if (t == NULL)
         no_dataset("no %s.csv\n", kind);
-    t->decimals = strdup(text("decimals.%s", kind));
-    t->bounds = strdup(text("bounds.%s", kind));
-    t->doubles = read_table(strdup(text("%s.binary64.csv", kind)), text("%s,%s", header, more));
+    t->decimals = lasting(text("decimals.%s", kind));
+    t->bounds = lasting(text("bounds.%s", kind));
+    t->doubles = read_table(text("%s.binary64.csv", kind), text("%s,%s", header, more));
     if (t->doubles && t->doubles->rows != t->rows)
         wrong("%s has %ld rows, and %s %ld\n", t->name, t->rows, t->doubles->name, t->doubles->rows);
     return t;
 }
 
 /* ----------------------------------------------------------------------------------------------------- exact numbers */
+
+#define FIGURES "0123456789"
 
 static fmpz_t ten_to;
 
@@ -262,45 +417,162 @@ static void power_of_ten(long n) {
     fmpz_pow_ui(ten_to, ten_to, n);
 }
 
+/* A whole number from 0 to `most`, which has at most nine figures. */
+static long whole(const char *name, const char *printed, long most) {
+    cursor c = reading(name, printed);
+    long figures = pass_all(&c, FIGURES);
+    int is_whole = figures > 0 && figures <= 9 && at_end_of(&c);
+    long value = is_whole ? strtol(printed, NULL, 10) : -1;
+    if (value < 0 || value > most)
+        no_dataset("%s is %s, and not a whole number from 0 to %ld\n", name, printed, most);
+    return value;
+}
+
+/* Goes past a sign, if there is one. Returns whether it is a minus. */
+static int pass_sign(cursor *c) {
+    int minus = pass(c, "-");
+    if (!minus)
+        pass(c, "+");
+    return minus;
+}
+
+/* Goes past an exponent after e or E, if there is one. Returns it, or MOST_PLACES where it is too large, or no number. */
+static long pass_exponent(cursor *c) {
+    if (!pass(c, "e") && !pass(c, "E"))
+        return 0;
+    int minus = pass_sign(c);
+    const char *begin = c->at;
+    long figures = pass_all(c, FIGURES);
+    if (figures < 1 || figures > 9)
+        return MOST_PLACES;
+    long size = strtol(begin, NULL, 10);
+    return minus ? -size : size;
+}
+
 /* The exact value of a decimal such as -7.29e-5. */
 static void decimal(fmpq_t value, const char *printed) {
-    size_t whole = strcspn(printed, ".eE");
-    const char *part = printed + whole + (printed[whole] == '.');
-    size_t after = strcspn(part, "eE");
-    long exponent = part[after] ? strtol(part + after + 1, NULL, 10) : 0;
-    const char *digits = text("%.*s%.*s", (int)whole, printed, (int)after, part);
-    int is_short = strlen(printed) < 2900 && labs(exponent) < 5000 && strspn(printed, "+-.0123456789eE") == strlen(printed);
-    if (!is_short || fmpz_set_str(fmpq_numref(value), digits + (*digits == '+'), 10) != 0)
-        no_dataset("\"%s\" is not a number\n", printed);
-    exponent -= after;
+    cursor c = reading("number", printed);
+    int minus = pass_sign(&c);
+    const char *before = c.at;
+    long figures_before = pass_all(&c, FIGURES);
+    pass(&c, ".");
+    const char *after = c.at;
+    long figures_after = pass_all(&c, FIGURES);      /* 0 without a point: `before` has them all */
+    long exponent = pass_exponent(&c);
+    long figures = figures_before + figures_after;
+    if (!at_end_of(&c) || figures < 1 || figures > MOST_PLACES || labs(exponent) >= MOST_PLACES)
+        no_dataset("\"%.60s\" is not a number\n", printed);
+    fmpz_set_str(fmpq_numref(value), text("%.*s%.*s", (int)figures_before, before, (int)figures_after, after), 10);
     fmpz_one(fmpq_denref(value));
+    exponent -= figures_after;
     power_of_ten(labs(exponent));
     if (exponent < 0)
         fmpq_div_fmpz(value, value, ten_to);
     else
         fmpq_mul_fmpz(value, value, ten_to);
+    if (minus)
+        fmpq_neg(value, value);
 }
 
+static long places(const char *printed) {
+    const char *point = strchr(printed, '.');
+    return point ? (long)strlen(point + 1) : 0;
+}
+
+/* The exact value of a number of a table: figures, a point between figures if at all, and a sign only if it is negative. */
+static void printed_value(fmpq_t value, const char *name, const char *printed) {
+    cursor c = reading(name, printed);
+    int minus = pass(&c, "-");
+    int is_zero_before = sees(&c, "0");
+    long before = pass_all(&c, FIGURES);
+    int has_point = pass(&c, ".");
+    long after = pass_all(&c, FIGURES);
+    int is_number = before > 0 && (after > 0) == has_point && at_end_of(&c) && !(is_zero_before && before > 1);
+    if (is_number)
+        decimal(value, printed);
+    if (!is_number || (minus && fmpq_sgn(value) >= 0))
+        no_dataset("%s: \"%.60s\" is not a number as a table has it\n", name, printed);
+}
+
+/* The exact value of a finite double. */
 static void exact_double(fmpq_t value, double x) {
     static arf_t exact;
+    if (!isfinite(x))
+        no_dataset("it has a number that no double holds\n");
     arf_set_d(exact, x);
     arf_get_fmpq(value, exact);
 }
 
-static document *manifest;
-static int as_doubles;
-
-/* An input of the scene: the decimal itself, or the double next to it; 0 where it is not given. */
-static void input(fmpq_t value, const char *key) {
-    const char *given = maybe(manifest, text("scene.%s", key));
-    decimal(value, given ? given : "0");
-    if (as_doubles && given)
-        exact_double(value, strtod(given, NULL));
+/* The double of a hexfloat such as -0x1.6fa76f9d5e5b1p-2, of which no digit may be lost. */
+static double hexfloat(const char *name, const char *printed) {
+    cursor c = reading(name, printed);
+    int minus = pass(&c, "-");
+    int is_small = sees(&c, "0x0.");
+    const char *significand = c.at;
+    int has_begin = pass(&c, "0x0.") || pass(&c, "0x1.");
+    long figures = pass_all(&c, FIGURES "abcdef");
+    int has_exponent = sees(&c, "p+") || sees(&c, "p-");
+    long size = c.at - significand;
+    pass(&c, "p");
+    const char *exponent = c.at;
+    pass_sign(&c);
+    long exponent_figures = pass_all(&c, FIGURES);
+    int is_short = figures <= 13 && exponent_figures <= 4;
+    if (!has_begin || figures < 1 || !has_exponent || exponent_figures < 1 || !is_short || !at_end_of(&c))
+        no_dataset("%s: \"%.60s\" is not a hexfloat\n", name, printed);
+    double exact = strtod(text("%.*s", (int)size, significand), NULL);
+    int power = (int)strtol(exponent, NULL, 10);
+    double value = ldexp(exact, power);
+    if (!isfinite(value) || ldexp(value, -power) != exact || (value < DBL_MIN) != is_small)
+        no_dataset("%s: no double is written as %.60s\n", name, printed);
+    return minus ? -value : value;
 }
 
-/* Bounds are long doubles, sums and products of such numbers >= 0, none below 1e-4900: each operation is right to 2^-63 of
-   its result, and no bound takes 10^8 of them. Where one is used it is multiplied by UP. */
+static int as_doubles;
+
+/* An input of the scene: the decimal itself, or the double next to it. It must be 0, or of a size that bounds can have. */
+static void input(fmpq_t value, const char *key) {
+    static fmpq_t most, size;
+    const char *given = get(manifest, text("scene.%s", key));
+    decimal(value, given);
+    if (as_doubles)
+        exact_double(value, strtod(given, NULL));
+    if (fmpq_is_zero(value))
+        return;
+    power_of_ten(MOST_EXPONENT);
+    fmpq_set_fmpz(most, ten_to);
+    fmpq_abs(size, value);
+    if (fmpq_cmp(size, most) > 0)
+        no_dataset("%s is above 1e%d\n", key, MOST_EXPONENT);
+    fmpq_inv(most, most);
+    if (fmpq_cmp(size, most) < 0)
+        no_dataset("%s is below 1e-%d\n", key, MOST_EXPONENT);
+}
+
+/* An input that must be `least` at least, or above it. */
+static void input_from(fmpq_t value, const char *key, long least, int above) {
+    static fmpq_t limit;
+    input(value, key);
+    fmpq_set_si(limit, least, 1);
+    int order = fmpq_cmp(value, limit);
+    if (order < 0 || (above && order == 0))
+        no_dataset("%s must be %s %ld\n", key, above ? "above" : "at least", least);
+}
+
+/* An input that may be left out: then it is 0. */
+static void input_or_0(fmpq_t value, const char *key) {
+    if (maybe(manifest, text("scene.%s", key)))
+        input(value, key);
+    else
+        fmpq_zero(value);
+}
+
+/* Bounds are long doubles, sums and products of such numbers >= 0. Each operation is right to 2^-63 of its result, and no
+   bound takes 10^8 of them: where one is used it is multiplied by UP. Where a result underflows, what is lost is below
+   2^-16400, and below 2^-10000 by the time it counts, for inputs, w and h are no smaller and no larger than doubles and
+   1e+-500 are: TINY is added for it. No decimal of a table is so long that this could be seen. */
 #define UP (1 + 1e-9L)
+#define TINY 0x1p-10000L
 
 static long double bound_of(const mag_t m) {
     if (mag_cmp_2exp_si(m, 16000) >= 0)
@@ -317,14 +589,15 @@ static long double up(const arb_t x) {
     return bound_of(m);
 }
 
+/* |a|, rounded up; no square underflows in hypotl. */
 static long double size(arb_srcptr a) {
-    return sqrtl(up(a) * up(a) + up(a + 1) * up(a + 1) + up(a + 2) * up(a + 2));
+    return hypotl(hypotl(up(a), up(a + 1)), up(a + 2));
 }
 
 /* Makes x wider by r. */
 static void widen(arb_t x, long double r) {
     static mag_t m;
-    int exponent;
+    int exponent = 0;
     mag_set_d(m, (double)frexpl(r * UP, &exponent) * (double)UP);
     mag_mul_2exp_si(m, m, exponent);
     arb_add_error_mag(x, m);
@@ -342,6 +615,18 @@ static int at_rest, never;                        /* at the release; xdot = 0 fo
 static void ball(arb_t x, const char *key) {
     static fmpq_t value;
     input(value, key);
+    arb_set_fmpq(x, value, bits + 64);
+}
+
+static void ball_or_0(arb_t x, const char *key) {
+    static fmpq_t value;
+    input_or_0(value, key);
+    arb_set_fmpq(x, value, bits + 64);
+}
+
+static void ball_from(arb_t x, const char *key, long least, int above) {
+    static fmpq_t value;
+    input_from(value, key, least, above);
     arb_set_fmpq(x, value, bits + 64);
 }
 
@@ -379,14 +664,14 @@ static void read_site(void) {
     static arb_t f, t;
     slong p = bits + 64;
     const char *kind = get(manifest, "scene.site.gravity_is");
-    ball(length, "pendulum.length");
-    ball(drag, "pendulum.drag");
-    ball(gravity, "site.gravity");
+    ball_from(length, "pendulum.length", 0, 1);
+    ball_from(drag, "pendulum.drag", 0, 0);       /* (2) drops a term that has its sign */
+    ball_from(gravity, "site.gravity", 0, 0);
     ball(rate, "site.rotation_rate");
     sine_cosine_of(sine, cosine, "site.latitude");
     arb_zero(f);
     if (strcmp(get(manifest, "scene.site.inverse_flattening"), "inf") != 0) {
-        ball(f, "site.inverse_flattening");
+        ball_from(f, "site.inverse_flattening", 1, 1);
         arb_inv(f, f, p);
     }
     arb_sub_ui(t, f, 2, p);
@@ -395,7 +680,7 @@ static void read_site(void) {
     arb_mul(t, t, sine, p);
     arb_add_ui(t, t, 1, p);
     arb_rsqrt(t, t, p);
-    ball(radius, "site.equatorial_radius");
+    ball_from(radius, "site.equatorial_radius", 0, 0);
     arb_mul(radius, radius, t, p);                /* to the Earth's axis along the normal */
     ball(t, "site.altitude");
     arb_add(radius, radius, t, p);
@@ -422,8 +707,8 @@ static void read_release(void) {
     if (maybe(manifest, "scene.release.angle") == NULL) {
         ball(x, "release.x");
         ball(x + 1, "release.y");
-        ball(v, "release.vx");
-        ball(v + 1, "release.vy");
+        ball_or_0(v, "release.vx");
+        ball_or_0(v + 1, "release.vy");
         arb_mul(t, length, length, p);
         arb_dot(t, t, 1, x, 1, x, 1, 2, p);
         arb_sqrt(t, t, p);
@@ -439,12 +724,12 @@ static void read_release(void) {
     arb_mul(x, s, ka, p);
     arb_mul(x + 1, s, sa, p);
     arb_neg(x + 2, k);
-    ball(t, "release.angle_rate");
+    ball_or_0(t, "release.angle_rate");
     arb_mul(v, t, k, p);
     arb_mul(v + 1, v, sa, p);
     arb_mul(v, v, ka, p);
     arb_mul(v + 2, t, s, p);
-    ball(t, "release.azimuth_rate");
+    ball_or_0(t, "release.azimuth_rate");
     arb_submul(v, t, x + 1, p);
     arb_addmul(v + 1, t, x, p);
     arb_const_pi(t, p);
@@ -500,9 +785,9 @@ static void make_form(form *f) {
     static arb_struct along[3], rest[3];
     static arb_t s;
     static fmpq_t azimuth;
-    size_t kind = strcspn(f->word, " ");
-    const char *angle = text("%.*s", (int)strcspn(f->word + kind, "@"), f->word + kind);
-    decimal(azimuth, *angle ? angle + 1 : "0");
+    const char *space = strchr(f->word, ' ');
+    const char *angle = space ? space + 1 : "0";  /* xdot is turn 0 */
+    decimal(azimuth, text("%.*s", (int)strcspn(angle, "@"), angle));
     sine_cosine(along + 1, along, azimuth);
     arb_zero(along + 2);
     _arb_vec_zero(f->a, 3);
@@ -714,16 +999,18 @@ static void next_frame(const long double *jump) {
         }
     }
     for (int i = 0; i < 6; i++)
-        z[i] = wider[i] * UP;
+        z[i] = wider[i] * UP + TINY;
 }
 
 static table no_transits = {.name = "transits.csv"}, *transits = &no_transits, *sections;
 static fmpq_t half;                               /* a unit of the last digit of the times of zeros */
 
 static void set_length(double x) {
-    int exponent;
+    int exponent = 0;
     double part = frexp(fmin(0.99 * x, fmin(4 / (w + (double)size_omega), 8 / (double)size_drag)), &exponent);
     h = ldexp(floor(ldexp(part, 20)), exponent - 20);
+    if (!isfinite(h) || h <= 0)
+        undecided("there is no step after t = %g", fmpq_get_d(step_begin));
     exact_double(step_next, h * HAND_OVER);
     fmpq_add(step_next, step_next, step_begin);
     if (h * (1 - HAND_OVER) < 4 * fmpq_get_d(half))
@@ -747,10 +1034,12 @@ static void start(void) {
     size_drag = up(drag);
     long double fast = size_c + (size(begin_v) + size_omega) * (size(begin_v) + size_omega);
     w = fast > 0 ? ldexp(1, ilogbl(fast) / 2) : 1;
+    if (!isfinite(fast) || !isfinite(w) || w < DBL_MIN)
+        undecided("the forces or the release have no size that a double holds");
     arb_mat_zero(frame);
     for (int i = 0; i < 6; i++) {
         arb_set_d(arb_mat_entry(frame, i, i), unit(i));
-        z[i] = bound_of(arb_radref(a + i)) / unit(i) * UP;
+        z[i] = bound_of(arb_radref(a + i)) / unit(i) * UP + TINY;
         mag_zero(arb_radref(a + i));
         arb_swap(q.x[0] + i, a + i);
     }
@@ -761,7 +1050,7 @@ static void start(void) {
 /* Makes q, the columns and the bounds on [step_begin, step_end]. Returns a good length for the next step. */
 static double step(void) {
     double better = 1;
-    long double added = 0, zr = 0, za = 0, defect = 0, drags = size_drag * size_omega;
+    long double added = TINY, zr = 0, za = 0, defect = 0, drags = size_drag * size_omega;
     for (int tries = 0; tries < 60; tries++) {
         defect = expand(&q, bits, -INFINITY);
         double excess = bits + log2l(beyond(&q));
@@ -770,6 +1059,8 @@ static double step(void) {
             break;
         set_length(h * better);
     }
+    if (h * MOST_STEPS < fmpq_get_d(end))
+        stop(1, "not proved: this takes more than %g steps\n", MOST_STEPS);
     for (slong n = 0; n <= highest; n++)
         _arb_vec_set_round(rough.x[n], q.x[n], 7, COLUMN_BITS);
     for (int j = 0; j < 6; j++) {
@@ -858,69 +1149,100 @@ static void local_exact(arb_t s, const fmpq_t t) {
 static table *grid;
 static fmpq_t most_off;    /* units of the last digit: 1/2 at level enclosed, else 1 */
 
-static long places(const char *text) {
-    const char *point = strchr(text, '.');
-    return point ? (long)strlen(point + 1) : 0;
-}
-
 /* The printed bound of a number. */
 static const char *bound_for(const table *t, long row, long col) {
-    const char *bound = maybe(manifest, text("%s.%s", t->bounds, t->head[col]));
-    return t != grid && col == 1 ? cell(t, row, t == transits ? 8 : 9) : bound ? bound : "0";
+    if (t == grid && col == 0)
+        return "0";                               /* times of the grid are exact */
+    if (t != grid && col == 1)
+        return cell(t, row, t->columns - t->first - 1);
+    return get(manifest, text("%s.%s", t->bounds, head(t, col)));
 }
 
-/* Proves that a double, in 17 digits and as a hexfloat, is the nearest to x, or to a number within the bound of x. */
-static void prove_double(const table *t, long row, long col, const arb_t x, const char *bound) {
+/* Demands the digits after the point that the manifest promises. */
+static void check_places(const table *t, long row, long col) {
+    const char *key = t->decimals ? text("%s.%s", t->decimals, head(t, col)) : "digits";
+    const char *printed = cell(t, row, col);
+    if (whole(key, get(manifest, key), MOST_PLACES) != places(printed))
+        wrong("%s, row %ld: %s = %s has another number of decimals than promised\n", t->name, row + 1, head(t, col), printed);
+}
+
+/* Significant digits: all but the zeros before. */
+static long significant(const char *printed) {
+    long count = 0;
+    for (const char *c = printed; *c; c++)
+        count += *c >= '0' && *c <= '9' && (count > 0 || *c != '0');
+    return count;
+}
+
+/* Proves that a double, in 17 digits and as a hexfloat, is the nearest to x, or to a number that is no further from x than
+   `units` of the decimal's last digit. */
+static void prove_double(const table *t, long row, long col, const arb_t x, const arb_t units, long decimals) {
     static arf_t low, high;
-    static arb_t near;
-    char *rest;
-    const char *printed = cell(t, row, col), *name = t->head[col], *hex = NULL;
-    for (long i = 0; i < t->columns; i++)
-        if (strncmp(t->head[i], name, strlen(name)) == 0 && strcmp(t->head[i] + strlen(name), "_hex") == 0)
-            hex = cell(t, row, i);
-    double d = strtod(hex, &rest);
-    if (*rest || !isfinite(d) || strcmp(text("%.16e", d), printed) != 0)
+    static arb_t near, slack;
+    const char *name = head(t, col), *printed = cell(t, row, col);
+    const char *hex = cell(t, row, column_of(t, text("%s_hex", name)));
+    double d = hexfloat(t->name, hex);
+    if (strcmp(text("%.16e", d), printed) != 0)
         wrong("%s, row %ld: %s: %s and %s are not the same\n", t->name, row + 1, name, printed, hex);
+    power_of_ten(decimals);
+    arb_div_fmpz(slack, units, ten_to, bits);
     arb_set(near, x);
-    widen(near, strtold(bound, NULL));
+    arb_add_error(near, slack);
     arb_get_lbound_arf(low, near, bits + 64);
     arb_get_ubound_arf(high, near, bits + 64);
-    double least = arf_get_d(low, ARF_RND_NEAR), most = arf_get_d(high, ARF_RND_NEAR);
-    if (least > d || most < d)
+    double least = arf_get_d(low, ARF_RND_NEAR);
+    double most = arf_get_d(high, ARF_RND_NEAR);
+    if (!(least <= d && d <= most))
         wrong("%s, row %ld: %s = %s is not the nearest double\n", t->name, row + 1, name, printed);
+}
+
+/* What check_columns needs to know of the numbers of a column. */
+static void note(table *t, long col, const char *printed, const fmpq_t bound, double off) {
+    long digits = significant(printed);
+    if (t->digits[col] < digits)
+        t->digits[col] = digits;
+    if (fmpq_cmp(t->bound + col, bound) < 0)
+        fmpq_set(t->bound + col, bound);
+    t->widest = fmax(t->widest, off);
 }
 
 /* Proves that a printed number is within half a unit of its last digit, and within `bound`, of all of x. */
 static void prove(table *t, long row, long col, const arb_t x, const char *bound) {
     static arb_t off, limit;
-    static fmpq_t value, within;
-    const char *printed = cell(t, row, col), *name = t->head[col];
-    const char *promised = maybe(manifest, text("%s.%s", t->decimals, name));
-    if (atol(promised ? promised : get(manifest, "digits")) != places(printed))
-        wrong("%s, row %ld: %s = %s has another number of decimals than promised\n", t->name, row + 1, name, printed);
-    decimal(value, printed);
-    decimal(within, bound);
+    static fmpq_t value, promised, units;
+    const char *printed = cell(t, row, col), *name = head(t, col);
+    check_places(t, row, col);
+    printed_value(value, t->name, printed);
+    decimal(promised, bound);
     power_of_ten(places(printed));
-    fmpq_mul_fmpz(within, within, ten_to);
-    arb_set_fmpq(limit, fmpq_cmp(within, most_off) < 0 ? within : most_off, bits);
+    fmpq_mul_fmpz(units, promised, ten_to);
+    arb_set_fmpq(limit, fmpq_cmp(units, most_off) < 0 ? units : most_off, bits);
     arb_set_fmpq(off, value, bits + 64);
     arb_sub(off, x, off, bits + 64);
     arb_mul_fmpz(off, off, ten_to, bits + 64);
     arb_abs(off, off);
-    double about = arf_get_d(arb_midref(off), ARF_RND_NEAR), wide = (double)bound_of(arb_radref(off));
+    double about = arf_get_d(arb_midref(off), ARF_RND_NEAR);
+    double wide = (double)bound_of(arb_radref(off));
     const char *what = text("%s, row %ld: %s = %s is off by %.6f +- %.2g units of its last digit (its bound is %s)", t->name,
                             row + 1, name, printed, about, wide, bound);
     if (arb_gt(off, limit))
         wrong("%s\n", what);
     if (!arb_le(off, limit))
         undecided("%s", what);
-    long significant = strlen(printed + strspn(printed, "-0.")) -
-                       (strcspn(printed, ".") > strspn(printed, "-0") && places(printed));
-    t->digits[col] = significant > t->digits[col] ? significant : t->digits[col];
-    t->bound[col] = fmax(t->bound[col], strtod(bound, NULL));
-    t->widest = fmax(t->widest, about + wide);
+    note(t, col, printed, promised, about + wide);
     if (t->doubles)
-        prove_double(t->doubles, row, col, x, bound_for(t, row, col));
+        prove_double(t->doubles, row, col, x, limit, places(printed));
+}
+
+/* Demands that a table of doubles repeats what is not a number to be proved: k, direction, bound. */
+static void check_repeated(const table *t) {
+    for (long col = 0; t->doubles && col < t->columns; col++) {
+        if (column_of(t->doubles, text("%s_hex", head(t, col))) >= 0)
+            continue;
+        for (long row = 0; row < t->rows; row++)
+            if (strcmp(cell(t->doubles, row, col), cell(t, row, col)) != 0)
+                wrong("%s, row %ld: %s is not that of %s\n", t->doubles->name, row + 1, head(t, col), t->name);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------------------- the tables */
@@ -932,24 +1254,24 @@ static arb_struct here[ALL];                      /* the motion at a time, or in
 static void count_rows(void) {
     static fmpq_t steps, tiny;
     static fmpz_t last;
-    if (fmpq_sgn(grid_step) <= 0 || fmpq_sgn(end) <= 0)
-        no_dataset("t_end and grid_step must be positive\n");
     fmpq_div(steps, end, grid_step);
     fmpq_set_si(tiny, 1, 1L << 30);
     fmpq_sub(steps, steps, tiny);
     fmpz_cdiv_q(last, fmpq_numref(steps), fmpq_denref(steps));
-    if (fmpz_cmp_si(last, grid->rows - 1) != 0)
+    if (grid->rows < 2 || fmpz_cmp_si(last, grid->rows - 1) != 0)
         wrong("grid.csv has %ld rows, and should have one at each grid_step and at t_end\n", grid->rows);
 }
 
 static void check_grid_row(const fmpq_t t, long row) {
-    static arb_t s;
+    static arb_t s, exactly;
     static fmpq_t printed;
-    decimal(printed, cell(grid, row, 0));
+    check_places(grid, row, 0);
+    printed_value(printed, "grid.csv", cell(grid, row, 0));
     if (!fmpq_equal(printed, t))
         wrong("grid.csv, row %ld: t = %s is not the time of this row\n", row + 1, cell(grid, row, 0));
     arb_set_fmpq(s, t, bits + 64);
-    prove(grid, row, 0, s, "1");
+    if (grid->doubles)
+        prove_double(grid->doubles, row, 0, s, exactly, 0);
     local(s, s);
     motion(here, s, bits);
     for (int i = 0; i < 6; i++) {
@@ -958,67 +1280,125 @@ static void check_grid_row(const fmpq_t t, long row) {
     }
 }
 
+/* Adds the rows of a form: each time with half a unit of its last digit on both sides. */
+static void add_rows(form *f) {
+    static fmpq_t time, unit;
+    if (f->rows == 0)
+        return;
+    power_of_ten(places(cell(f->t, f->first, 1)));
+    fmpq_set_si(unit, 1, 2);
+    fmpq_div_fmpz(unit, unit, ten_to);
+    if (fmpq_cmp(unit, half) > 0)
+        fmpq_set(half, unit);
+    for (long i = 0; i < f->rows; i++) {
+        event *e = f->events + f->all++;
+        e->row = f->first + i;
+        printed_value(time, f->t->name, cell(f->t, e->row, 1));
+        fmpq_sub(e->from, time, unit);
+        fmpq_add(e->to, time, unit);
+        if (strcmp(cell(f->t, e->row, 0), text("%ld", i + 1)) != 0)
+            wrong("%s, row %ld: its number is wrong\n", f->t->name, e->row + 1);
+    }
+}
+
+/* Adds the intervals that a form has in the manifest, of which there may be MOST_KEYS. */
+static void add_intervals(form *f) {
+    for (; maybe(manifest, text("%s.%ld.from_s", f->possible, f->intervals)); f->intervals++) {
+        const char *name = lasting(text("%s.%ld", f->possible, f->intervals));
+        event *e = f->events + f->all++;
+        e->row = f->intervals;
+        e->parity = get(manifest, text("%s.parity", name));
+        printed_value(e->from, name, get(manifest, text("%s.from_s", name)));
+        printed_value(e->to, name, get(manifest, text("%s.to_s", name)));
+        if (strcmp(e->parity, "odd") != 0 && strcmp(e->parity, "even") != 0 && strcmp(e->parity, "unknown") != 0)
+            wrong("manifest.json: %s.parity is %s, and not odd, even or unknown\n", name, e->parity);
+        if (fmpq_cmp(e->to, end) > 0)
+            wrong("manifest.json: %s ends after the run\n", name);
+    }
+}
+
 static int by_time(const void *a, const void *b) {
     return fmpq_cmp(((const event *)a)->from, ((const event *)b)->from);
 }
 
-/* Adds a form with its rows of a table, and its intervals in the manifest. */
-static void add_form(const char *word, const char *possible, table *t, long first, long rows) {
-    static fmpq_t time, unit;
-    form *f = forms + count_of_forms++;
-    long row = first;
-    *f = (form){.word = word, .possible = possible, .t = t, .first = first, .rows = rows};
-    power_of_ten(rows ? places(cell(t, first, 1)) : 0);
-    fmpq_set_si(unit, 1, 2);
-    fmpq_div_fmpz(unit, unit, ten_to);
-    if (rows && fmpq_cmp(unit, half) > 0)
-        fmpq_set(half, unit);
-    f->events = calloc(rows + MOST_KEYS, sizeof(event));
-    for (; f->all < rows; f->all++) {
-        event *e = f->events + f->all;
-        e->row = first + f->all;
-        decimal(time, cell(t, e->row, 1));
-        fmpq_sub(e->from, time, unit);
-        fmpq_add(e->to, time, unit);
-    }
-    for (; maybe(manifest, text("%s.%ld.from_s", possible, f->intervals)); f->all++, f->intervals++) {
-        event *e = f->events + f->all;
-        decimal(e->from, get(manifest, text("%s.%ld.from_s", possible, f->intervals)));
-        decimal(e->to, get(manifest, text("%s.%ld.to_s", possible, f->intervals)));
-        e->row = f->intervals;
-        e->parity = get(manifest, text("%s.%ld.parity", possible, f->intervals));
-    }
-    qsort(f->events, f->all, sizeof(event), by_time);
+/* Demands that rows and intervals are after the release, do not overlap, and that rows are in the order of time. */
+static void check_order(const form *f) {
+    static fmpq_t time;
+    long row = f->first;
     fmpq_zero(time);
     for (long i = 0; i < f->all; i++) {
-        event *e = f->events + i;
+        const event *e = f->events + i;
         if (fmpq_cmp(time, e->from) > 0 || fmpq_cmp(e->from, e->to) >= 0)
             wrong("%s %ld begins before the release, or before the end of the last, or is empty\n",
-                  e->parity ? "manifest.json: possible interval" : text("%s, row", t->name), e->row + 1);
-        if (e->parity == NULL && (e->row != row++ || atol(cell(t, e->row, 0)) != row - first))
-            wrong("%s, row %ld: out of order, or its number is wrong\n", t->name, e->row + 1);
+                  e->parity ? "manifest.json: possible interval" : text("%s, row", f->t->name), e->row + 1);
+        if (e->parity == NULL && e->row != row++)
+            wrong("%s, row %ld: out of order\n", f->t->name, e->row + 1);
         fmpq_set(time, e->to);
     }
 }
 
+/* Adds a form with its rows of a table, and its intervals in the manifest. */
+static void add_form(const char *word, const char *possible, table *t, long first, long rows) {
+    form *f = forms + count_of_forms;
+    if (count_of_forms == MOST_FORMS)
+        no_dataset("sections: more than %d\n", MOST_FORMS - 1);
+    for (int i = 0; i < count_of_forms; i++)
+        if (strcmp(forms[i].word, word) == 0)
+            no_dataset("sections: %s comes twice\n", word);
+    *f = (form){.word = word, .possible = possible, .t = t, .first = first, .rows = rows};
+    f->events = memory(rows + MOST_KEYS, sizeof(event));
+    add_rows(f);
+    add_intervals(f);
+    qsort(f->events, f->all, sizeof(event), by_time);
+    check_order(f);
+    count_of_forms++;
+}
+
+/* Demands the word of a section: highest, lowest, turn 30, gate -12.5, gate 30@0. */
+static void check_word(const char *word) {
+    cursor c = reading("run.sections", word);
+    int is_extreme = pass(&c, "highest") || pass(&c, "lowest");
+    int is_gate = sees(&c, "gate ");
+    int has_azimuth = pass(&c, "gate ") || pass(&c, "turn ");
+    int is_right = is_extreme || has_azimuth;
+    if (has_azimuth) {
+        pass(&c, "-");
+        is_right = pass_all(&c, FIGURES) > 0;
+        if (pass(&c, "."))
+            is_right = is_right && pass_all(&c, FIGURES) > 0;
+    }
+    if (is_gate)
+        pass(&c, "@0");
+    if (!is_right || !at_end_of(&c))
+        no_dataset("run.sections: \"%.60s\" is no section\n", word);
+}
+
+/* Adds the section of a word, whose rows begin at `row`. Returns how many there are. */
+static long add_section(const char *word, long row) {
+    const char *key = lasting(text("sections.counts.%s", word));
+    check_word(word);
+    long count = whole(key, get(manifest, key), sections->rows);
+    for (long i = row; i < row + count; i++)
+        if (i >= sections->rows || strcmp(cell(sections, i, -1), word) != 0)
+            wrong("sections.csv, row %ld: this should be one of %ld of %s\n", i + 1, count, word);
+    add_form(word, lasting(text("sections.possible.%s", word)), sections, row, count);
+    return count;
+}
+
 /* Adds the sections that a scene asks for, "highest; gate 90": their rows follow one another. */
 static void add_sections(const char *words) {
+    cursor c = reading("run.sections", words);
     long row = 0;
-    for (size_t size; *words; words += size + 2 * (words[size] == ';')) {
-        size = strcspn(words, ";");
-        char *word = strndup(words, size);
-        long count = atol(get(manifest, text("sections.counts.%s", word)));
-        if (count_of_forms == MOST_FORMS)
-            no_dataset("sections: more than %d\n", MOST_FORMS - 1);
-        for (long i = row; i < row + count; i++)
-            if (i >= sections->rows || strcmp(cell(sections, i, -1), word) != 0)
-                wrong("sections.csv, row %ld: this should be one of %ld of %s\n", i + 1, count, word);
-        add_form(word, strdup(text("sections.possible.%s", word)), sections, row, count);
-        row += count;
-    }
+    do
+        row += add_section(take(&c, ";"), row);
+    while (pass(&c, "; "));
+    if (!at_end_of(&c))
+        no_dataset("run.sections: \"%.60s\" has no space after a semicolon\n", words);
     if (row != sections->rows)
         wrong("sections.csv has %ld rows, the manifest %ld\n", sections->rows, row);
 }
+
+/* ------------------------------------------------------------------------------------------------------ zeros of forms */
 
 static int sign_at(const form *f, const arf_t s, slong p) {
     static arb_t x;
@@ -1154,22 +1534,33 @@ static void check_zeros_of_step(form *f) {
 
 /* --------------------------------------------------------------------------------------------------- the other files */
 
-static void same(const document *d, const char *key, const char *expected) {
+static void same(document *d, const char *key, const char *expected) {
     if (strcmp(get(d, key), expected) != 0)
-        wrong("%s: %s is %s and not %s\n", d->name, key, expected, get(d, key));
+        wrong("%s: %s is %s and not %s\n", d->name, key, get(d, key), expected);
+}
+
+/* Demands that each key was asked for, or begins with one of the words, after which NULL stands. */
+static void nothing_else(const document *d, const char *const *not_looked_at) {
+    for (long i = 0; i < d->count; i++) {
+        int is_known = d->asked_for[i];
+        for (const char *const *word = not_looked_at; *word && !is_known; word++)
+            is_known = strncmp(d->key[i], *word, strlen(*word)) == 0;
+        if (!is_known)
+            wrong("%s has %s, which does not belong there\n", d->name, d->key[i]);
+    }
 }
 
 /* h of the first row in m^2/s^2: v^2/2 + g z - rate^2/2 (x^2 + axis^2), axis = R - y sin + z cos. Without rotation it is a
    decimal, and may be printed from exactly half a unit away, which no ball can tell: a millionth of a unit is allowed more. */
 static void check_invariant(void) {
-    static table t = {.name = "manifest.json", .decimals = "decimals.invariant"};
+    static table t = {.name = "manifest.json", .rows = 1, .columns = 1};
     static arb_struct x[6], axis[2];
     static arb_t sum;
     static fmpq_t value;
     slong p = bits + 64;
-    char *name = "h", *printed = (char *)get(manifest, "invariant.h_m2_s2");
+    const char *name = "h", *printed = get(manifest, "invariant.h_m2_s2");
     for (int i = 0; i < 6; i++) {
-        decimal(value, cell(grid, 0, i + 1));
+        printed_value(value, "grid.csv", cell(grid, 0, i + 1));
         arb_set_fmpq(x + i, value, p);
     }
     arb_set(axis, x);
@@ -1181,95 +1572,157 @@ static void check_invariant(void) {
     arb_dot(sum, sum, 1, axis, 1, axis, 1, 2, p);
     arb_mul_2exp_si(sum, sum, -1);
     arb_addmul(sum, gravity, x + 2, p);
-    t.head = &name;
+    t.heads = &name;
     t.cells = &printed;
+    fmpq_zero(t.bound);
     fmpq_set_si(most_off, 500001, 1000000);
     prove(&t, 0, 0, sum, "1");
 }
 
 /* The digits of columns, and the largest of their bounds. */
 static void check_columns(const table *t, long first, long last, const char *key) {
-    long digits = atol(get(manifest, "digits"));
-    double largest = 0;
+    static fmpq_t largest, said;
+    long digits = whole("digits", get(manifest, "digits"), MOST_DIGITS);
+    fmpq_zero(largest);
     for (long col = first; col <= last; col++) {
-        largest = fmax(largest, t->bound[col]);
+        if (fmpq_cmp(largest, t->bound + col) < 0)
+            fmpq_set(largest, t->bound + col);
         if (t->digits[col] > 0 && t->digits[col] != digits && t->digits[col] != digits + 1)
-            wrong("%s: %s has %ld significant digits, not %ld\n", t->name, t->head[col], t->digits[col], digits);
+            wrong("%s: %s has %ld significant digits, not %ld\n", t->name, head(t, col), t->digits[col], digits);
     }
-    if (strtod(get(manifest, key), NULL) != largest)
+    decimal(said, get(manifest, key));
+    if (!fmpq_equal(said, largest))
         wrong("manifest.json: %s is not the largest bound of its columns\n", key);
+}
+
+static const char *const units[][2] = {{"t", "s"},   {"x", "m"},    {"y", "m"},    {"z", "m"},
+                                       {"vx", "m/s"}, {"vy", "m/s"}, {"vz", "m/s"}, {"ax", "m/s^2"}};
+
+/* In which units, axes, level and format the numbers are meant. */
+static void check_meaning(void) {
+    const char *kind = get(manifest, "scene.site.gravity_is");
+    const char *up_is = strcmp(kind, "effective") == 0 ? "z up along the plumb line" : "z up";
+    same(manifest, "frame", text("topocentric, axes x east, y north, %s, origin at the suspension, z < 0 below it", up_is));
+    same(manifest, "units.t", "s");
+    same(manifest, "units.x, y, z", "m");
+    same(manifest, "units.vx, vy, vz", "m/s");
+    same(manifest, "units.ax", "m/s^2");
+    same(manifest, "units.bound", "s");
+    same(manifest, "units.angles", "degrees");
+    same(manifest, "digits", get(manifest, "scene.run.digits"));
+    same(manifest, "level", get(manifest, "scene.run.level"));
+}
+
+/* Of a table without rows the manifest may have the decimals, which no number has to keep. */
+static void ask_for_decimals(const table *t) {
+    for (long col = -t->first; col < t->columns - t->first; col++)
+        maybe(manifest, text("%s.%s", t->decimals, head(t, col)));
 }
 
 static void check_manifest(void) {
     const char *word = transits == &no_transits ? "not asked for" : never ? "xdot is identically zero" : "complete";
     long intervals = transits == &no_transits ? 0 : forms[0].intervals;
+    check_meaning();
     same(manifest, "transits", intervals ? "undecided intervals" : word);
     same(manifest, "counts.grid", text("%ld", grid->rows));
     same(manifest, "counts.transits", text("%ld", transits->rows));
     same(manifest, "counts.possible", text("%ld", intervals));
-    same(manifest, "digits", get(manifest, "scene.run.digits"));
     check_columns(grid, 1, 3, "bounds.position_m");
     check_columns(grid, 4, 6, "bounds.velocity_m_s");
     if (sections && sections->rows)
         check_columns(sections, 1, 1, "sections.bounds.t");
-    if (transits->rows == 0)
-        return;
-    check_columns(transits, 1, 1, "bounds.transit_s");
-    check_columns(transits, 1, 1, "bounds.transits.t");
-    check_columns(transits, 7, 7, "bounds.transits.ax");
+    if (transits->rows) {
+        check_columns(transits, 1, 1, "bounds.transit_s");
+        check_columns(transits, 1, 1, "bounds.transits.t");
+        check_columns(transits, 7, 7, "bounds.transits.ax");
+    } else {
+        same(manifest, "bounds.transit_s", "null");
+        ask_for_decimals(transits);
+    }
+    if (sections && sections->rows == 0)
+        ask_for_decimals(sections);
 }
 
-/* The states or transits in vectors.json: each repeats a row of a table. */
-static void check_vectors(const document *d, const table *t, const char *list, const char *number) {
-    const char *k;
-    for (long i = 0; (k = maybe(d, text("%s.%ld.%s", list, i, number))); i++) {
-        long row = atol(k) - 1;
-        if (row < 0 || row >= t->rows)
-            wrong("vectors.json: %s.%ld is none of %s\n", list, i, t->name);
+/* The number of one vector, which repeats that of a table. */
+static void check_vector_number(document *d, const char *place, const table *t, long row, long col) {
+    const char *name = head(t, col);
+    double expected = strtod(cell(t, row, col), NULL);
+    if (t->doubles)
+        expected = hexfloat(t->doubles->name, cell(t->doubles, row, column_of(t->doubles, text("%s_hex", name))));
+    same(d, text("%s.values.%s.decimal", place, name), cell(t, row, col));
+    same(d, text("%s.values.%s.bound", place, name), bound_for(t, row, col));
+    if (hexfloat(d->name, get(d, text("%s.values.%s.hexfloat", place, name))) != expected)
+        wrong("vectors.json: the hexfloat of %s, %s is wrong\n", place, name);
+}
+
+/* The states or transits in vectors.json: each repeats a row of a table, whose number it has. Flags are words. */
+static void check_list(document *d, const table *t, const char *list, const char *number) {
+    for (long i = 0; maybe(d, text("%s.%ld.%s", list, i, number)); i++) {
+        const char *place = lasting(text("%s.%ld", list, i));
+        const char *key = lasting(text("%s.%s", place, number));
+        long row = whole(key, get(d, key), t->rows) - 1;
         if (t == transits)
-            same(d, text("%s.%ld.direction", list, i), text("%d", atoi(cell(t, row, 2))));
-        for (long col = 0; col < t->columns; col++) {
-            if (!maybe(manifest, text("%s.%s", t->decimals, t->head[col])))
-                continue;
-            const char *place = text("%s.%ld.values.%s", list, i, t->head[col]);
-            same(d, text("%s.decimal", place), cell(t, row, col));
-            same(d, text("%s.bound", place), bound_for(t, row, col));
-            if (strtod(get(d, text("%s.hexfloat", place)), NULL) != strtod(cell(t->doubles ? t->doubles : t, row, col), NULL))
-                wrong("vectors.json: the hexfloat of %s is wrong\n", place);
-        }
+            same(d, text("%s.direction", place), *cell(t, row, 2) == '+' ? "1" : "-1");
+        for (long col = 0; col < t->columns; col++)
+            if (place_of(manifest, text("%s.%s", t->decimals, head(t, col))) >= 0)
+                check_vector_number(d, place, t, row, col);
+        for (long flag = 0; maybe(d, text("%s.flags.%ld", place, flag)); flag++)
+            continue;
     }
+}
+
+/* vectors.json: what it repeats of the manifest, and of the tables. */
+static void check_vectors(document *d) {
+    static const char *const repeated[] = {"schema_version", "id", "level", "digits", "inputs", "frame", NULL};
+    static const char *const not_looked_at[] = {"notes.", NULL};
+    for (const char *const *key = repeated; *key; key++)
+        same(d, *key, get(manifest, *key));
+    for (long i = 0; i < manifest->count; i++)
+        if (strncmp(manifest->key[i], "scene.", 6) == 0)
+            same(d, manifest->key[i], manifest->value[i]);
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        same(d, text("columns.%s", units[i][0]), units[i][1]);
+    check_list(d, grid, "states", "row");
+    check_list(d, transits, "transits", "k");
+    nothing_else(d, not_looked_at);
 }
 
 /* Demands a text in certified.txt, after the last one that was found. */
 static void expect(const char *part) {
-    static char *at;
+    static const char *at;
     if (at == NULL)
         at = contents("certified.txt");
     at = at ? strstr(at, part) : NULL;
     if (at == NULL)
         wrong("certified.txt has not, or not in this place: %s\n", part);
-    at += strlen(part) - 1;
+    at += strlen(part) - 1;                       /* a line's end may begin the next text */
 }
 
-/* The numbers on the page for people. */
-static void check_page(void) {
-    long rows = transits->rows, last = grid->rows - 1;
+/* The first state and the last on the page for people. */
+static void expect_states(void) {
+    long last = grid->rows - 1;
     int width = 0;
-    expect(text("%s. ", get(manifest, "level")));
-    for (long i = 0; i < manifest->count; i++)
-        if (strncmp(manifest->key[i], "scene.", 6) == 0)
-            expect(text("  %-26s %s\n", strchr(manifest->key[i], '.') + 1, manifest->value[i]));
     for (int i = 1; i < 7; i++)
         width = fmax(width, fmax(strlen(cell(grid, 0, i)), strlen(cell(grid, last, i))));
     for (long row = 0; row <= last; row += last) {
         expect(text("at t = %s s\n", cell(grid, row, 0)));
         for (int i = 1; i < 7; i++)
-            expect(text("\n  %-3s %*s\n", grid->head[i], width, cell(grid, row, i)));
+            expect(text("\n  %-3s %*s\n", head(grid, i), width, cell(grid, row, i)));
     }
+}
+
+/* The numbers on the page for people. */
+static void check_page(void) {
+    long rows = transits->rows;
+    expect(text("%s. ", get(manifest, "level")));
+    for (long i = 0; i < manifest->count; i++)
+        if (strncmp(manifest->key[i], "scene.", 6) == 0)
+            expect(text("  %-26s %s\n", manifest->key[i] + 6, manifest->value[i]));
+    expect_states();
     expect(text("position %s m, on every velocity %s m/s\n", get(manifest, "bounds.position_m"),
                 get(manifest, "bounds.velocity_m_s")));
     for (int i = 1; i < 7; i++)
-        expect(text(" %s %s%s", grid->head[i], bound_for(grid, 0, i), i < 6 ? "," : "\n"));
+        expect(text(" %s %s%s", head(grid, i), bound_for(grid, 0, i), i < 6 ? "," : "\n"));
     expect(text("Transits (xdot = 0, t > 0): %ld (%s)\n", rows, get(manifest, "transits")));
     for (long row = 0; row < rows; row += rows > 1 ? rows - 1 : 1)
         expect(text("t = %s s, direction %s, bound %s s\n", cell(transits, row, 1), cell(transits, row, 2),
@@ -1284,7 +1737,103 @@ static void check_page(void) {
             expect(text("Passages in sections.csv: %ld of %s\n", forms[i].rows, forms[i].word));
 }
 
+/* ------------------------------------------------------------------------------------------------------ the question */
+
+/* Whether a key has one of two values. */
+static int chooses(const char *key, const char *first, const char *second) {
+    const char *given = get(manifest, key);
+    if (strcmp(given, first) != 0 && strcmp(given, second) != 0)
+        no_dataset("%s must be %s or %s\n", key, first, second);
+    return strcmp(given, first) == 0;
+}
+
+static void must_not_be_there(const char *name) {
+    if (contents(name))
+        wrong("%s is there, and the scene does not ask for it\n", name);
+}
+
+static void read_transits(void) {
+    if (chooses("scene.run.transits", "true", "false")) {
+        transits = read_tables("transits", "k,t,direction,x,y,z,vy,ax,bound", "t_hex,x_hex,y_hex,z_hex,vy_hex,ax_hex");
+        add_form("xdot", "possible", transits, 0, transits->rows);
+        return;
+    }
+    must_not_be_there("transits.csv");
+    must_not_be_there("transits.binary64.csv");
+}
+
+static void read_sections(void) {
+    const char *words = maybe(manifest, "scene.run.sections");
+    if (words == NULL) {
+        must_not_be_there("sections.csv");
+        return;
+    }
+    sections = read_table("sections.csv", "section,k,t,direction,x,y,z,vx,vy,vz,bound");
+    if (sections == NULL)
+        no_dataset("no sections.csv\n");
+    sections->decimals = "sections.decimals";
+    sections->bounds = "sections.bounds";
+    sections->first = 1;                          /* so that columns count as in transits.csv */
+    add_sections(words);
+}
+
+/* Reads all but the vectors and the page. */
+static void read_dataset(void) {
+    if (strcmp(get(manifest, "schema_version"), "3") != 0)
+        no_dataset("schema_version is %s: this program reads format 3\n", get(manifest, "schema_version"));
+    as_doubles = chooses("inputs", "binary64", "decimal");
+    input_from(end, "run.t_end", 0, 1);
+    input_from(grid_step, "run.grid_step", 0, 1);
+    fmpq_zero(half);
+    grid = read_tables("grid", "t,x,y,z,vx,vy,vz", "t_hex,x_hex,y_hex,z_hex,vx_hex,vy_hex,vz_hex");
+    count_rows();
+    read_transits();
+    read_sections();
+}
+
+/* Half a unit of the last digit at the level `enclosed`, a unit at those below. */
+static void read_level(void) {
+    static const char *const below[] = {"computed", "self_consistent", "confirmed", NULL};
+    const char *level = get(manifest, "level");
+    int is_known = strcmp(level, "enclosed") == 0;
+    fmpq_set_si(most_off, 1, is_known ? 2 : 1);
+    for (const char *const *word = below; *word; word++)
+        is_known = is_known || strcmp(level, *word) == 0;
+    if (!is_known)
+        no_dataset("level is %s\n", level);
+}
+
+/* Bits that should do: for the rounding of all numbers, for the growth of errors, and for the digits. */
+static slong guessed_bits(void) {
+    double numbers = 6.0 * (grid->rows + transits->rows + (sections ? sections->rows : 0));
+    double pull = strtod(get(manifest, "scene.site.gravity"), NULL) / strtod(get(manifest, "scene.pendulum.length"), NULL);
+    double swings = fmpq_get_d(end) * sqrt(pull);
+    long digits = whole("digits", get(manifest, "digits"), MOST_DIGITS);
+    double most = fmin(MOST_BITS + 1, 16 + ilogb(numbers) + 2 * fmax(15, ilogb(swings + 1)));
+    return most + 10 * digits / 3;
+}
+
 /* ---------------------------------------------------------------------------------------------------------------- run */
+
+static void begin_again(table *t) {
+    t->widest = 0;
+    for (int i = 0; i < COLUMNS; i++) {
+        t->digits[i] = 0;
+        fmpq_zero(t->bound + i);
+    }
+}
+
+static void begin_all_again(void) {
+    begin_again(grid);
+    begin_again(transits);
+    if (sections)
+        begin_again(sections);
+    for (form *f = forms; f < forms + count_of_forms; f++) {
+        f->next = 0;
+        f->sign = 0;
+        fmpq_zero(f->clear_from);
+    }
+}
 
 /* From the release to the end of the run. Returns the number of steps. */
 static long run(void) {
@@ -1313,60 +1862,7 @@ static long run(void) {
     return steps;
 }
 
-int main(int count, char **words) {
-    folder = count == 2 ? words[1] : "";
-    manifest = read_document("manifest.json");
-    if (count != 2 || manifest == NULL)
-        no_dataset("usage: check FOLDER, with manifest.json in it\n");
-    document *vectors = read_document("vectors.json");
-    as_doubles = strcmp(get(manifest, "inputs"), "binary64") == 0;
-    if (!as_doubles && strcmp(get(manifest, "inputs"), "decimal") != 0)
-        no_dataset("inputs must be decimal or binary64\n");
-    input(end, "run.t_end");
-    input(grid_step, "run.grid_step");
-    fmpq_zero(half);
-    grid = read_tables("grid", "t,x,y,z,vx,vy,vz", "t_hex,x_hex,y_hex,z_hex,vx_hex,vy_hex,vz_hex");
-    count_rows();
-    if (strcmp(get(manifest, "scene.run.transits"), "true") == 0) {
-        transits = read_tables("transits", "k,t,direction,x,y,z,vy,ax,bound", "t_hex,x_hex,y_hex,z_hex,vy_hex,ax_hex");
-        add_form("xdot", "possible", transits, 0, transits->rows);
-    }
-    if (maybe(manifest, "scene.run.sections")) {
-        sections = read_table("sections.csv", "section,k,t,direction,x,y,z,vx,vy,vz,bound");
-        if (sections == NULL)
-            no_dataset("no sections.csv\n");
-        sections->decimals = "sections.decimals";
-        sections->bounds = "sections.bounds";
-        sections->head++;                         /* so that columns count as in transits.csv, and the word is column -1 */
-        sections->cells++;
-        add_sections(get(manifest, "scene.run.sections"));
-    }
-    arb_mat_init(frame, 6, 6);
-    arb_mat_init(at_end, 6, 6);
-    arb_mat_init(inverse, 6, 6);
-    double numbers = 6.0 * (grid->rows + transits->rows + (sections ? sections->rows : 0));
-    double swings = fmpq_get_d(end) * sqrt(strtod(get(manifest, "scene.site.gravity"), NULL) /
-                                           strtod(get(manifest, "scene.pendulum.length"), NULL));
-    bits = 16 + ilogb(numbers) + 2 * fmax(15, ilogb(swings + 1)) + 10 * labs(atol(get(manifest, "digits"))) / 3;    /* a guess */
-    if (setjmp(with_more_bits))
-        bits = bits * 7 / 5;
-    if (bits > MOST_BITS)
-        wrong("not proved with %d bits: %s\n", MOST_BITS, doubt);
-    highest = bits * 9 / 20 + 8;
-    fmpq_set_si(most_off, 1, strcmp(get(manifest, "level"), "enclosed") == 0 ? 2 : 1);
-    for (form *f = forms; f < forms + count_of_forms; f++) {
-        f->next = f->sign = 0;
-        fmpq_zero(f->clear_from);
-    }
-    grid->widest = transits->widest = 0;
-    long steps = run();
-    check_manifest();
-    check_invariant();
-    check_page();
-    if (vectors) {
-        check_vectors(vectors, grid, "states", "row");
-        check_vectors(vectors, transits, "transits", "k");
-    }
+static void report(long steps, int has_vectors) {
     printf("%s: %s, inputs %s, %ld steps of order %ld with %ld bits\n", folder, get(manifest, "level"), get(manifest, "inputs"),
            steps, (long)highest, (long)bits);
     printf("  grid.csv      %6ld rows, widest distance %.6f units of the last digit\n", grid->rows, grid->widest);
@@ -1375,6 +1871,43 @@ int main(int count, char **words) {
                get(manifest, "transits"));
     if (sections)
         printf("  sections.csv  %6ld rows, widest distance %.6f\n", sections->rows, sections->widest);
-    printf("  the doubles, vectors.json, certified.txt and the numbers of manifest.json agree\nevery printed number is proved\n");
+    printf("  %s%scertified.txt and the numbers of manifest.json agree\n",
+           grid->doubles || transits->doubles ? "the doubles, " : "", has_vectors ? "vectors.json, " : "");
+    printf("every printed number is proved\n");
+}
+
+int main(int count, char **words) {
+    static const char *const not_looked_at[] = {"seal", "id", "title", "source", "flags.", "notes.", "invariant.drift_m2_s2",
+                                                "equations.", "run.", "cross_checks.", "enclosure", "generator.", "command",
+                                                "files.", NULL};
+    if (count != 2)
+        no_dataset("usage: check FOLDER, with manifest.json in it\n");
+    folder = words[1];
+    manifest = read_document("manifest.json");
+    if (manifest == NULL)
+        no_dataset("usage: check FOLDER, with manifest.json in it\n");
+    document *vectors = read_document("vectors.json");
+    read_dataset();
+    arb_mat_init(frame, 6, 6);
+    arb_mat_init(at_end, 6, 6);
+    arb_mat_init(inverse, 6, 6);
+    bits = guessed_bits();
+    if (setjmp(with_more_bits))
+        bits = bits * 7 / 5;
+    if (bits > MOST_BITS)
+        wrong("not proved with %d bits: %s\n", MOST_BITS, doubt);
+    highest = bits * 9 / 20 + 8;
+    read_level();
+    begin_all_again();
+    long steps = run();
+    check_repeated(grid);
+    check_repeated(transits);
+    check_manifest();
+    check_invariant();
+    check_page();
+    if (vectors)
+        check_vectors(vectors);
+    nothing_else(manifest, not_looked_at);
+    report(steps, vectors != NULL);
     return 0;
 }
