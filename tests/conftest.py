@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from checker import check
+from checker import check, sanitized_check
 from hypothesis import settings
 from small_scenes import make_scene
 
@@ -34,7 +34,7 @@ gc.set_threshold(SELDOM)
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-__all__ = ["check", "make_scene"]
+__all__ = ["check", "make_scene", "sanitized_check"]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

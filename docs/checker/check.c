@@ -148,13 +148,15 @@ static const char *lasting(const char *from) {
 
 /* ----------------------------------------------------------------------------------------------------------- a cursor */
 
-/* A place in a text. All files and numbers are read by the six functions below, and none of them passes the end. */
+#define FIGURES "0123456789"
+
+/* A place in a text. All files and numbers are read by the functions below, and none of them passes the end. */
 typedef struct {
-    const char *name, *at, *end;
+    const char *name, *begin, *at, *end;
 } cursor;
 
 static cursor reading(const char *name, const char *all) {
-    return (cursor){.name = name, .at = all, .end = all + strlen(all)};
+    return (cursor){.name = name, .begin = all, .at = all, .end = all + strlen(all)};
 }
 
 static int at_end_of(const cursor *c) {
@@ -183,6 +185,14 @@ static long pass_all(cursor *c, const char *set) {
     return c->at - from;
 }
 
+/* Goes past a sign, if there is one. Returns whether it is a minus. */
+static int pass_sign(cursor *c) {
+    int minus = pass(c, "-");
+    if (!minus)
+        pass(c, "+");
+    return minus;
+}
+
 /* Goes to the next character that is in `set`, or to the end. Returns what is before it. */
 static char *take(cursor *c, const char *set) {
     const char *from = c->at;
@@ -192,9 +202,14 @@ static char *take(cursor *c, const char *set) {
 }
 
 static void demand(cursor *c, const char *mark) {
-    if (!pass(c, mark))
-        no_dataset("%s: %s should be here: %.*s\n", c->name, *mark == '\n' ? "the end of the line" : mark,
-                   (int)fmin(40, c->end - c->at), c->at);
+    if (pass(c, mark))
+        return;
+    long line = 1;
+    for (const char *before = c->begin; before < c->at; before++)
+        line += *before == '\n';
+    const char *wanted = *mark == '\n' ? "the end of the line" : mark;
+    const char *instead = text("%.40s", take(c, "\n"));
+    no_dataset("%s, line %ld: %s should be here, not \"%s\"\n", c->name, line, wanted, instead);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- files */
@@ -294,6 +309,18 @@ static void read_items(document *d, const char *key, cursor *c, int depth, int h
     }
 }
 
+/* A number, true, false or null. */
+static char *bare(cursor *c) {
+    char *value = take(c, ", \n]}");
+    int is_word = strcmp(value, "true") == 0 || strcmp(value, "false") == 0 || strcmp(value, "null") == 0;
+    cursor inside = reading(c->name, value);
+    pass_sign(&inside);
+    int is_number = pass_all(&inside, FIGURES ".eE+-") > 0 && at_end_of(&inside);
+    if (!is_word && !is_number)
+        no_dataset("%s: \"%.60s\" is no value\n", c->name, value);
+    return value;
+}
+
 /* Reads the value of a key, at whose begin the cursor is. */
 static void read_value(document *d, const char *key, cursor *c, int depth) {
     if (pass(c, "{"))
@@ -301,7 +328,7 @@ static void read_value(document *d, const char *key, cursor *c, int depth) {
     else if (pass(c, "["))
         read_items(d, key, c, depth, 0, "]");
     else
-        add_pair(d, key, sees(c, "\"") ? quoted(c) : take(c, ", \n]}"));
+        add_pair(d, key, sees(c, "\"") ? quoted(c) : bare(c));
 }
 
 /* Reads JSON without escapes; NULL where there is no such file. */
@@ -408,8 +435,6 @@ static table *read_tables(const char *kind, const char *header, const char *more
 
 /* ----------------------------------------------------------------------------------------------------- exact numbers */
 
-#define FIGURES "0123456789"
-
 static fmpz_t ten_to;
 
 static void power_of_ten(long n) {
@@ -426,14 +451,6 @@ static long whole(const char *name, const char *printed, long most) {
     if (value < 0 || value > most)
         no_dataset("%s is %s, and not a whole number from 0 to %ld\n", name, printed, most);
     return value;
-}
-
-/* Goes past a sign, if there is one. Returns whether it is a minus. */
-static int pass_sign(cursor *c) {
-    int minus = pass(c, "-");
-    if (!minus)
-        pass(c, "+");
-    return minus;
 }
 
 /* Goes past an exponent after e or E, if there is one. Returns it, or MOST_PLACES where it is too large, or no number. */
@@ -1536,7 +1553,7 @@ static void check_zeros_of_step(form *f) {
 
 static void same(document *d, const char *key, const char *expected) {
     if (strcmp(get(d, key), expected) != 0)
-        wrong("%s: %s is %s and not %s\n", d->name, key, get(d, key), expected);
+        wrong("%s: %s is %s, and should be %s\n", d->name, key, get(d, key), expected);
 }
 
 /* Demands that each key was asked for, or begins with one of the words, after which NULL stands. */
@@ -1777,7 +1794,7 @@ static void read_sections(void) {
     add_sections(words);
 }
 
-/* Reads all but the vectors and the page. */
+/* Reads all but the vectors and the page. The scene is read again for each number of bits. */
 static void read_dataset(void) {
     if (strcmp(get(manifest, "schema_version"), "3") != 0)
         no_dataset("schema_version is %s: this program reads format 3\n", get(manifest, "schema_version"));
@@ -1787,6 +1804,9 @@ static void read_dataset(void) {
     fmpq_zero(half);
     grid = read_tables("grid", "t,x,y,z,vx,vy,vz", "t_hex,x_hex,y_hex,z_hex,vx_hex,vy_hex,vz_hex");
     count_rows();
+    bits = COLUMN_BITS;
+    read_site();
+    read_release();
     read_transits();
     read_sections();
 }
