@@ -301,6 +301,9 @@ MEANING = [
     Case("axes", value("frame", to="topocentric, axes x west"), 1, "frame is topocentric, axes x west"),
     Case("axes of the vectors", replaced("vectors.json", "x east", "x west"), 1, "vectors.json: frame"),
     Case("units of the vectors", replaced("vectors.json", '"vx": "m/s"', '"vx": "km/h"'), 1, "columns.vx"),
+    Case("another reading on the page", replaced("certified.txt", "as: decimal", "as: binary64"), 1, "Inputs are read"),
+    Case("a bound twice on the page", replaced("certified.txt", "vx 5.1", "vx 6.1e-33, vx 5.1"), 1, "by column"),
+    Case("a second number in a line", replaced("certified.txt", "by column: ", "by column: x 1, "), 1, "by column"),
     Case("the scene of the vectors", replaced("vectors.json", X, '"x": "0.2"'), 1, "scene.release.x"),
 ]
 

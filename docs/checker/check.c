@@ -1425,47 +1425,72 @@ static int sign_at(const form *f, const arf_t s, slong p) {
     return arb_sgn_nonzero(x);
 }
 
-/* Proves that F has its sign on [a, b], but for F = 0 at the release itself: as all its values there have it; or as it has
-   the sign at both ends and is monotone; at the release, as it is 0 there and its first derivative that is not has it.
-   Where zeros of one direction count, F may also go the other way on all of [a, b], or begin at 0 and be monotone. */
-static void keeps_sign(form *f, const arf_t a, const arf_t b, int depth) {
+/* Signs of F, F' and F'' that are proved on all of [a, b]; 0 where none is. */
+static void signs_on(int *signs, const form *f, const arf_t a, const arf_t b) {
     static arb_t s, x;
-    static arf_t middles[MOST_DEPTH + 1];
-    arf_struct *middle = middles[depth];
-    int slope[3], one_way = f->one_way, sign;
-    arf_add(middle, a, b, bits, ARF_RND_NEAR);
-    arf_mul_2exp_si(middle, middle, -1);
-    double time = fmpq_get_d(step_begin) + h * arf_get_d(middle, ARF_RND_NEAR);
-    int found = one_way ? 0 : sign_at(f, middle, bits / 2);
-    if (f->sign == 0)
-        f->sign = found;
-    sign = f->sign;
     arb_set_interval_arf(s, a, b, bits);
     motion(here, s, bits / 2);
     for (int k = 0; k < 3; k++) {
         value(x, f, k, here, bits / 2);
-        slope[k] = arb_sgn_nonzero(x);
+        signs[k] = arb_sgn_nonzero(x);
     }
-    int is_release = fmpq_is_zero(step_begin) && arf_is_zero(a) && f->from_zero, bend = slope[1];
-    int done = slope[0] == sign || (is_release && (bend == sign || (f->from_double_zero && slope[2] == sign)));
-    done = done && sign != 0;
-    if (!done && sign != 0 && found != -sign && bend != 0) {
-        int left = sign_at(f, a, bits), right = sign_at(f, b, bits);
-        done = left == sign && right == sign;
-        found = left == -sign || right == -sign ? -sign : found;
+}
+
+/* Whether F is 0 at a, because that is the release. */
+static int begins_at_zero(const form *f, const arf_t a) {
+    return fmpq_is_zero(step_begin) && arf_is_zero(a) && f->from_zero;
+}
+
+/* Whether F is proved to have its sign on [a, b], but for F = 0 at the release itself: as all its values there have it; or as
+   it has the sign at both ends and is monotone; at the release, as it is 0 there and its first derivative that is not has
+   it. The first sign that is found is F's, where no row says it yet. */
+static int has_its_sign(form *f, const int *signs, const arf_t a, const arf_t b, const arf_t middle, double time) {
+    int found = sign_at(f, middle, bits / 2);
+    if (f->sign == 0)
+        f->sign = found;
+    int sign = f->sign;
+    if (sign == 0)
+        return 0;
+    int is_bent_away = signs[1] == sign || (f->from_double_zero && signs[2] == sign);
+    int is_proved = signs[0] == sign || (begins_at_zero(f, a) && is_bent_away);
+    if (!is_proved && found != -sign && signs[1] != 0) {
+        int left = sign_at(f, a, bits);
+        int right = sign_at(f, b, bits);
+        is_proved = left == sign && right == sign;
+        if (left == -sign || right == -sign)
+            found = -sign;
     }
-    if (found == -sign && found != 0)
+    if (found == -sign)
         wrong("%s: %s has the sign %+d at t = %.17g: a zero beside it is missing or wrong\n", f->t->name, f->word, found, time);
-    if (one_way)
-        done = slope[0] != 0 || bend == -one_way || (is_release && bend != 0);
-    if (one_way && !done && bend == one_way && sign_at(f, a, bits) == -one_way && sign_at(f, b, bits) == one_way)
+    return is_proved;
+}
+
+/* Whether F, of which zeros of one direction count, is proved to have none on [a, b]: it is not 0 there, or goes the other
+   way on all of it, or begins at 0 and is monotone. */
+static int has_no_passage(const form *f, const int *signs, const arf_t a, const arf_t b, double time) {
+    int one_way = f->one_way;
+    if (signs[0] != 0 || signs[1] == -one_way || (begins_at_zero(f, a) && signs[1] != 0))
+        return 1;
+    if (signs[1] == one_way && sign_at(f, a, bits) == -one_way && sign_at(f, b, bits) == one_way)
         wrong("%s: %s has a zero near t = %.17g that is not printed\n", f->t->name, f->word, time);
-    if (!done && depth == MOST_DEPTH)
+    return 0;
+}
+
+/* Proves that F has no zero that counts on [a, b]: as a whole, or on its halves. */
+static void keeps_sign(form *f, const arf_t a, const arf_t b, int depth) {
+    static arf_t middles[MOST_DEPTH + 1];
+    arf_struct *middle = middles[depth];
+    int signs[3];
+    arf_add(middle, a, b, bits, ARF_RND_NEAR);
+    arf_mul_2exp_si(middle, middle, -1);
+    double time = fmpq_get_d(step_begin) + h * arf_get_d(middle, ARF_RND_NEAR);
+    signs_on(signs, f, a, b);
+    if (f->one_way ? has_no_passage(f, signs, a, b, time) : has_its_sign(f, signs, a, b, middle, time))
+        return;
+    if (depth == MOST_DEPTH)
         undecided("%s: a zero of %s near t = %.17g cannot be excluded", f->t->name, f->word, time);
-    if (!done) {
-        keeps_sign(f, a, middle, depth + 1);
-        keeps_sign(f, middle, b, depth + 1);
-    }
+    keeps_sign(f, a, middle, depth + 1);
+    keeps_sign(f, middle, b, depth + 1);
 }
 
 /* Proves that F has no zero that counts between two times of the step. */
@@ -1483,49 +1508,71 @@ static void no_zero(form *f, const fmpq_t from, const fmpq_t to) {
     keeps_sign(f, a, b, 0);
 }
 
-/* Proves that F has one zero in the interval of a printed time, and what is printed of it. */
-static void check_passage(form *f, const event *e) {
-    static arb_t t, s, first, last, n;
-    static fmpq_t time;
-    static const int printed_of_transit[] = {R, R + 1, R + 2, V + 1, R2}, of_section[] = {R, R + 1, R + 2, V, V + 1, V + 2};
-    const int *columns = f->t == transits ? printed_of_transit : of_section;
-    long row = e->row;
-    const char *word = cell(f->t, row, 2), *printed = cell(f->t, row, 1), *name = f->t->name;
+/* The direction that is printed of a zero: it must be one that counts, and other than that of the zero before. */
+static int printed_direction(const form *f, long row) {
+    const char *word = cell(f->t, row, 2);
     int direction = strcmp(word, "+1") == 0 ? 1 : -1;
-    if (f->sign == direction || f->one_way == -direction || (direction < 0 && strcmp(word, "-1") != 0))
-        wrong("%s, row %ld: the direction is wrong\n", name, row + 1);
+    if (direction < 0 && strcmp(word, "-1") != 0)
+        wrong("%s, row %ld: the direction is wrong\n", f->t->name, row + 1);
+    if (f->sign == direction || f->one_way == -direction)
+        wrong("%s, row %ld: the direction is wrong\n", f->t->name, row + 1);
+    return direction;
+}
+
+/* Proves that F has one zero in I, which is around a printed time t. Then n is N of 5. */
+static void prove_time(arb_t n, const form *f, const event *e, int direction) {
+    static arb_t t, s, first, last;
+    static fmpq_t time;
+    const char *printed = cell(f->t, e->row, 1), *name = f->t->name;
     local_exact(first, e->from);
     local_exact(last, e->to);
-    arb_union(s, first, last, bits + 64);         /* I of 5. */
+    arb_union(s, first, last, bits + 64);         /* I */
     decimal(time, printed);
     arb_set_fmpq(t, time, bits + 64);
     for (int twice = 0; twice < 2; twice++) {     /* the second time from the middle of N, over N: far narrower */
         motion(here, s, bits);
         value(n, f, 1, here, bits);
         if (arb_sgn_nonzero(n) == -direction)
-            wrong("%s, row %ld: the direction is wrong, or there is no zero\n", name, row + 1);
+            wrong("%s, row %ld: the direction is wrong, or there is no zero\n", name, e->row + 1);
         if (arb_sgn_nonzero(n) == 0)
-            undecided("%s, row %ld: %s may have no single zero at t = %s", name, row + 1, f->word, printed);
+            undecided("%s, row %ld: %s may have no single zero at t = %s", name, e->row + 1, f->word, printed);
         local(s, t);
         motion(here, s, bits);
         value(s, f, 0, here, bits);
         arb_div(n, s, n, bits);
-        arb_sub(n, t, n, bits + 64);              /* N of 5. */
-        prove(f->t, row, 1, n, bound_for(f->t, row, 1));
+        arb_sub(n, t, n, bits + 64);              /* N */
+        prove(f->t, e->row, 1, n, bound_for(f->t, e->row, 1));
         local(s, n);
         if (!arb_gt(s, first) || !arb_lt(s, last))
-            undecided("%s, row %ld: t = %s is at the edge of its last digit", name, row + 1, printed);
+            undecided("%s, row %ld: t = %s is at the edge of its last digit", name, e->row + 1, printed);
         arb_get_mid_arb(t, n);
     }
-    arb_set_fmpq(t, end, bits + 64);
-    if (arb_gt(n, t))
-        wrong("%s, row %ld: t = %s is after the end of the run\n", name, row + 1, printed);
-    if (!arb_is_positive(n) || !arb_le(n, t))
-        undecided("%s, row %ld: t = %s is at the edge of the run", name, row + 1, printed);
+}
+
+/* Demands that a zero is after the release, and not after the end of the run. */
+static void check_within_run(const form *f, long row, const arb_t time) {
+    static arb_t last;
+    const char *printed = cell(f->t, row, 1);
+    arb_set_fmpq(last, end, bits + 64);
+    if (arb_gt(time, last))
+        wrong("%s, row %ld: t = %s is after the end of the run\n", f->t->name, row + 1, printed);
+    if (!arb_is_positive(time) || !arb_le(time, last))
+        undecided("%s, row %ld: t = %s is at the edge of the run", f->t->name, row + 1, printed);
+}
+
+/* Proves that F has one zero in the interval of a printed time, and what is printed of it. */
+static void check_passage(form *f, const event *e) {
+    static arb_t time, s, x;
+    static const int of_transit[] = {R, R + 1, R + 2, V + 1, R2}, of_section[] = {R, R + 1, R + 2, V, V + 1, V + 2};
+    int is_transit = f->t == transits;
+    int direction = printed_direction(f, e->row);
+    prove_time(time, f, e, direction);
+    check_within_run(f, e->row, time);
+    local(s, time);
     motion(here, s, bits);
-    for (int i = 0; i < (f->t == transits ? 5 : 6); i++) {
-        arb_mul(t, here + columns[i], length, bits + 64);
-        prove(f->t, row, 3 + i, t, bound_for(f->t, row, 3 + i));
+    for (int i = 0; i < (is_transit ? 5 : 6); i++) {
+        arb_mul(x, here + (is_transit ? of_transit[i] : of_section[i]), length, bits + 64);
+        prove(f->t, e->row, 3 + i, x, bound_for(f->t, e->row, 3 + i));
     }
     f->sign = f->one_way ? 0 : direction;
 }
@@ -1704,54 +1751,79 @@ static void check_vectors(document *d) {
     nothing_else(d, not_looked_at);
 }
 
-/* Demands a text in certified.txt, after the last one that was found. */
-static void expect(const char *part) {
+/* Demands a line in certified.txt, or the begin of one, after the last one that was found. */
+static void expect(const char *begin, const char *rest) {
     static const char *at;
+    const char *line = lasting(text("\n%s%s", begin, rest));
     if (at == NULL)
         at = contents("certified.txt");
-    at = at ? strstr(at, part) : NULL;
+    at = at ? strstr(at, line) : NULL;
     if (at == NULL)
-        wrong("certified.txt has not, or not in this place: %s\n", part);
-    at += strlen(part) - 1;                       /* a line's end may begin the next text */
+        wrong("certified.txt has not, or not in this place: %s%s\n", begin, rest);
+    at += strlen(line) - 1;                       /* the end of a line is the begin of the next */
 }
 
-/* The first state and the last on the page for people. */
+static void expect_line(const char *line) {
+    expect(line, "\n");
+}
+
+/* A state on the page for people. */
+static void expect_state(const char *title, long row, int width) {
+    expect_line(text("%s at t = %s s", title, cell(grid, row, 0)));
+    for (int i = 1; i < 7; i++)
+        expect_line(text("  %-3s %*s", head(grid, i), width, cell(grid, row, i)));
+}
+
 static void expect_states(void) {
     long last = grid->rows - 1;
     int width = 0;
     for (int i = 1; i < 7; i++)
         width = fmax(width, fmax(strlen(cell(grid, 0, i)), strlen(cell(grid, last, i))));
-    for (long row = 0; row <= last; row += last) {
-        expect(text("at t = %s s\n", cell(grid, row, 0)));
-        for (int i = 1; i < 7; i++)
-            expect(text("\n  %-3s %*s\n", head(grid, i), width, cell(grid, row, i)));
+    expect_state("State", 0, width);
+    expect_state(strcmp(get(manifest, "level"), "enclosed") == 0 ? "Certified state" : "State", last, width);
+}
+
+static void expect_bounds(void) {
+    const char *line = "  by column:";
+    for (int i = 1; i < 7; i++)
+        line = lasting(text("%s%s %s %s", line, i > 1 ? "," : "", head(grid, i), bound_for(grid, 0, i)));
+    expect_line(text("Bound on every position %s m, on every velocity %s m/s", get(manifest, "bounds.position_m"),
+                     get(manifest, "bounds.velocity_m_s")));
+    expect_line(line);
+}
+
+static void expect_transit(const char *which, long row) {
+    expect_line(text("  %-5s t = %s s, direction %s, bound %s s", which, cell(transits, row, 1), cell(transits, row, 2),
+                     cell(transits, row, 8)));
+}
+
+static void expect_transits(void) {
+    long rows = transits->rows;
+    expect_line(text("Transits (xdot = 0, t > 0): %ld (%s)", rows, get(manifest, "transits")));
+    if (rows > 0) {
+        expect_transit("first", 0);
+        expect_transit("last", rows - 1);
+        expect_line(text("  largest bound on a time %s s", get(manifest, "bounds.transit_s")));
     }
+    for (long i = 0; maybe(manifest, text("possible.%ld.from_s", i)); i++)
+        expect_line(text("  possible transit in [%s, %s] s (%s number of zeros): not decided",
+                         get(manifest, text("possible.%ld.from_s", i)), get(manifest, text("possible.%ld.to_s", i)),
+                         get(manifest, text("possible.%ld.parity", i))));
 }
 
 /* The numbers on the page for people. */
 static void check_page(void) {
-    long rows = transits->rows;
-    expect(text("%s. ", get(manifest, "level")));
+    expect(text("Level: %s. ", get(manifest, "level")), "");
+    expect_line(text("Inputs are read as: %s", get(manifest, "inputs")));
     for (long i = 0; i < manifest->count; i++)
         if (strncmp(manifest->key[i], "scene.", 6) == 0)
-            expect(text("  %-26s %s\n", manifest->key[i] + 6, manifest->value[i]));
+            expect_line(text("  %-26s %s", manifest->key[i] + 6, manifest->value[i]));
     expect_states();
-    expect(text("position %s m, on every velocity %s m/s\n", get(manifest, "bounds.position_m"),
-                get(manifest, "bounds.velocity_m_s")));
-    for (int i = 1; i < 7; i++)
-        expect(text(" %s %s%s", head(grid, i), bound_for(grid, 0, i), i < 6 ? "," : "\n"));
-    expect(text("Transits (xdot = 0, t > 0): %ld (%s)\n", rows, get(manifest, "transits")));
-    for (long row = 0; row < rows; row += rows > 1 ? rows - 1 : 1)
-        expect(text("t = %s s, direction %s, bound %s s\n", cell(transits, row, 1), cell(transits, row, 2),
-                    cell(transits, row, 8)));
-    if (rows > 0)
-        expect(text("  largest bound on a time %s s\n", get(manifest, "bounds.transit_s")));
-    for (long i = 0; maybe(manifest, text("possible.%ld.from_s", i)); i++)
-        expect(text("[%s, %s] s (%s number", get(manifest, text("possible.%ld.from_s", i)),
-                    get(manifest, text("possible.%ld.to_s", i)), get(manifest, text("possible.%ld.parity", i))));
+    expect_bounds();
+    expect_transits();
     for (int i = 0; i < count_of_forms; i++)
         if (forms[i].t == sections)
-            expect(text("Passages in sections.csv: %ld of %s\n", forms[i].rows, forms[i].word));
+            expect_line(text("Passages in sections.csv: %ld of %s", forms[i].rows, forms[i].word));
 }
 
 /* ------------------------------------------------------------------------------------------------------ the question */
