@@ -606,7 +606,7 @@ static long double up(const arb_t x) {
     return bound_of(m);
 }
 
-/* |a|, rounded up; no square underflows in hypotl. */
+/* |a|, by hypotl, in which no square underflows. */
 static long double size(arb_srcptr a) {
     return hypotl(hypotl(up(a), up(a + 1)), up(a + 2));
 }

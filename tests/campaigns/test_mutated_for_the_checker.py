@@ -208,8 +208,9 @@ def what_counts(file: Path) -> object:
 
 
 OF_PAGE = re.compile(
-    r"(?m)^(Level: \w+\. |Inputs are read as: .*\n|  (pendulum|site|release|run)\..*\n|.*tate at t = .*\n|  v?[xyz] +-?\d.*\n"
-    r"|Bound on .*\n|  by column: .*\n|Transits .*\n|  (first|last) +t = .*\n|  largest bound .*\n|Passages .*\n)"
+    r"(?m)^(Level: \w+\. |Inputs are read as: .*\n|  (pendulum|site|release|run)\..*\n"
+    r"|.*tate at t = .*\n|  v?[xyz] +-?\d.*\n|Bound on .*\n|  by column: .*\n"
+    r"|Transits .*\n|  (first|last) +t = .*\n|  largest bound .*\n|Passages .*\n)"
 )
 
 
