@@ -182,7 +182,9 @@ def mutate(folder: Path, draw: Draw) -> str:
         file.write_bytes((folder / other).read_bytes())
         return f"{file.name} is {other}"
     data = file.read_bytes()
-    file.write_bytes(MUTATIONS[kind](data, draw) if data else b"x")
+    if not re.search(rb"\d", data):  # little is left of it
+        data = b"1,2\n"
+    file.write_bytes(MUTATIONS[kind](data, draw))
     return f"{file.name} {MUTATIONS[kind].__name__}"
 
 

@@ -15,6 +15,7 @@ from places import ROOT
 SOURCE = ROOT / "docs/checker/check.c"
 LIBRARIES = (["-lflint-arb", "-lflint"], ["-lflint"])  # FLINT 2.9 and Arb; FLINT 3
 SANITIZERS = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+MOST_S = 300  # a run on a short dataset takes less than a second; this one hangs
 ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0"}  # it ends without giving its memory back
 
 Check = Callable[[Path], "subprocess.CompletedProcess[str]"]
@@ -29,7 +30,9 @@ def compiled(folder: Path, *options: str) -> Check:
     def check(dataset: Path) -> subprocess.CompletedProcess[str]:
         environment = os.environ | ENVIRONMENT
         command = [program, dataset]
-        return subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment, check=False)
+        return subprocess.run(
+            command, capture_output=True, text=True, errors="replace", env=environment, check=False, timeout=MOST_S
+        )
 
     for libraries in LIBRARIES:
         command = ["cc", "-O2", "-Wall", "-Wextra", *options, "-o", program, SOURCE]
