@@ -128,7 +128,10 @@ def heights(rows: Rows, length: float) -> Rows:
 
 
 def _offset_of_heights(rows: Rows, length: float) -> float:
-    """Return by how much z is too high in every row, in m; 0 if it is not, or counted from the lowest point."""
+    """Return by how much z is too high in every row, in m; 0 if it is not, or counted from the lowest point.
+
+    It is 0 as well where the rows keep a distance from the suspension: then their cord may have another length.
+    """
     x, y, z = rows.positions.T
     square = x * x + y * y
     if (square >= length * length).any():
@@ -136,7 +139,8 @@ def _offset_of_heights(rows: Rows, length: float) -> float:
     above = z + np.sqrt(length * length - square)
     offset = float(np.median(above))
     same = max(20 * rows.noise, OFF * length)
-    if np.ptp(above) > same or min(abs(offset), abs(offset - length)) <= same:
+    reach = np.sqrt(square + z * z)
+    if np.ptp(above) > same or np.ptp(reach) <= same or abs(offset - length) <= same:
         return 0.0
     return offset
 

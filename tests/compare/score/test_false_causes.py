@@ -90,6 +90,14 @@ def test_heights_from_another_point_are_told_as_that(height_m: float) -> None:
     assert found.conventions[0].size_m == pytest.approx(height_m) and found.causes == ()
 
 
+def test_another_length_of_the_cord_is_no_other_height() -> None:
+    """On a small swing both move z by the same in every row."""
+    scene = paris(120)
+    longer = scene.with_values(["pendulum.length=67.001"])
+    found = explained(scene, TIMES, right_rows(longer, TIMES))
+    assert [part.id for part in (*found.conventions, *found.causes)] == ["pendulum.length"]
+
+
 @pytest.mark.parametrize("step_s", [0.001, pytest.param(0.0005, marks=LONG)])
 def test_velocities_that_are_updated_in_turn_are_no_closed_formula(step_s: float) -> None:
     """As beginners write it: the second velocity with the first one's new value, which no named method does."""
