@@ -16,6 +16,7 @@ import numpy as np
 from reference import Scene, Solution, load, load_scene, solve, trajectory
 from reference.model.constants import Constants, constants
 from reference.numbers.precision import LONG_DOUBLE, Array, to_fraction
+from reference.scenes.shipped import golden_root
 
 from ..approximations.case import Case
 from ..observed.swing_plane import Gauge
@@ -154,8 +155,11 @@ def paris() -> Point:
 
 @cache
 def transits(column: str) -> list[Any]:
-    """Return a column of the transits of the Paris pendulum, by its golden dataset: 24 h, 40 digits, every one."""
-    return [mpf(text) for text in load("paris").transits.decimals(column)]
+    """Return a column of the transits of the Paris pendulum, by its golden dataset: 24 h, 40 digits, every one.
+
+    It is the dataset that ships: the name alone would also mean a shorter one in ./golden.
+    """
+    return [mpf(text) for text in load(golden_root() / "paris").transits.decimals(column)]
 
 
 @cache
