@@ -55,6 +55,16 @@ class InputError(FoucaultError):
         super().__init__(f"{text} {advice}".rstrip())
 
 
+class NotInstalledError(InputError):
+    """A package is missing: the field that asks for it, what needs it, and the extra that installs it."""
+
+    def __init__(self, field: str, purpose: str, package: str, extra: str, instead: str = "") -> None:
+        expected = f"the package {package}"
+        advice = f"Install it with pip install 'foucault-reference[{extra}]'{instead}."
+        super().__init__(field, "not installed", expected, advice)
+        self.args = (plain_lines(f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"),)
+
+
 @contextmanager
 def usable(field: str, path: Path, expected: str = "a folder that can be written to") -> Iterator[None]:
     """Make an InputError of what the disk refuses; `field` is the option or variable that names the path."""

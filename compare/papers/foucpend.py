@@ -45,10 +45,11 @@ from reference.model.constants import axis_distance, constants
 from reference.model.start import Start
 from reference.numbers.precision import Array, context, to_mpf
 from reference.scenes.scene import MAX_ROWS
+from reference.system.imports import needed
 
 from ..approximations.mathar import VARIABLES, derivatives, truncated
 from ..methods import METHODS
-from ..methods.method import available
+from ..methods.method import Method, available
 from ..methods.rhs.problem import FirstOrderSystem, Problem
 from .foucpend_options import METHOD_OF, Options
 
@@ -68,6 +69,8 @@ def lines(options: Options) -> Iterator[str]:
         InputError: a package that is needed is not installed, or --exact would print too many snapshots.
         IntegrationError, UnreachableError: the run failed.
     """
+    if not options.exact:
+        _check_available(METHODS[METHOD_OF[options.order]], options.order)
     mode = "--exact" if options.exact else f"-R {options.order} -a {options.bits}"
     yield f"# foucault pend {options.printed}"
     yield f"# {mode}"
@@ -85,6 +88,21 @@ def lines(options: Options) -> Iterator[str]:
         yield from _texts(snapshots[begin:])
 
 
+def _check_available(method: Method, order: str) -> None:
+    """Refuse a method that cannot run here.
+
+    Raises:
+        InputError: a package is missing, or may not compile.
+    """
+    word = f"the method {method.id} (-R {order})"
+    for module in method.requires:
+        instead = ", or print the same lines from the reference: --exact"
+        needed(module, str(method.extra), "foucault pend", word, instead)
+    obstacle = available(method)
+    if obstacle is not None:
+        raise InputError("foucault pend", obstacle, f"{word}, ready to run")
+
+
 def _texts(rows: Array) -> Iterator[str]:
     for row in rows.tolist():
         yield _SNAPSHOT % tuple(row)
@@ -93,9 +111,6 @@ def _texts(rows: Array) -> Iterator[str]:
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     """Yield the snapshots of each block and the transits in it; a block begins where the one before it ends."""
     method = METHODS[METHOD_OF[options.order]]
-    missing = available(method)
-    if missing is not None:
-        raise InputError("-R", method.id, "a method that is installed", f"It is {missing}.")
     step, transits, first = float(options.step), Transits(), 0
     problem = _problem(options, step)
     while first < options.steps:

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.system.imports import missing
+from reference.system.imports import needed
 
 # Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its darkest colour
 INKS = {
@@ -65,12 +65,12 @@ def check_matplotlib(field: str) -> None:
     Raises:
         InputError: matplotlib is not installed, or cannot be imported.
     """
+    needed("matplotlib", "plot", field, "plotting")
     try:
         import_module("matplotlib.figure")
     except ImportError as error:
-        got, again = ("no matplotlib", "") if missing(["matplotlib"]) else (str(error), "--force-reinstall ")
-        advice = f"pip install {again}'foucault-reference[plot]'."
-        raise InputError(field, got, "the extra plot", advice) from None
+        advice = "Install it again with pip install --force-reinstall 'foucault-reference[plot]'."
+        raise InputError(field, str(error), "a matplotlib that can be imported", advice) from None
 
 
 def check_target(path: Path, field: str = "--plot") -> None:

@@ -19,9 +19,11 @@ from ..dataset.record import making_of
 from ..dataset.render import check_proved, render
 from ..dataset.sheets import scene_inputs
 from ..dataset.write import check_target, summary, write_texts
+from ..engines.registry import checked
 from ..errors import DatasetError, FoucaultError, IntegrationError, UnreachableError, counted
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import scene_ids, seals
+from ..solver.choice import need_flint
 from ..solver.solve import solve
 from ..status import Status
 from ..system.imports import needed
@@ -101,6 +103,17 @@ def isolated(job: Job) -> tuple[Row, dict[str, Content]]:
         return cast("tuple[Row, dict[str, Content]]", pool.submit(made, job).result())
 
 
+def _check_installed(job: Job) -> None:
+    """Refuse a dataset for which a package is missing: others would fail by it too.
+
+    Raises:
+        InputError: its engine or python-flint is not installed.
+    """
+    checked(making_of(job.scene, job.name, job.folder).engine)
+    if job.scene.run.level == "enclosed":
+        need_flint()
+
+
 def generate_all(
     replaced: Sequence[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
 ) -> None:
@@ -111,6 +124,8 @@ def generate_all(
         typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
     """
     check_workers(workers, cluster)
+    if cluster is not None:
+        needed("distributed", "cluster", "--cluster", "sending scenes to a cluster")
     every = jobs(replaced, out)
     with stoppable("what is done stays, and the same command goes on"), progress() as show:
         for job in every:
@@ -118,6 +133,7 @@ def generate_all(
                 clear(job.folder.parent, job.folder.name)  # a dataset that is done is not written again
         undone = [job for job in every if not is_done(job)]
         for job in undone:
+            _check_installed(job)
             check_target(job.folder)
         move, rows = show("datasets", len(undone), "datasets"), []
         with closing(_made(undone, workers, cluster)) as outcomes:
@@ -146,7 +162,6 @@ def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Genera
         return
     with ExitStack() as stack:
         if cluster is not None:
-            needed("distributed", "cluster", "--cluster", cluster, "which sends the work to its workers")
             from ..sweeps.cluster import scheduler_at
 
             scheduler = stack.enter_context(scheduler_at(cluster))

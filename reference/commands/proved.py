@@ -94,6 +94,9 @@ def _send_limits(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
 
 def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
     """Yield what holds for all values of uncertain inputs, and which of them limits the period."""
+    if "reason" in ranges:
+        yield f"[ranges] left out: {ranges['reason']}"
+        return
     box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
     texts = [
         f"{name} = {ranges[name][0]} to {ranges[name][1]}" if ranges[name] else f"{name} is not decided"

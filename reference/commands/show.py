@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import FoucaultError, InputError, UnreachableError
+from ..errors import FoucaultError, InputError, NotInstalledError, UnreachableError
 from ..scenes.fields import SceneTable
 from ..scenes.scene import Scene, load_scene, parse_scene
 from ..scenes.shipped import WITHOUT_FUNCTION, flag_meanings, scene_ids
@@ -92,9 +92,7 @@ def command(
 
         document["proved"] = proved_swing(scene)
     if widths := widths_by_name(uncertain, scene):
-        from .proved import proved_ranges
-
-        document["ranges"] = proved_ranges(scene, widths)
+        document["ranges"] = _ranges(scene, widths, asked=bool(uncertain))
     if as_json:
         emit(document)
         return
@@ -133,6 +131,26 @@ def _document_lines(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
         yield from (f"  {line}" for line in document["left_out"] or ["nothing"])
         if document["confirmed"]:
             yield f"of the proof heyoka confirms: {document['confirmed']}"
+
+
+def _ranges(scene: Scene, widths: dict[str, str], asked: bool) -> dict[str, Any]:
+    """Return what is proved for uncertain inputs, or the reason why nothing is.
+
+    Raises:
+        InputError: a width is wrong; or nothing can be proved here, and an option asked for it.
+        UnreachableError: the box is too wide.
+    """
+    from ..solver.uncertain import need_proof
+
+    try:
+        need_proof()
+    except NotInstalledError as error:
+        if asked:
+            raise
+        return {"reason": str(error)}
+    from .proved import proved_ranges
+
+    return proved_ranges(scene, widths)
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:

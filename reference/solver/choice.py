@@ -52,7 +52,7 @@ def need_flint() -> None:
     Raises:
         InputError: it is not.
     """
-    needed("flint", "enclose", "--level", "enclosed", "which the proof needs", ", or ask for the level confirmed")
+    needed("flint", "enclose", "run.level", "the level enclosed", ", or ask for the level confirmed")
 
 
 def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:

@@ -88,6 +88,16 @@ def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
     return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
 
 
+def need_proof() -> None:
+    """Refuse uncertain inputs where python-flint is not installed.
+
+    Raises:
+        InputError: it is not.
+    """
+    instead = ", or take the inputs as exact (--uncertain none)"
+    needed("flint", "enclose", "uncertain", "a proof for a range of inputs", instead)
+
+
 def solve_ranges(
     scene: Scene,
     uncertain: Mapping[str, Any],
@@ -104,7 +114,7 @@ def solve_ranges(
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
         UnreachableError: the box is too wide, and it tells up to which time it holds.
     """
-    needed("flint", "enclose", "--uncertain", "nothing", "which the proof needs")
+    need_proof()
     from ..enclosure.printed_box import end_of
     from ..enclosure.prove_box import enclose_box
     from ..enclosure.shapes import Box

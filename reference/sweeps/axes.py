@@ -237,7 +237,7 @@ def listed(path: Path) -> Table:
 
 def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
-    needed("pyarrow", "sweep", "--rows", str(path), "which reads Parquet")
+    needed("pyarrow", "sweep", "--rows", "reading Parquet")
     with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
         columns = read_columns(stream, _check_size)
     return [(full_name(key), tuple(map(_text, column))) for key, column in columns.items()]

@@ -195,7 +195,7 @@ def request(
     if level not in LEVELS:
         raise unknown("--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}.")
     if level == "enclosed":
-        needed("flint", "enclose", "--level", level, "which the proof needs")
+        needed("flint", "enclose", "--level", "the level enclosed")
     if digits is not None:
         checked_value("run.digits", str(digits), scene.inputs)
     if tolerance is not None and not (isinstance(tolerance, Real) and tolerance >= 0):

@@ -24,7 +24,7 @@ from .part import Part
 from .request import Request
 
 PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
-PARQUET = ("pyarrow", "sweep", "--out", "no pyarrow", "which writes Parquet")  # what is needed, if it is missing
+PARQUET = ("pyarrow", "sweep", "--out", "a folder of Parquet files")  # what is needed, and for what
 MOST_BYTES = 1 << 40  # of a part: no limit but that of a disk
 
 

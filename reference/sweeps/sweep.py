@@ -274,7 +274,7 @@ def _workers(
     request: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
 ) -> AbstractContextManager[Executor]:
     if cluster is not None:
-        needed("distributed", "cluster", "--cluster", cluster, "which sends the rows to its workers")
+        needed("distributed", "cluster", "--cluster", "sending rows to a cluster")
         from .cluster import on_cluster
 
         return on_cluster(request, out, cluster)

@@ -12,7 +12,9 @@ from importlib.util import find_spec
 from pkgutil import iter_modules
 from typing import Any, ClassVar, Protocol, TypeVar
 
-from ..errors import InputError, no_attribute, unknown
+from ..errors import InputError, NotInstalledError, no_attribute, unknown
+
+PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
 
 
 def lazy(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -88,15 +90,14 @@ def missing(modules: Iterable[str]) -> list[str]:
     return [name for name in modules if not _installed(name)]
 
 
-def needed(module: str, extra: str, option: str, got: str, why: str, instead: str = "") -> None:
-    """Refuse what needs a module that is not installed, and say which extra brings it.
+def needed(module: str, extra: str, field: str, purpose: str, instead: str = "") -> None:
+    """Refuse a purpose that needs a module which is not installed, and say which extra brings it.
 
     Raises:
         InputError: it is not.
     """
     if missing([module]):
-        advice = f"Install it with pip install 'foucault-reference[{extra}]'{instead}."
-        raise InputError(option, got, f"the package {module}, {why}", advice)
+        raise NotInstalledError(field, purpose, PACKAGES.get(module, module), extra, instead)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:
@@ -141,4 +142,4 @@ class OptionalEngine:
         if variable := switched_off(self.requires):
             raise InputError("--engine", self.name, f"{variable} unset", f"Unset it. {without}.")
         for module in self.requires:
-            needed(module, self.extra, "--engine", self.name, "which it needs", f". {without}")
+            needed(module, self.extra, "--engine", f"the engine {self.name}", f". {without}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from importlib import import_module
@@ -98,6 +99,7 @@ def test_listing_loads_no_heavy_library():
     assert process.stdout.strip() == "set()"
 
 
+SHOWN = ("pendulum", "motion", "ranges")  # of what `show` prints, among others
 SWEEP = "sweep paris --over latitude=0,5 --t-end 60 --engine heyoka"
 
 
@@ -110,6 +112,11 @@ SWEEP = "sweep paris --over latitude=0,5 --t-end 60 --engine heyoka"
         (f"{SWEEP} --level enclosed", "flint", "enclose"),
         (f"{SWEEP} --cluster local:2", "distributed", "cluster"),
         ("generate --all --out there --cluster local:2", "distributed", "cluster"),
+        ("generate --all --out there", "flint", "enclose"),
+        ("generate --all --out there", "numba", "fast"),
+        ("score museum_gate rows.csv", "flint", "enclose"),
+        ("plot paris", "matplotlib", "plot"),
+        ("pend -T 1", "numba", "methods"),
         (f"{SWEEP} --out there", "pyarrow", "sweep"),
         ("sweep paris --rows rows.parquet", "pyarrow", "sweep"),
     ],
@@ -119,6 +126,23 @@ def test_a_command_whose_package_is_missing_names_the_extra(foucault, monkeypatc
     monkeypatch.setattr(imports, "find_spec", lambda name: None if name == module else found(name))
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rows.parquet").touch()
+    (tmp_path / "rows.csv").write_text("t,x,y\n0,0.3,0.4\n1,0.3,0.4\n")
     status, out, err = foucault(*line.split())
     assert (status, out) == (2, "")
     assert f"pip install 'foucault-reference[{extra}]'" in err and module in err
+    told = err.splitlines()
+    assert len(told) == 1 and "got" not in told[0]  # at once, and not in terms of what nobody typed
+    assert not (tmp_path / "there").exists()
+
+
+def test_a_scene_with_uncertain_inputs_is_shown_without_the_proof(foucault, monkeypatch):
+    found = imports.find_spec
+    monkeypatch.setattr(imports, "find_spec", lambda name: None if name == "flint" else found(name))
+    status, out, err = foucault("show", "museum_gate")
+    assert (status, err) == (0, "")
+    inputs, motion, ranges = (next(line for line in out.splitlines() if line.startswith(f"[{word}")) for word in SHOWN)
+    assert "length = " in inputs and "period_s = " in motion
+    assert "pip install 'foucault-reference[enclose]'" in ranges
+    status, out, _ = foucault("show", "museum_gate", "--json")
+    assert status == 0
+    assert "foucault-reference[enclose]" in json.loads(out)["ranges"]["reason"]

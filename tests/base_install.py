@@ -1,0 +1,152 @@
+"""Run every command, and `show` of every scene, where the package is installed without any extra.
+
+    python -m venv base
+    base/bin/pip install .
+    base/bin/python tests/base_install.py
+
+A command either does its work, or is refused with status 2 and one line that names the extra to install. No traceback.
+"""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from foucault import GROUPS
+from reference import load
+from reference.scenes.shipped import golden_root, scene_ids
+
+MODULES = ("flint", "numba", "matplotlib", "pyarrow", "distributed", "scipy")  # that only extras install
+PATIENCE_S = 300
+DONE, DISAGREES, REFUSED = 0, 1, 2
+SWEEP = "sweep paris --over site.latitude=0:90:45 --t-end 60"
+STUDY = "study paris --t-end 60 --methods heyoka_double --no-formulations"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A command line without `foucault`, and how it has to end: with a status, or refused for want of an extra."""
+
+    line: str
+    extra: str | None = None
+    status: int = DONE
+
+    def fault(self, ended: subprocess.CompletedProcess[str]) -> str:
+        """Return what is wrong with how it ended; empty if nothing is."""
+        expected = self.status if self.extra is None else REFUSED
+        messages = ended.stderr.strip().splitlines()
+        if ended.returncode != expected:
+            return f"status {ended.returncode}, expected {expected}: {' / '.join(messages[-3:])}"
+        if "Traceback" in ended.stdout + ended.stderr:
+            return "a traceback"
+        if self.extra is None:
+            return "" if ended.stdout else "nothing printed"
+        if len(messages) != 1 or ended.stdout:
+            return f"more than a message: {ended.stdout[:80]} / {' / '.join(messages)}"
+        return "" if f"foucault-reference[{self.extra}]" in messages[0] else f"no word of [{self.extra}]: {messages[0]}"
+
+
+CASES = [
+    Case("scenes"),
+    Case("show --template"),
+    Case("show paris --sensitivity"),
+    Case("show paris --equations", "enclose"),
+    Case("show paris --equations --set run.level=confirmed"),
+    Case("show paris --proved", "enclose"),
+    Case("show paris --uncertain length=0.001", "enclose"),
+    Case("show museum_gate --json"),
+    Case("show museum_gate --uncertain none"),
+    Case("generate laboratory --t-end 10 --digits 15 --level confirmed --section highest"),
+    Case("generate laboratory --t-end 10", "enclose"),
+    Case("generate laboratory --t-end 10 --level confirmed --engine limbs", "fast"),
+    Case("generate museum_gate --t-end 10", "enclose"),
+    Case("generate --all --out all", "fast"),
+    Case("generate --all --out all --cluster local:1", "cluster"),
+    Case("verify paris museum_gate"),
+    Case("verify golden/laboratory"),
+    Case("verify golden/laboratory --recompute"),
+    Case("verify conical --recompute", "fast"),
+    Case("score paris paris.csv"),
+    Case("score paris paris.csv --json"),
+    Case("score paris off.csv", status=DISAGREES),
+    Case("score paris --run 'cat paris.csv' --repeats 0"),
+    Case("score paris --approximation mathar_item_2", status=DISAGREES),
+    Case("score --suite suite --out page"),
+    Case("score --how python"),
+    Case("score paris paris.csv --plot error.svg", "plot"),
+    Case("score museum_gate paris.csv", "enclose"),
+    Case("score museum_gate --transits transits.csv --section 'gate 30' --uncertain none", status=DISAGREES),
+    Case("plot paris", "plot"),
+    Case("plot paris.csv --out path.svg", "plot"),
+    Case("atlas --out atlas", "plot"),
+    Case("methods"),
+    Case(STUDY),
+    Case(f"{STUDY} --run 'cat paris.csv'"),
+    Case(f"{STUDY} --out study"),
+    Case("study paris --methods rk4", "methods"),
+    Case("stability --scenes laboratory --methods heyoka_double"),
+    Case(SWEEP),
+    Case(f"{SWEEP} --level self_consistent"),
+    Case(f"{SWEEP} --level enclosed", "enclose"),
+    Case(f"{SWEEP} --out swept", "sweep"),
+    Case(f"{SWEEP} --plot swept.svg", "plot"),
+    Case(f"{SWEEP} --cluster local:1", "cluster"),
+    Case("sweep paris --rows rows.parquet", "sweep"),
+    Case("paper"),
+    Case("paper --out papers", "plot"),
+    Case("pend -T 1", "methods"),
+    Case("pend -T 1 --exact"),
+]
+
+
+def prepare(folder: Path) -> None:
+    """Write the files that the commands read."""
+    golden = load(golden_root() / "paris")
+    rows = [
+        f"{t!r},{x!r},{y!r}" for t, x, y in zip(golden.t.tolist(), golden.x.tolist(), golden.y.tolist(), strict=True)
+    ]
+    right = "\n".join(["t,x,y", *rows, ""])
+    (folder / "suite").mkdir()
+    for path in ("paris.csv", "suite/paris.csv"):
+        (folder / path).write_text(right)
+    (folder / "off.csv").write_text(right.replace("t,x,y", "t,y,x"))
+    (folder / "transits.csv").write_text("t\n1\n")
+    (folder / "rows.parquet").touch()
+
+
+def main() -> int:
+    """Print a line for each command, and how many faults there are; return the exit status."""
+    present = [name for name in MODULES if find_spec(name) is not None]
+    if present:
+        print(f"This is no installation without extras: it has {', '.join(present)}.")
+        return REFUSED
+    cases = [*CASES, *(Case(f"show {scene}") for scene in scene_ids())]
+    untried = {name for names in GROUPS.values() for name in names} - {case.line.split()[0] for case in cases}
+    faults = [f"{name}: no case runs this command" for name in sorted(untried)]
+    with tempfile.TemporaryDirectory() as folder:
+        prepare(Path(folder))
+        for case in cases:
+            start = time.perf_counter()
+            fault = case.fault(ended(case.line, folder))
+            outcome = f"FAULT: {fault}" if fault else f"refused, names [{case.extra}]" if case.extra else "ok"
+            print(f"{time.perf_counter() - start:6.1f} s  foucault {case.line}: {outcome}", flush=True)
+            if fault:
+                faults.append(f"{case.line}: {fault}")
+    print(f"{len(cases)} commands, {len(faults)} faults", *faults, sep="\n")
+    return 1 if faults else 0
+
+
+def ended(line: str, folder: str) -> subprocess.CompletedProcess[str]:
+    """Run a command in a folder, and return how it ended."""
+    command = [sys.executable, "-m", "foucault", *shlex.split(line)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
