@@ -28,7 +28,7 @@ from ..candidates.external import Timing, timed
 from ..candidates.names import Naming
 from ..candidates.read import named, read, read_stream, read_transits
 from ..report import suite
-from ..score.baseline import document_of, rows_of
+from ..score.baseline import FILE, document_of, rows_of
 from ..score.document import of_outcome
 from ..score.measured import APART, Measured, measured
 from ..score.passages import PassageScore, score_passages
@@ -181,7 +181,7 @@ class Judging:
         path = Path(self.baseline)
         if path.suffix == DOCUMENT:
             with named("--baseline"):
-                return {str(row["scene"]): {"rows": [row]} for row in rows_of(document_of(path))}
+                return {str(row["scene"]): {"rows": [row], FILE: str(path)} for row in rows_of(document_of(path))}
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 

@@ -138,7 +138,9 @@ def annotation(outcome: Outcome) -> str:
     """Return the workflow command that shows an outcome, with the verdict and what is known of its reason."""
     passes = outcome.exit_status == 0
     lines = _main_lines(outcome)[: 1 if passes and outcome.since is None else None]
-    place = f"file={_property(outcome.name)},title={_property(f'foucault {outcome.scene}')}"
+    place = f"title={_property(f'foucault {outcome.scene}')}"
+    if os.path.isfile(outcome.name):  # a program has none, to which GitHub could lead
+        place = f"file={_property(outcome.name)},{place}"
     return f"::{'notice' if passes else 'error'} {place}::{_data(chr(10).join(lines))}"
 
 

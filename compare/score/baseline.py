@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from .verdict import REFUSED, WHOLE, Score
 SHARE = 0.1  # of a change: what is smaller is no part of it
 WOBBLE = 10.0  # times a change: a cause that moves the bob by more has not come with it
 ROUNDED = 10.0  # times the input floor: no more than this is no change
+FILE = "file"  # key of a document that was read: where it was
 NEEDED, EXPECTED = {"scene", "candidate", "verdict"}, "a document of `foucault score --json`"
 
 
@@ -40,19 +42,23 @@ def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> 
     score = old if isinstance(old, Score) else None
     try:
         baseline = document(old) if isinstance(old, Score) else _row(old, new)
-        return None if baseline is None or baseline["verdict"] == REFUSED else _since(new, score, baseline, explains)
+        if baseline is None or baseline["verdict"] == REFUSED:
+            return None
+        changed = _since(new, score, baseline, explains)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError("baseline", f"{type(error).__name__} {error}", EXPECTED, "Make it anew.") from None
+    # both versions of a program have one name, and so have their files in a suite
+    return replace(changed, name=old[FILE]) if isinstance(old, Mapping) and FILE in old else changed
 
 
 def document_of(path: Path) -> dict[str, Any]:
-    """Return the document in a file.
+    """Return the document in a file, with the path under `FILE`.
 
     Raises:
         InputError: there is no such file, or no JSON document in it.
     """
     try:
-        return json_document(path, "baseline")
+        return json_document(path, "baseline") | {FILE: str(path)}
     except FileNotFoundError:
         raise InputError("baseline", str(path), "a file", "`foucault score … --json > FILE` writes one.") from None
 

@@ -162,8 +162,10 @@ def _compiled(scene: Scene) -> dict[str, Any]:
     from ..dataset.place import dataset_id, default_folder
     from ..dataset.record import making_of
     from ..engines.heyoka.system import lines_and_left_out
-    from ..solver.choice import first_plan, pilot_for
+    from ..solver.choice import first_plan, need_flint, pilot_for
 
+    if scene.run.level == "enclosed":
+        need_flint()  # before the pilot runs, which take long
     times = tuple(scene.exact.grid)
     plan = first_plan(scene, times, pilot_for(scene, times))
     number = str(plan.number)

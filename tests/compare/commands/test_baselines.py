@@ -85,7 +85,7 @@ def test_the_status_tells_whether_it_became_worse(foucault, rows, tmp_path, kind
         baseline.write_text(out)
     done, document = judged(foucault, rows, new, baseline)
     since = document["baseline"]
-    assert (done, document["verdict"]) == (status, verdict) and since["text"].startswith(f"{begins} {rows / old}.csv: ")
+    assert (done, document["verdict"]) == (status, verdict) and since["text"].startswith(f"{begins} {baseline}: ")
     assert bool(since["worse"]) is bool(status) and since["better"] is begins.startswith("Better")
     expected = pytest.approx(abs(OFF.get(new, 2e-3) - OFF.get(old, 2e-3)), abs=1e-12)
     assert since["apart_m"] == expected and (since["apart_m"] == 0) is ("no position changed" in since["text"])
@@ -152,6 +152,10 @@ def test_commands_are_compared_too(foucault, rows):
     status, out, _ = foucault(*words, "--baseline", baseline)
     assert status == 1 and f"Worse since {baseline}: 0.001 → 0.002 m" in out
     assert foucault(*words, "--baseline", rows / "worse.csv")[0] == 0
+    earlier = rows / "base.json"
+    earlier.write_text(foucault(*words, "--json")[1])
+    status, out, _ = foucault(*words, "--baseline", earlier)
+    assert status == 0 and f"Since {earlier}: no position changed" in out  # both versions are "the program"
     status, _, err = foucault(*words, "--baseline", "no_such_program at all")
     assert status == 2 and "a program that can be started" in err
 
@@ -213,6 +217,8 @@ def test_a_suite_is_compared_with_an_earlier_one(foucault, suites, kind):
     told = {row["scene"]: row for row in document["rows"]}
     assert told["lost"]["verdict"] == "refused" and "no file for lost" in told["lost"]["error"]
     assert told["new"]["baseline"] is None and "this verdict stands alone" in told["new"]["notes"][0]
+    before = suites / "old/same.csv" if kind == "folder" else baseline
+    assert told["same"]["baseline"]["text"].startswith(f"Since {before}: ")
     assert told["same"]["baseline"]["worse"] == [] and "it agreed before" in told["worse"]["baseline"]["worse"]
     root = ElementTree.parse(suites / "j.xml").getroot()
     assert root.attrib == {"tests": "4", "failures": "1", "errors": "1"}

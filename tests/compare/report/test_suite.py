@@ -171,7 +171,16 @@ def test_what_an_annotation_would_take_for_its_own_is_escaped(foucault, tmp_path
     name.write_text("t,x,y\n0,0.3,0.4\n60,1,1\n")
     out = foucault("score", "paris", name, "--github", "--no-diagnosis")[1]
     (line,) = [line for line in out.splitlines() if line.startswith("::error")]
-    assert "a%2Cb%3Ac%25.csv,title=foucault paris::" in line
+    assert line.startswith("::error file=") and "a%2Cb%3Ac%25.csv,title=foucault paris::" in line
+
+
+def test_an_annotation_of_what_is_no_file_names_none(foucault, tmp_path):
+    rows = tmp_path / "rows.csv"
+    rows.write_text("t,x,y\n0,0.3,0.4\n60,1,1\n")
+    for words in (("--run", f"cat {rows}", "--repeats", "0"), (tmp_path / "no.csv",)):
+        out = foucault("score", "paris", *words, "--github", "--no-diagnosis")[1]
+        (line,) = [line for line in out.splitlines() if line.startswith("::error")]
+        assert line.startswith("::error title=foucault paris::")
 
 
 def test_documents_keep_their_schema(foucault, folder, tmp_path):
