@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import tomllib
 
 import numpy as np
 import pytest
@@ -18,6 +19,17 @@ def test_it_is_a_workflow():
     yaml = pytest.importorskip("yaml")
     steps = yaml.safe_load(PAGE)["jobs"]["score"]["steps"]
     assert any("foucault score --suite" in step.get("run", "") for step in steps)
+
+
+def test_it_installs_the_tag_of_this_version_and_nothing_that_has_the_name_elsewhere():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    values = dict(re.findall(r"^  (REFERENCE|VERSION): \"?([^\"\n]+)", PAGE, re.M))
+    assert values == {"REFERENCE": project["urls"].get("Repository", "https://…"), "VERSION": f"v{project['version']}"}
+    (install,) = re.findall(r"run: pip install (.+)", PAGE)
+    requirement = install.strip('"').replace("$REFERENCE", values["REFERENCE"]).replace("$VERSION", values["VERSION"])
+    extras, address = re.fullmatch(r"foucault-reference\[(.+)\] @ git\+(.+)", requirement).groups()
+    assert set(extras.split(",")) <= project["optional-dependencies"].keys()
+    assert address == f"{values['REFERENCE']}@{values['VERSION']}"
 
 
 def test_its_command_runs_and_its_scenes_are_there(foucault, tmp_path, monkeypatch):
