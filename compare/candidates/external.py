@@ -2,7 +2,8 @@
 
 The limit on its output is that on any candidate's text (`text.MAX_BYTES`). Its descendants normally stay in its
 process group. One that forks into a session of its own leaves the group, and its parent may have exited: it is
-recognised by a mark in the environment that it inherited.
+recognised by a mark in the environment that it inherited. This process may itself be killed (SIGKILL) and can then do
+nothing more: a shell that reads from it by a pipe sees the end of the pipe, and kills them in its place.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ import signal
 import statistics
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from subprocess import DEVNULL, Popen
+from subprocess import DEVNULL, PIPE, Popen
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from reference import InputError, Scene
@@ -39,6 +40,18 @@ REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
 MARK = "FOUCAULT_RUN"  # the variable of the environment that holds the marks of a run and of those around it
 ROUNDS = 100  # searches for descendants at most: a process may be started while the others are killed
+# $1 is the mark; a line on stdin is the process group, and its end that of the process which wrote it
+_GUARD = """
+read -r group
+read -r end
+[ -n "$group" ] && kill -s KILL -- "-$group"
+for round in 1 2 3 4 5; do
+    for environ in $(grep -ls -e "$1" /proc/[0-9]*/environ); do
+        process=${environ#/proc/}
+        kill -s KILL "${process%/environ}"
+    done
+done
+"""
 _TAIL = 400  # characters of stderr that a message quotes
 _FOR_A_SHELL = re.compile(r"\|.*|&&?|;|(\d*|&)[<>].*")  # unquoted words that only a shell obeys
 _NO_SHELL = "No shell is used. Put the words into quotes if they are meant as they stand, or run sh -c '...'."
@@ -121,8 +134,9 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
     """
     start, mark = time.monotonic(), secrets.token_hex(16)
-    with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
+    with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as meanwhile, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
+        guard = meanwhile.enter_context(_guarded(mark))
         try:
             env = {**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()}
             process = Popen(words, stdin=DEVNULL, stdout=output, stderr=errors, env=env, start_new_session=True)
@@ -130,6 +144,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
             why = error.strerror if isinstance(error, OSError) else error
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         try:
+            guard(process.pid)
             with terminable():
                 usage = _end_of(process, words, output, errors, timeout_s)
         finally:
@@ -142,6 +157,29 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
+
+
+@contextlib.contextmanager
+def _guarded(mark: str) -> Iterator[Callable[[int], None]]:
+    """Have what bears a mark killed if this process is killed meanwhile; call what this yields with the process group.
+
+    Where there is no /proc, only the group is killed; where there is no shell, nothing is.
+    """
+    with contextlib.ExitStack() as stack:
+        guard = None
+        with contextlib.suppress(OSError):
+            words = ["/bin/sh", "-c", _GUARD, "sh", mark]
+            guard = Popen(words, stdin=PIPE, stdout=DEVNULL, stderr=DEVNULL, start_new_session=True)
+            stack.enter_context(guard)
+            stack.callback(guard.kill)  # all is ended, or nothing has begun
+
+        def tell(group: int) -> None:
+            with contextlib.suppress(OSError):
+                if guard is not None and guard.stdin is not None:
+                    guard.stdin.write(f"{group}\n".encode())
+                    guard.stdin.flush()
+
+        yield tell
 
 
 def _end_of(process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float) -> Any:

@@ -248,6 +248,20 @@ def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     assert gone_within(group, PATIENCE_S)
 
 
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="what left the group is found in /proc")
+@pytest.mark.parametrize("program", [PARENT.format(then="signal.pause()"), DAEMON + "signal.pause()"])
+def test_killed_it_takes_the_program_with_it(tmp_path, program):
+    """Nothing can be done on SIGKILL, such as that of a server which is out of memory."""
+    note = tmp_path / "pid"
+    begin = f"import os, sys; open(sys.argv[1] + '.leader', 'w').write(str(os.getpid()))\n"
+    command = ["score", "paris", "--run", shlex.join([*python(begin + program), str(note)])]
+    status, _, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", signal.SIGKILL)
+    assert status == -signal.SIGKILL
+    leader, child = int((tmp_path / "pid.leader").read_text()), int(note.read_text().split()[0])
+    assert ends_within(leader, PATIENCE_S) and ends_within(child, PATIENCE_S)
+    assert gone_within(group, PATIENCE_S)
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_script_of_ones_own_that_is_ended_ends_the_program_it_runs(tmp_path, number):
     """As a method in C is run from Python, without the command line, which turns signals into exceptions itself."""
