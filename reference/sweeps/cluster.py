@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
 from functools import partial
+from multiprocessing import resource_tracker
 from pathlib import Path
 from secrets import token_hex
 from tempfile import TemporaryDirectory
@@ -21,6 +22,7 @@ from distributed.scheduler import KilledWorker
 from distributed.versions import get_package_info
 
 from ..errors import FoucaultError, InputError
+from ..system.interruption import held
 from ..system.workers import Pool, WorkerDied
 from .driver import Executor, isolated, prepared, solve_and_save
 from .part import Part
@@ -107,13 +109,18 @@ def _connected(address: str, stack: ExitStack) -> Any:
         stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
         scratch = stack.enter_context(TemporaryDirectory(ignore_cleanup_errors=True))
         stack.enter_context(dask.config.set({"temporary-directory": scratch}))
-        try:
-            cluster = distributed.LocalCluster(
-                n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
-            )
-        except RuntimeError as error:
-            raise InputError("--cluster", address, "processes that dask can start here", f"{error}") from None
-        return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
+        # Ctrl-C reaches the workers as well, which would print where they are: they begin with signals held back, and
+        # so do those that replace them. This process ends them. What multiprocessing starts first lets signals through
+        # again, in the thread that starts it.
+        resource_tracker.ensure_running()
+        with held():
+            try:
+                cluster = distributed.LocalCluster(
+                    n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
+                )
+            except RuntimeError as error:
+                raise InputError("--cluster", address, "processes that dask can start here", f"{error}") from None
+            return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
     if not address.startswith(SCHEMES):
         raise InputError("--cluster", address, "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N")
     try:

@@ -46,6 +46,14 @@ def test_its_command_runs_and_its_scenes_are_there(foucault, tmp_path, monkeypat
     assert (tmp_path / "foucault.xml").is_file() and (tmp_path / "page/badge.svg").is_file()
 
 
+def test_every_night_all_commands_run_in_a_base_install():
+    yaml = pytest.importorskip("yaml")
+    jobs = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))["jobs"]
+    *_, install, run = jobs["base"]["steps"]
+    assert install["run"].endswith("pip install .")  # no extra
+    assert (ROOT / run["run"].split()[-1]).is_file()
+
+
 def test_the_workflow_of_the_project_itself_calls_what_there_is():
     yaml = pytest.importorskip("yaml")
     jobs = yaml.safe_load((ROOT / ".github/workflows/checks.yml").read_text(encoding="utf-8"))["jobs"]
