@@ -13,7 +13,7 @@ from functools import partial
 from multiprocessing import resource_tracker
 from pathlib import Path
 from secrets import token_hex
-from tempfile import TemporaryDirectory
+from tempfile import gettempdir
 from typing import Any
 
 import dask
@@ -24,6 +24,7 @@ from distributed.versions import get_package_info
 from ..errors import FoucaultError, InputError
 from ..system.interruption import held
 from ..system.workers import Pool, WorkerDied
+from ..system.workspace import workspace
 from .driver import Executor, isolated, prepared, solve_and_save
 from .part import Part
 from .request import Request, request_of
@@ -107,8 +108,8 @@ def _connected(address: str, stack: ExitStack) -> Any:
             raise InputError("--cluster", address, "local:N with a number of workers from 1")
         # dask gives a local worker up that is being started again some seconds after its death: the last one, too
         stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
-        scratch = stack.enter_context(TemporaryDirectory(ignore_cleanup_errors=True))
-        stack.enter_context(dask.config.set({"temporary-directory": scratch}))
+        scratch = stack.enter_context(workspace(Path(gettempdir()), "foucault-dask"))
+        stack.enter_context(dask.config.set({"temporary-directory": str(scratch)}))
         # Ctrl-C reaches the workers as well, which would print where they are: they begin with signals held back, and
         # so do those that replace them. This process ends them. What multiprocessing starts first lets signals through
         # again, in the thread that starts it.

@@ -17,10 +17,15 @@ PATIENCE_S = 120.0  # for a command to get to work, and to end once it is told t
 
 
 def interrupted(
-    words: list[str], at_work: Callable[[int, bytes], bool], number: signal.Signals = signal.SIGINT
+    words: list[str],
+    at_work: Callable[[int, bytes], bool],
+    number: signal.Signals = signal.SIGINT,
+    *,
+    whole_group: bool = False,
 ) -> tuple[int, bytes, int]:
     """Run `foucault words`, send it a signal once `at_work(group, stderr)`; return exit status, stderr, and its group.
 
+    With `whole_group` all of its processes receive the signal, as from a terminal.
     Everything that is left of it is killed if it does not get to work or does not end.
     """
     command = [sys.executable, "-m", "foucault", *words]
@@ -36,7 +41,10 @@ def interrupted(
                 assert time.monotonic() < deadline, "it does not get to work"
                 err += process.stderr.read() or b""
                 time.sleep(0.02)
-            process.send_signal(number)
+            if whole_group:
+                os.killpg(process.pid, number)
+            else:
+                process.send_signal(number)
             os.set_blocking(process.stderr.fileno(), True)
             err += stderr_of(process)
         except BaseException:

@@ -7,9 +7,11 @@ import shutil
 import signal
 import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import poisoned_sweep
 import pytest
+from interruption import PATIENCE_S, gone_within, interrupted, members
 
 from reference import InputError, load_scene, load_sweep
 from reference.sweeps.sweep import asked_for, run
@@ -194,3 +196,23 @@ def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_o
         scheduler_at("local:1"),
     ):
         pass
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
+def test_ctrl_c_prints_one_sentence_and_what_a_killed_sweep_left_is_removed(tmp_path, monkeypatch):
+    """A terminal sends it to the workers too, here while they import what they need."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
+    (tmp_path / "tmp").mkdir()
+    out = str(tmp_path / "out")
+    words = ["sweep", "paris", "--over", "latitude=0:90:0.05", "--t-end", "20000", "--engine", "heyoka"]
+    words += ["--audit", "0", "--cluster", "local:2", "--out", out]
+    of_dask = (tmp_path / "tmp").glob
+    interrupted(words, lambda *_: any(of_dask("*/dask-scratch-space")), signal.SIGKILL, whole_group=True)
+    assert any(of_dask("*/dask-scratch-space"))
+    both_workers = 4  # with the command itself, and what multiprocessing starts to clear up
+    status, err, group = interrupted(words, lambda group, _: members(group) >= both_workers, whole_group=True)
+    (line,) = err.decode().splitlines()
+    assert status == 130
+    assert line == f"foucault: stopped; what is done is in {out}: `foucault sweep --out {out}` goes on"
+    assert gone_within(group, PATIENCE_S)
+    assert not any(of_dask("*/dask-scratch-space"))
