@@ -108,7 +108,7 @@ def main() -> None:
     try:
         ended = _run()
     except KeyboardInterrupt:
-        ended = INTERRUPTED, "", True
+        ended = INTERRUPTED, "stopped", True  # by a command that says no more of what became of its work
     except Exception as error:
         ended = UNFORESEEN, _report(error), False
     # here no exception is left, which would keep what a signal has interrupted from being cleared away

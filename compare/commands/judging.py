@@ -130,7 +130,8 @@ class Judging:
             return replace(self.score(scene, candidate, times, earlier), timing=timing)
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
-            output, timing = timed(program.words(scene, command), program.timeout, repeats)
+            with stoppable("the program was ended"):
+                output, timing = timed(program.words(scene, command), program.timeout, repeats)
             with output:
                 if command == program.command:
                     program.keep(output, GIVEN)

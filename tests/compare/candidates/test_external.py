@@ -244,6 +244,8 @@ def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     status, err, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", number)
     assert status == 128 + number
     assert b"Traceback" not in err
+    if number == signal.SIGINT:
+        assert err == b"foucault: stopped; the program was ended\n"
     assert ends_within(int(note.read_text()), PATIENCE_S)
     assert gone_within(group, PATIENCE_S)
 
