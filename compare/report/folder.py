@@ -10,6 +10,7 @@ from typing import Any
 
 from reference import InputError
 from reference.errors import plain_json, usable
+from reference.system.checksums import SUMS, sums_text
 from reference.system.workspace import replace_file
 
 from .page import MARK, Table
@@ -72,6 +73,8 @@ def _is_ours(page: Path) -> bool:
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
     """Write files into a folder, each whole or not at all, the page first; other files in it are left alone.
 
+    Their checksums come last, in SHA256SUMS, by which `foucault verify` finds what was changed since.
+
     Args:
         folder: created if it does not exist.
         texts: content of each file, by name.
@@ -79,11 +82,13 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
     Raises:
         InputError: the folder cannot be written to, or `check_folder` refuses it.
     """
-    check_folder(folder, texts)
+    check_folder(folder, [*texts, SUMS])
+    files = {name: _encoded(text) for name, text in texts.items()}
     with usable("--out", folder):
         folder.mkdir(parents=True, exist_ok=True)
-        for name in sorted(texts, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
-            _replace(folder / name, texts[name])
+        for name in sorted(files, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
+            _replace(folder / name, files[name])
+        _replace(folder / SUMS, sums_text(files))
 
 
 def write_file(path: Path, content: str | bytes, field: str) -> None:
@@ -96,9 +101,13 @@ def write_file(path: Path, content: str | bytes, field: str) -> None:
         _replace(path, content)
 
 
-def _replace(path: Path, content: str | bytes) -> None:
+def _encoded(text: str) -> bytes:
     # a name on the command line may hold bytes that are not UTF-8; JSON too reads the escapes
-    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
+    return text.encode(errors="backslashreplace")
+
+
+def _replace(path: Path, content: str | bytes) -> None:
+    data = _encoded(content) if isinstance(content, str) else content
     replace_file(path, lambda stream: stream.write(data))
 
 

@@ -24,6 +24,7 @@ from reference import IntegrationError
 from reference.errors import finite, usable
 from reference.status import Status
 from reference.system import cache
+from reference.system.checksums import is_sound, sealed_line
 from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
@@ -118,11 +119,11 @@ def _mark(recipe: Any) -> str:
 
 
 def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Any]]:
-    """Yield marks with items, and results, in order; a line that is no result of this kind is skipped."""
+    """Yield marks with items, and results, in order; a line that is no result of this kind, or damaged, is skipped."""
     if path is None or not path.exists():
         return
     types = TypeAdapter(kind)
-    for record in json_lines(path, "--out"):
+    for record in filter(is_sound, json_lines(path, "--out")):
         with suppress(KeyError, TypeError, ValueError):
             key = record["recipe"], tuple(record["item"])
             hash(key)
@@ -138,7 +139,8 @@ def _store(path: Path | None, record: dict[str, Any]) -> None:
             end = stream.seek(0, os.SEEK_END)
             stream.seek(max(0, end - 1))
             separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"  # the line before was cut short
-            stream.write(separator + json.dumps(finite(record), allow_nan=False).encode() + b"\n")
+            line = json.dumps(sealed_line(finite(record)), allow_nan=False)
+            stream.write(separator + line.encode() + b"\n")
 
 
 def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> Generator[Result, None, None]:

@@ -1,7 +1,8 @@
-"""`foucault verify`: check golden datasets, or solve them again and compare every byte."""
+"""`foucault verify`: check golden datasets, or solve them again and compare every byte; check sweeps and reports."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -9,11 +10,11 @@ import typer
 from ..errors import InputError
 from ..scenes.shipped import golden_root, seals
 from .progress import progress
-from .terminal import AsJson, completion, emit, option
+from .terminal import AsJson, completion, emit, option, refuse
 
 PATHS = typer.Argument(
     metavar="PATH",
-    help="Ids or folders of datasets (default: all that come with the project).",
+    help="Ids or folders of datasets (default: all that come with the project), sweeps or reports.",
     autocompletion=completion(seals),
 )
 RECOMPUTE = option("--recompute", "Also solve each scene again and compare every byte.")
@@ -24,9 +25,10 @@ def command(
     recompute: Annotated[bool, RECOMPUTE] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Check golden datasets and ranges.
+    """Check golden datasets, ranges, sweeps and reports.
 
-    The motion of a dataset is integrated again; ranges are proved again.
+    The motion of a dataset is integrated again; ranges are proved again. A sweep, a study and every other report is
+    checked for changes since it was written, by seals and checksums.
     """
     from ..dataset.place import RANGES, golden_folder
     from ..dataset.ranges import verify_ranges
@@ -37,10 +39,14 @@ def command(
     if not folders:
         raise InputError("PATH", "nothing", "a golden dataset", "Make one with `foucault generate`.")
     rows = []
+    notes: list[str]
     for folder in folders:
         with progress() as show:
             if (folder / RANGES).is_file():
                 problems, undecided, notes = verify_ranges(folder, show(folder.name), recompute), [], []
+            elif (results := _written_results(folder)) is not None:
+                refuse({"--recompute": recompute}, "with a sweep or a report")
+                problems, undecided, notes = *results, []
             else:
                 outcome = verify(folder, show(folder.name))
                 problems, undecided, notes = outcome.problems, outcome.undecided, outcome.foreign
@@ -56,3 +62,19 @@ def command(
         emit({"rows": rows})
     if not all(row["ok"] for row in rows):
         raise typer.Exit(1)
+
+
+def _written_results(folder: Path) -> tuple[list[str], list[str]] | None:
+    """Return what is wrong with a sweep or a report, and what cannot be told; None where the folder is neither."""
+    from ..dataset.manifest import MANIFEST
+    from ..sweeps.store import PLAN
+    from ..sweeps.verify_sweep import verify_sweep
+    from ..system.checksums import JOURNALS, SUMS, verify_report
+
+    if (folder / MANIFEST).is_file():
+        return None
+    if (folder / PLAN).is_file():
+        return verify_sweep(folder)
+    if (folder / SUMS).is_file() or any(folder.glob(JOURNALS)):
+        return verify_report(folder)
+    return None

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, plain_json
+from ..system.checksums import SUMS, sums_text
 from ..system.documents import json_document, regular
 from ..system.imports import needed
 from ..system.workspace import clear, replace_file
@@ -138,6 +139,25 @@ class Store:
         tables = {ROWS: (self.request.columns, solved.columns), TRANSITS: (TRANSIT_COLUMNS, solved.transits)}
         for kind in self._kinds:
             _write(self.path(part, kind), parquet(*tables[kind], self._named(part, kind)))
+
+    def finish(self, summary: dict[str, Any]) -> None:
+        """Write what the sweep has found, and the checksums of the files that have no seal of their own.
+
+        Raises:
+            OSError: they cannot be written.
+        """
+        write_json(self.folder / SUMMARY, summary)
+        files = {name: (self.folder / name).read_bytes() for name in (PLAN, SUMMARY)}
+        _write(self.folder / SUMS, sums_text(files).encode())
+
+    def foreign(self) -> list[str]:
+        """Return the files beside the parts that are none of the sweep's, by their paths in its folder.
+
+        Those whose names begin with a dot are left out, as they are by programs that read Parquet.
+        """
+        parts = {self.path(part, kind) for kind in self._kinds for part in range(self.request.parts)}
+        found = {path for kind in (ROWS, TRANSITS) for path in (self.folder / kind).glob("[!.]*")}
+        return sorted(str(path.relative_to(self.folder)) for path in found - parts)
 
     def read(
         self, names: list[str] | None = None, kind: str = ROWS, parts: Iterable[int] | None = None

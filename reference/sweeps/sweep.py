@@ -26,7 +26,7 @@ from .driver import Executor, drive, on_this_machine
 from .part import Part, Tally
 from .promote import Audit, audited
 from .request import Request, request
-from .store import PLAN, SUMMARY, TRANSITS, Store, write_json
+from .store import PLAN, TRANSITS, Store
 
 MOST_IN_MEMORY = 100_000  # rows
 PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
@@ -266,7 +266,7 @@ def run(
     swept = Swept(request, store, solved, tally, audit, compile_s, audit_s, wall_s)
     if store is not None:
         document = asdict(audit) if audit is not None else None
-        write_json(store.folder / SUMMARY, {"rows": len(swept), "counts": swept.counts, "audit": document})
+        store.finish({"rows": len(swept), "counts": swept.counts, "audit": document})
     return swept
 
 

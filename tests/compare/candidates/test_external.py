@@ -255,7 +255,7 @@ def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
 def test_killed_it_takes_the_program_with_it(tmp_path, program):
     """Nothing can be done on SIGKILL, such as that of a server which is out of memory."""
     note = tmp_path / "pid"
-    begin = f"import os, sys; open(sys.argv[1] + '.leader', 'w').write(str(os.getpid()))\n"
+    begin = "import os, sys; open(sys.argv[1] + '.leader', 'w').write(str(os.getpid()))\n"
     command = ["score", "paris", "--run", shlex.join([*python(begin + program), str(note)])]
     status, _, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", signal.SIGKILL)
     assert status == -signal.SIGKILL

@@ -1,0 +1,48 @@
+"""`foucault verify` of the folder of a sweep: every part by its seal, the other files by their checksums."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..errors import InputError
+from ..system.checksums import SUMS, check_sums
+from ..system.documents import json_document
+from .store import SUMMARY, Store
+from .sweep import Swept
+
+
+def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:
+    """Return what is wrong with a sweep, and what cannot be told.
+
+    Raises:
+        InputError: its plan is damaged, or pyarrow is not installed.
+    """
+    store = Store.opened(folder)
+    problems, undecided = [], []
+    missing = store.missing()
+    if missing:
+        begin = f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {missing[0]}"
+        problems.append(f"{begin}; `foucault sweep --out {folder}` makes them again")
+    for name in store.foreign():
+        problems.append(f"{name} is no part of this sweep: remove it, as whoever reads the folder would take its rows")
+    try:
+        problems += check_sums(folder)
+    except FileNotFoundError:
+        undecided.append(f"{SUMMARY}, as there is no {SUMS}; `foucault sweep --out {folder}` writes it")
+    if not problems:
+        problems += _summary_problems(store)
+    return problems, undecided
+
+
+def _summary_problems(store: Store) -> list[str]:
+    """Return what the summary says otherwise than the parts."""
+    try:
+        summary = json_document(store.folder / SUMMARY, "PATH")
+    except FileNotFoundError:
+        return [f"{SUMMARY} is missing"]
+    except InputError as error:
+        return [str(error)]
+    swept = Swept(store.request, store)
+    told = {"rows": summary.get("rows"), "counts": summary.get("counts")}
+    found = {"rows": len(swept), "counts": swept.counts}
+    return [] if told == found else [f"{SUMMARY} counts {told}, and the parts hold {found}"]

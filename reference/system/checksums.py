@@ -1,0 +1,82 @@
+"""Checksums that find accidents in a folder of results: of its files in SHA256SUMS, and of each line of a journal.
+
+`sha256sum -c SHA256SUMS` checks the files too. A journal grows line by line, so that each line carries its own seal.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from .documents import json_lines, regular
+
+SUMS = "SHA256SUMS"
+JOURNALS = "*.jsonl"
+SEAL = "seal"
+MOST_BYTES = 1 << 30  # of a file
+_LINE = re.compile(r"([0-9a-f]{64})  ([^/]+)")
+_SEAL_HEX = 16  # hexadecimal digits of the seal of a line
+
+
+def sums_text(files: Mapping[str, bytes]) -> str:
+    """Return the content of SHA256SUMS for files by name."""
+    return "".join(f"{sha256(data).hexdigest()}  {name}\n" for name, data in sorted(files.items()))
+
+
+def sealed_line(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the record of a line of a journal with its seal."""
+    text = json.dumps({name: value for name, value in record.items() if name != SEAL}, sort_keys=True)
+    return {**record, SEAL: sha256(text.encode()).hexdigest()[:_SEAL_HEX]}
+
+
+def is_sound(record: Mapping[str, Any]) -> bool:
+    """Return whether the record of a line is as it was sealed; earlier versions wrote lines without a seal."""
+    return SEAL not in record or sealed_line(record) == record
+
+
+def check_sums(folder: Path) -> list[str]:
+    """Return what is wrong with the files that SHA256SUMS of a folder lists.
+
+    Raises:
+        FileNotFoundError: there is no SHA256SUMS.
+        InputError: it is no regular file.
+    """
+    with regular(folder / SUMS, "PATH", MOST_BYTES, SUMS) as stream:
+        lines = stream.read().decode(errors="replace").splitlines()
+    problems = [] if lines else [f"{SUMS} is empty"]
+    for line in lines:
+        match = _LINE.fullmatch(line)
+        if match is None:
+            problems.append(f"{SUMS} has a line that is no checksum")
+            continue
+        expected, name = match.groups()
+        try:
+            with regular(folder / name, "PATH", MOST_BYTES, "a file") as stream:
+                found = sha256(stream.read()).hexdigest()
+        except FileNotFoundError:
+            problems.append(f"{name} is missing")
+            continue
+        if found != expected:
+            problems.append(f"{name} is not as it was written")
+    return problems
+
+
+def verify_report(folder: Path) -> tuple[list[str], list[str]]:
+    """Return what is wrong with the files of a report and with its journals, and what cannot be told."""
+    problems, undecided = [], []
+    try:
+        problems += check_sums(folder)
+    except FileNotFoundError:
+        undecided.append(f"the report, as there is no {SUMS}: the same command writes it")
+    for path in sorted(folder.glob(JOURNALS)):
+        records = list(json_lines(path, "PATH"))
+        damaged = [number for number, record in enumerate(records, 1) if not is_sound(record)]
+        unsealed = sum(SEAL not in record for record in records)
+        problems += [f"{path.name}: result {number} is not as it was written" for number in damaged]
+        if unsealed:
+            undecided.append(f"{path.name}: results without a seal, of an earlier version: {unsealed}")
+    return problems, undecided
