@@ -120,7 +120,10 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
         )
         for method in listed
     ]  # fmt: skip
-    yours = [(name, shortened(command, LONGEST_COMMAND), "", "", "--run", "", "") for name, command in programs.items()]
+    yours = [
+        (name, shortened(command, LONGEST_COMMAND), "", observed(of_method.get(name)), "--run", "", "")
+        for name, command in programs.items()
+    ]
     yours += [(row.method, "", "", "", "--candidates", "", "") for row in rows if row.kind == FILE]
     columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
     return Table(columns, [*body, *yours]).html(TEXTS["orders"])
@@ -134,13 +137,13 @@ def observed(order: ObservedOrder | None) -> str:
 
 
 def _orders_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
-    """Return declared and observed orders as lines of text."""
+    """Return declared and observed orders as lines of text; a user's program declares none."""
     declared = orders(rows, bound_m)
     usual = {order.method: order.formulation for order in reversed(declared)}
     texts = []
     for order in declared:
         other = "" if usual[order.method] == order.formulation else f" ({order.formulation})"
-        texts.append(f"{order.method}{other} {order.declared}: {observed(order)}")
+        texts.append(f"{order.method}{other} {order.declared or ABSENT}: {observed(order)}")
     return ["", *wrap(f"Order, declared: observed. {'; '.join(texts)}", 100)] if texts else []
 
 

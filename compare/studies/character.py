@@ -154,7 +154,7 @@ def _causes(row: Row, status: Status, traits: Character) -> Iterator[str]:
     if traits.stiff:
         steps = traits.damping * traits.span / EXPLICIT_REACH
         text = f"stiff: rates up to {traits.damping:.2g}/s, a factor of {traits.ratio:.1g} apart"
-        yield f"{text}, so that an explicit method needs about {steps:.1g} steps"
+        yield f"{text}, so that a method whose step is bound by the fastest rate needs about {steps:.1g} steps"
     if row.formulation in ("angles", "lagrangian") and traits.nearest < 1e-3:
         yield f"the path passes the vertical within {traits.nearest:.1g} of the length, where the azimuth jumps"
     if row.formulation == "plane" and traits.amplitude > 0.99:

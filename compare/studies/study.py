@@ -157,30 +157,30 @@ class ObservedOrder:
     Attributes:
         method: its id.
         formulation: of the equations of motion.
-        declared: by the method.
-        observed: exponent of the error against the steps, or the evaluations where steps are not told; None where the
-            runs do not tell it from its neighbours.
+        declared: by the method; None of a user's program.
+        observed: exponent of the error against the steps, or the evaluations where steps are not told, or the inverse
+            of the step where neither is; None where the runs do not tell it from its neighbours.
         standard_error: of the fit.
         settings: number of settings that were fitted.
     """
 
     method: str
     formulation: str
-    declared: int
+    declared: int | None
     observed: float | None = None
     standard_error: float | None = None
     settings: int = 0
 
 
 def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
-    """Return the orders of all methods that declare one, each in each of its formulations.
+    """Return the orders of all methods that declare one, each in each of its formulations, and of users' programs.
 
     Args:
         rows: of a study.
         bound_m: of the reference, in m.
     """
-    declared = [row for row in rows if row.method in METHODS and METHODS[row.method].order is not None]
-    groups = grouped(declared, lambda row: (row.method, row.formulation))
+    of_order = [row for row in rows if row.kind == "step" and row.method not in METHODS or _declared(row.method)]
+    groups = grouped(of_order, lambda row: (row.method, row.formulation))
     return [_order(*key, group, bound_m) for key, group in groups.items()]
 
 
@@ -188,13 +188,23 @@ def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -
     laws = [law for law in _laws(rows, bound_m) if law.standard_error <= DISTINGUISHED]
     law = max(laws, key=lambda law: (law.points, -law.standard_error), default=None)
     observed = () if law is None else (-law.exponent, law.standard_error, law.points)
-    return ObservedOrder(method, formulation, METHODS[method].order or 0, *observed)
+    return ObservedOrder(method, formulation, _declared(method), *observed)
+
+
+def _declared(method: str) -> int | None:
+    return METHODS[method].order if method in METHODS else None
+
+
+def _count(row: Row) -> float | None:
+    """Return the steps of a run, or what is in proportion to them."""
+    by_step = 1 / row.setting if row.kind == "step" else None
+    return row.steps or row.rhs_evaluations or by_step
 
 
 def _laws(rows: Sequence[Row], bound_m: float) -> Iterator[PowerLaw]:
     """Yield the fit to each run of neighbouring settings over which the error falls and is no rounding."""
     points = sorted((count, row.error_m) for row in rows if row.status is Status.OK and row.error_m
-                    if (count := row.steps or row.rhs_evaluations))  # fmt: skip
+                    if (count := _count(row)))  # fmt: skip
     least = max(bound_m, min((error for _, error in points), default=0.0))
     above = [point for point in points if point[1] > ABOVE_LEAST * least]
     for first in range(len(above)):

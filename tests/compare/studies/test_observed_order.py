@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from compare.studies.row import Row
@@ -61,4 +63,11 @@ def test_errors_near_the_bound_of_the_reference_are_left_out():
 def test_only_whole_runs_count_and_only_methods_with_an_order():
     assert only(ladder([1e-2 * 16.0**-i for i in range(6)], status=Status.EXTRAPOLATED)).observed is None
     assert orders(ladder([1e-2, 1e-4, 1e-6, 1e-9], method="heyoka_double"), 1e-20) == []
-    assert orders(ladder([1e-2, 1e-4, 1e-6, 1e-9], method="mine"), 1e-20) == []
+
+
+def test_a_program_declares_no_order_and_shows_the_one_it_has():
+    """It tells neither steps nor evaluations, but {setting} is its step."""
+    rows = [replace(row, steps=None) for row in ladder([1e-2 * 16.0**-i for i in range(5)], method="mine")]
+    order = only(rows)
+    assert (order.method, order.declared) == ("mine", None)
+    assert order.observed == pytest.approx(4)
