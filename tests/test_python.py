@@ -114,6 +114,39 @@ def test_solutions_and_their_tables_are_frames(minute, monkeypatch):
         minute.to_pandas()
 
 
+def test_numbers_and_directions_of_transits_are_whole_in_a_frame():
+    golden = reference.load("hard")
+    kinds = golden.transits.to_pandas().dtypes
+    assert [kinds[name].kind for name in ("k", "direction", "t")] == ["i", "i", "f"]
+
+
+def test_columns_of_a_dataset_and_a_solution_are_had_by_name(minute):
+    for table in (reference.load("hard"), minute):
+        assert table["t"].tolist() == table.t.tolist() and table["vz"].tolist() == table.vz.tolist()
+        with pytest.raises(KeyError, match="'q' is no column"):
+            table["q"]
+
+
+def test_a_scene_is_named_in_a_line_and_shown_with_its_fields_in_a_notebook():
+    scene = reference.load_scene("hard", {"title": "a <b> pendulum"})
+    assert repr(scene) == "Scene(hard: a <b> pendulum)"
+    shown = scene._repr_html_()
+    assert "a &lt;b&gt; pendulum" in shown and f"length = {scene.pendulum.length}" in shown
+
+
+@pytest.mark.parametrize("several", [[1], (1, 2), np.array([60.0])])
+def test_several_values_for_one_field_are_refused(several):
+    with pytest.raises(InputError, match=r"run\.t_end: got .*expected a single value"):
+        reference.solve("paris", t_end=several)
+    assert reference.load_scene("paris", {"run.t_end": np.array(60.0)}).exact.t_end == 60
+
+
+def test_lists_in_the_list_of_an_axis_are_refused():
+    for nested in ([[1]], [0, [1, 2]], np.array([[1, 2]])):
+        with pytest.raises(InputError, match=r"site\.latitude: got .*not lists in a list"):
+            reference.sweep("paris", {"site.latitude": nested}, t_end=60)
+
+
 def test_motions_and_errors_are_drawn(minute, tmp_path):
     pytest.importorskip("matplotlib")
     score = compare.judge(ROWS, "paris", tolerance=1e-8)

@@ -139,6 +139,21 @@ def read_text(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     return Candidate.of(name, columns.pop("t"), columns, low=low, transits=times, notes=notes, conventions=conventions)
 
 
+def _binary(data: bytes) -> tuple[str, str] | None:
+    """Return what the first bytes of a file are, and what to do; None if they may be text in UTF-8."""
+    packed = {b"\x1f\x8b": "gzip", b"\xfd7zXZ": "xz", b"BZh": "bzip2"}
+    # the longer marks first: that of UTF-32 begins as that of UTF-16
+    encodings = {codecs.BOM_UTF32_LE: "UTF-32", codecs.BOM_UTF32_BE: "UTF-32"}
+    encodings |= {codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16"}
+    for begins, kind in packed.items():
+        if data.startswith(begins):
+            return kind, "Unpack it first."
+    for begins, kind in encodings.items():
+        if data.startswith(begins):
+            return kind, "Write it in UTF-8; PowerShell does by `| Out-File -Encoding utf8`."
+    return ("a zero byte", "Binary data is read from .npy and .npz only.") if b"\0" in data else None
+
+
 class ColumnReader:
     """A reader of one text; `columns` reads it.
 
@@ -195,10 +210,8 @@ class ColumnReader:
             if self.line > MAX_LINES:
                 got, most = f"more than {MAX_LINES} lines", f"at most {MAX_LINES}, comments and empty ones included"
                 raise InputError(self.name, got, most, "Thin the output out.")
-            if not self.fields and b"\0" in data:
-                got, advice = "a zero byte", "Binary data is read from .npy and .npz only."
-                if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-                    got, advice = "UTF-16", "PowerShell writes UTF-8 by `| Out-File -Encoding utf8`."
+            if not self.fields and (binary := _binary(data)):
+                got, advice = binary
                 raise InputError(self.name, got, "text in UTF-8", advice)
             text = data.decode("utf-8", "replace").strip()
             text = text if self.fields else text.removeprefix("\ufeff")

@@ -109,7 +109,8 @@ def atlas(
 ) -> None:
     """Make a page over all golden datasets.
 
-    The page of a scene plays its motion, has pictures, bounds and files, and judges a program's output dropped on it.
+    The page of a scene has pictures, bounds and files, judges a program's output dropped on it, and plays the motion
+    where the scene has a golden function.
     """
     from ..report.atlas.entry import studies_folder
     from ..report.atlas.pages import build

@@ -179,8 +179,7 @@ def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
         rows: of a study.
         bound_m: of the reference, in m.
     """
-    of_order = [row for row in rows if row.kind == "step" and row.method not in METHODS or _declared(row.method)]
-    groups = grouped(of_order, lambda row: (row.method, row.formulation))
+    groups = grouped(filter(_has_order, rows), lambda row: (row.method, row.formulation))
     return [_order(*key, group, bound_m) for key, group in groups.items()]
 
 
@@ -189,6 +188,11 @@ def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -
     law = max(laws, key=lambda law: (law.points, -law.standard_error), default=None)
     observed = () if law is None else (-law.exponent, law.standard_error, law.points)
     return ObservedOrder(method, formulation, _declared(method), *observed)
+
+
+def _has_order(row: Row) -> bool:
+    """Return whether a method declares an order, or is a user's program whose setting is its step."""
+    return _declared(row.method) is not None or (row.method not in METHODS and row.kind == "step")
 
 
 def _declared(method: str) -> int | None:

@@ -21,6 +21,7 @@ RUN = (*STATE, "ax")  # an engine's results at each output time, and after t at 
 
 GRID = STATE  # of grid.csv, after t
 SECTION = ("t", *STATE)  # of sections.csv, beside section, number, direction and bound
+WHOLE = ("k", "direction")  # columns of whole numbers
 TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
 
 UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}  # of the columns of each kind
@@ -64,7 +65,8 @@ class Framed:
         Raises:
             InputError: pandas is not installed.
         """
-        return data_frame({name: self.array(name) for name in self.columns})
+        columns = {name: self.array(name) for name in self.columns}
+        return data_frame({name: column.astype(int) if name in WHOLE else column for name, column in columns.items()})
 
     def _repr_html_(self) -> str | None:
         try:
@@ -83,6 +85,10 @@ class GridColumns(Framed):
     def t(self) -> Array:
         """Grid times in s, shape (rows,)."""
         return np.array([float(t) for t in self.times])
+
+    def __getitem__(self, column: str) -> Array:
+        """Return a grid column, or the times, as the nearest doubles, shape (rows,)."""
+        return self.t if column == "t" else np.asarray(self.grid[column])
 
     def exact(self, column: str) -> list[Fraction]:
         """Return the exact values of a grid column."""

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
+from html import escape
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -26,6 +27,8 @@ from .texts import Line, Widths, checked, explained
 
 MAX_ROWS = 2_000_000
 LEAST_T_END = Fraction(1, 10**300)
+
+LISTS = ("flags", "run.sections")  # fields that hold several words
 
 Reading = Literal["decimal", "binary64"]
 
@@ -79,6 +82,18 @@ class Scene(SceneTable):
         """Return the scene with fields replaced, by words `section.key=value` or `x0=value`, or a mapping of keys."""
         return _with_values(self.model_dump(exclude_none=True), values)
 
+    def __repr__(self) -> str:
+        """Return id and title."""
+        return f"Scene({self.id}: {self.title})"
+
+    def _repr_html_(self) -> str:
+        """Return its fields, a line for each table, as a notebook shows them."""
+        lines = [f"{self.id}: {self.title}"]
+        for name, table in self.model_dump(exclude_none=True).items():
+            if isinstance(table, dict) and table:
+                lines.append(f"[{name}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
+        return f"<pre>{escape(chr(10).join(lines))}</pre>"
+
 
 Words = str | Iterable[str] | Mapping[str, Any]  # one word `key=value`, several, or a mapping from keys to values
 
@@ -86,20 +101,45 @@ Words = str | Iterable[str] | Mapping[str, Any]  # one word `key=value`, several
 def words_of(values: Words) -> list[str]:
     """Return values of fields as words `key=value`; a list, range or array is written as values between commas."""
     if isinstance(values, Mapping):
-        return [f"{key}={_word(value)}" for key, value in values.items()]
+        return [f"{key}={_word(str(key), value)}" for key, value in values.items()]
     return [*map(str, values)] if _is_listed(values) else [str(values)]
 
 
-def _word(value: Any) -> str:
-    return ",".join(map(_word, value)) if _is_listed(value) else str(value)
+def _word(key: str, value: Any) -> str:
+    """Return a value, or several with commas between them.
+
+    Raises:
+        InputError: a list holds lists.
+    """
+    if not _is_listed(value):
+        return str(value)
+    items = list(value)
+    if any(map(_is_listed, items)):
+        raise InputError(full_name(key), value, "numbers or words, not lists in a list")
+    return ",".join(map(str, items))
 
 
 def _is_listed(value: Any) -> bool:
-    return isinstance(value, Iterable) and not isinstance(value, str)
+    single = isinstance(value, str) or getattr(value, "shape", None) == ()  # an array of one number, without axes
+    return isinstance(value, Iterable) and not single
+
+
+def _check_single(values: Words) -> None:
+    """Refuse several values for a field that holds one.
+
+    Raises:
+        InputError: there are.
+    """
+    pairs = values.items() if isinstance(values, Mapping) else ()
+    for key, value in pairs:
+        name = full_name(str(key))
+        if _is_listed(value) and name not in LISTS:
+            raise InputError(name, value, "a single value")
 
 
 def _with_values(document: dict[str, Any], values: Words) -> Scene:
     """Return a scene that is given as nested mappings, with fields replaced."""
+    _check_single(values)
     for assignment in words_of(values):
         key, sign, value = assignment.partition("=")
         section, _, name = full_name(key).rpartition(".")

@@ -48,8 +48,9 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
         "Atlas of the Foucault pendulum",
         [_filters(scenes), *sections],
         lead=paragraph(
-            f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene plays its motion, "
-            "says what it catches and what stands behind its numbers, and judges your program's output in the browser."
+            f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene "
+            "says what it catches and what stands behind its numbers, judges your program's output in the browser, and "
+            "plays the motion where the scene has a golden function."
         ),
         script=_script("filtering.js"),
         styles=source("atlas.css"),

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import bz2
+import gzip
 import io
+import lzma
 import os
 import subprocess
 import sys
@@ -189,10 +192,16 @@ def test_an_exponent_of_fortran_may_come_in_any_row():
     assert found.columns["y"].tolist() == [0.4, -2.5]
 
 
-@pytest.mark.parametrize("order", ["utf-16-le", "utf-16-be"])
-def test_a_text_in_utf_16_is_told_as_that(order):
-    with pytest.raises(InputError, match="got 'UTF-16', expected text in UTF-8"):
+@pytest.mark.parametrize("order", ["utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be"])
+def test_a_text_in_another_encoding_is_told_as_that(order):
+    with pytest.raises(InputError, match=f"got '{order[:6].upper()}', expected text in UTF-8"):
         read_stream(io.BytesIO("\ufefft,x,y\n0,0.3,0.4\n".encode(order)), "run")
+
+
+@pytest.mark.parametrize(("kind", "pack"), [("gzip", gzip.compress), ("bzip2", bz2.compress), ("xz", lzma.compress)])
+def test_a_packed_file_is_told_as_that(kind, pack):
+    with pytest.raises(InputError, match=f"got '{kind}', expected text in UTF-8. Unpack it first"):
+        read_stream(io.BytesIO(pack(b"t,x,y\n0,0.3,0.4\n")), "run")
 
 
 def test_a_last_line_without_its_end_is_noted():

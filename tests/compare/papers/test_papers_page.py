@@ -26,7 +26,7 @@ ROW = JudgedRow("a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correcti
 def test_the_folder_holds_the_page_the_figures_and_the_rows(built: Built) -> None:
     numbers = list(FIGURES)
     assert numbers == [1, 2, 3, 4, 5, 6, 7, 8, 9]
-    expected = {"index.html", "rows.csv", "rows.json", *(f"figure_{n}.svg" for n in numbers)}
+    expected = {"SHA256SUMS", "index.html", "rows.csv", "rows.json", *(f"figure_{n}.svg" for n in numbers)}
     assert {path.name for path in built[0].iterdir()} == expected
 
 

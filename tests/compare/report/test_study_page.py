@@ -109,7 +109,12 @@ def table_of(read, *titles):
 
 
 def test_the_folder_holds_the_document_and_its_rows_and_the_page(written):
-    assert sorted(path.name for path in written.iterdir()) == ["index.html", "rows.csv", "study.json"]
+    assert sorted(path.name for path in written.iterdir()) == [
+        "SHA256SUMS",
+        "index.html",
+        "rows.csv",
+        "study.json",
+    ]
     assert json.loads((written / "study.json").read_text()) == study_document()
     with (written / "rows.csv").open(newline="") as stream:
         back = list(csv.DictReader(stream))

@@ -64,7 +64,8 @@ def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):
     assert "bad.csv was not judged by bad: " in out and "nan in row 2" in out
     assert "paris.npz agrees with paris (61 rows, t = 0 to 3600 of 86400 s: 4.16 %)" in out
     assert "wrong.csv disagrees with wrong" in out
-    assert sorted(os.listdir(tmp_path / "page")) == ["badge.svg", "index.html", "rows.csv", "suite.json"]
+    names = ["SHA256SUMS", "badge.svg", "index.html", "rows.csv", "suite.json"]
+    assert sorted(os.listdir(tmp_path / "page")) == names
     badge = (tmp_path / "page/badge.svg").read_text()
     root = ElementTree.fromstring(badge)
     title = root.find("{http://www.w3.org/2000/svg}title").text

@@ -36,7 +36,7 @@ def readings(tmp_path):
 
 def test_a_page_for_each_scene_and_one_over_all(atlas):
     assert sorted(path.name for path in atlas.iterdir()) == [
-        "conical.html", "hard.html", "index.html", "paris.function.js", "paris.html",
+        "SHA256SUMS", "conical.html", "hard.html", "index.html", "paris.function.js", "paris.html",
     ]  # fmt: skip
     text = (atlas / "index.html").read_text()
     golden = reference.load("paris")
@@ -51,6 +51,12 @@ def test_a_page_for_each_scene_and_one_over_all(atlas):
     assert f"y within {reference.load('paris.binary64').function.bound['y']:.1e} m" in page
     assert all(record.sha256 in page for record in golden.manifest.files.values())
     assert golden.manifest.cross_checks[0].position_m in page and golden.manifest.seal in page
+
+
+def test_the_index_promises_a_player_only_where_there_is_a_golden_function(atlas):
+    players = {path.stem for path in atlas.glob("*.html") if '<div id="player">' in path.read_text()}
+    assert "paris" in players and players < {"conical", "hard", "paris"}
+    assert "plays the motion where the scene has a golden function" in (atlas / "index.html").read_text()
 
 
 def test_a_thumbnail_shows_the_path_from_its_release_on(atlas):
