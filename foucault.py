@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 UNFORESEEN = 70  # a fault of this program, EX_SOFTWARE of sysexits.h; 1 would be a verdict, 2 the user's mistake
 INTERRUPTED = 130
+STOPPED = "stopped"  # of a command that says no more of what became of its work
 UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
 GROUPS = {
     "Solve and judge": ("scenes", "show", "generate", "verify", "score", "plot", "atlas"),
@@ -108,7 +109,7 @@ def main() -> None:
     try:
         ended = _run()
     except KeyboardInterrupt:
-        ended = INTERRUPTED, "stopped", True  # by a command that says no more of what became of its work
+        ended = INTERRUPTED, STOPPED, True
     except Exception as error:
         ended = UNFORESEEN, _report(error), False
     # here no exception is left, which would keep what a signal has interrupted from being cleared away
@@ -137,7 +138,8 @@ def _run() -> tuple[str | int | None, str, bool] | None:
                 sys.stdout.flush()
     except SystemExit as end:
         unread = isinstance(end.__context__, BrokenPipeError)
-        return UNREAD if unread else end.code, "", bool(signals)
+        status = UNREAD if unread else end.code
+        return status, STOPPED if status == INTERRUPTED else "", bool(signals)
     except Stopped as stopped:
         return stopped.exit_status, str(stopped), bool(signals)
     except Exception as error:

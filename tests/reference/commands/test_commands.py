@@ -8,6 +8,7 @@ import pty
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from interruption import gone_within, interrupted, members
@@ -335,6 +336,12 @@ def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
     assert b"Traceback" not in err
     assert list(tmp_path.iterdir()) == []
     assert gone_within(group, 10)
+
+
+def test_interrupted_a_command_that_keeps_nothing_says_that_it_stopped():
+    words = ["show", "paris", "--sensitivity"]
+    status, err, _ = interrupted(words, lambda group, _: "heyoka" in Path(f"/proc/{group}/maps").read_text())
+    assert (status, err) == (130, b"foucault: stopped\n")
 
 
 def test_show_says_how_many_digits_the_flow_costs(foucault):
