@@ -201,7 +201,7 @@ def _declared(method: str) -> int | None:
 
 def _count(row: Row) -> float | None:
     """Return the steps of a run, or what is in proportion to them."""
-    by_step = 1 / row.setting if row.kind == "step" else None
+    by_step = 1 / row.setting if row.kind == "step" and row.setting else None  # 0: a program without {setting}
     return row.steps or row.rhs_evaluations or by_step
 
 

@@ -12,7 +12,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from .documents import json_lines, regular
+from .documents import regular
 
 SUMS = "SHA256SUMS"
 JOURNALS = "*.jsonl"
@@ -73,10 +73,38 @@ def verify_report(folder: Path) -> tuple[list[str], list[str]]:
     except FileNotFoundError:
         undecided.append(f"the report, as there is no {SUMS}: the same command writes it")
     for path in sorted(folder.glob(JOURNALS)):
-        records = list(json_lines(path, "PATH"))
-        damaged = [number for number, record in enumerate(records, 1) if not is_sound(record)]
-        unsealed = sum(SEAL not in record for record in records)
-        problems += [f"{path.name}: result {number} is not as it was written" for number in damaged]
-        if unsealed:
-            undecided.append(f"{path.name}: results without a seal, of an earlier version: {unsealed}")
+        more_problems, more_undecided = _check_journal(path)
+        problems += more_problems
+        undecided += more_undecided
     return problems, undecided
+
+
+def _check_journal(path: Path) -> tuple[list[str], list[str]]:
+    """Return what is wrong with a journal, and what cannot be told."""
+    with regular(path, "PATH", MOST_BYTES, "a journal") as stream:
+        lines = stream.read().splitlines()
+    damaged, cut_short, unsealed = [], 0, 0
+    for number, line in enumerate(lines, 1):
+        record = _record(line)
+        if record is None and not line.endswith(b"}"):
+            cut_short += 1
+        elif record is None or not is_sound(record):
+            damaged.append(number)
+        elif SEAL not in record:
+            unsealed += 1
+    problems = [f"{path.name}: line {number} is not as it was written" for number in damaged]
+    undecided = []
+    if cut_short:
+        undecided.append(f"{path.name}: lines that were cut short, as by a kill, and are not used: {cut_short}")
+    if unsealed:
+        undecided.append(f"{path.name}: results without a seal, of an earlier version: {unsealed}")
+    return problems, undecided
+
+
+def _record(line: bytes) -> dict[str, Any] | None:
+    """Return the record of a line; None if it is none."""
+    try:
+        record = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    return record if isinstance(record, dict) else None

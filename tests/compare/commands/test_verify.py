@@ -105,6 +105,20 @@ def test_a_result_that_was_changed_is_measured_again_and_one_of_an_earlier_versi
     assert len(journal.read_text().splitlines()) == written + 1
 
 
+def test_a_line_that_can_no_longer_be_read_is_told(foucault, studied):
+    journal = studied / "rows.jsonl"
+    journal.write_text(journal.read_text().replace('"item"', '"item', 1))
+    status, out, _ = foucault("verify", studied)
+    assert status == 1 and "rows.jsonl: line 1 is not as it was written" in out
+
+
+def test_a_line_that_was_cut_short_is_told_and_is_no_damage(foucault, studied):
+    with (studied / "rows.jsonl").open("a") as journal:
+        journal.write('{"recipe": "0')
+    status, out, _ = foucault("verify", studied)
+    assert status == 0 and "rows.jsonl: lines that were cut short" in out
+
+
 def test_recomputing_is_for_datasets(foucault, studied):
     status, _, err = foucault("verify", studied, "--recompute")
     assert status == 2 and "--recompute" in err
