@@ -191,8 +191,9 @@ def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -
 
 
 def _has_order(row: Row) -> bool:
-    """Return whether a method declares an order, or is a user's program whose setting is its step."""
-    return _declared(row.method) is not None or (row.method not in METHODS and row.kind == "step")
+    """Return whether a method declares an order, or is a user's program whose setting is its step; 0 is none."""
+    of_program = row.method not in METHODS and row.kind == "step" and row.setting > 0
+    return of_program or _declared(row.method) is not None
 
 
 def _declared(method: str) -> int | None:
@@ -201,7 +202,7 @@ def _declared(method: str) -> int | None:
 
 def _count(row: Row) -> float | None:
     """Return the steps of a run, or what is in proportion to them."""
-    by_step = 1 / row.setting if row.kind == "step" and row.setting else None  # 0: a program without {setting}
+    by_step = 1 / row.setting if row.kind == "step" else None
     return row.steps or row.rhs_evaluations or by_step
 
 
