@@ -117,7 +117,11 @@ def _connected(address: str, stack: ExitStack) -> Any:
         with held():
             try:
                 cluster = distributed.LocalCluster(
-                    n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
+                    n_workers=int(count),
+                    threads_per_worker=1,
+                    dashboard_address=None,
+                    silence_logs=50,
+                    scheduler_kwargs={"dashboard_address": ":0"},  # any port: dask warns where another has its own
                 )
             except RuntimeError as error:
                 raise InputError("--cluster", address, "processes that dask can start here", f"{error}") from None

@@ -198,6 +198,14 @@ def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_o
         pass
 
 
+def test_two_clusters_on_a_machine_do_not_warn_of_each_other(recwarn):
+    from reference.sweeps.cluster import scheduler_at
+
+    with scheduler_at("local:1"), scheduler_at("local:1"):
+        pass
+    assert not [warning for warning in recwarn if "already in use" in str(warning.message)]
+
+
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
 def test_ctrl_c_prints_one_sentence_and_what_a_killed_sweep_left_is_removed(tmp_path, monkeypatch):
     """A terminal sends it to the workers too, here while they import what they need."""
