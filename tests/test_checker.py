@@ -39,6 +39,25 @@ def test_sections_of_every_kind_are_proved(check, tmp_path):
     assert {row.split(",")[0] for row in rows[1:]} == set(words.split("; "))
 
 
+@pytest.mark.parametrize("number", ["0.3000000000", "0.3000000001", "0.2999999999", "0.3000000002"])
+def test_a_release_between_two_decimals_may_be_either_of_them(check, tmp_path, number):
+    scene = reference.load_scene("paris", ["release.x=0.30000000005", "run.t_end=30", "run.digits=10"])
+    tie = reference.write(reference.solve(scene, level="enclosed"), tmp_path / "tie")
+    forge(tie, grid=lambda rows, header: rows[0].__setitem__(header.index("x"), number))
+    seen = "is off by" in check(tie).stdout
+    assert seen == (number not in ("0.3000000000", "0.3000000001"))
+
+
+@pytest.mark.parametrize("last", ["", "0" * 60 + "1"])
+def test_how_a_bob_begins_is_decided_where_it_is_pushed_exactly_sideways_alone(check, tmp_path, last):
+    push = ["release.vx=-0.04", f"release.vy=0.03{last}", "site.gravity_is=effective"]
+    scene = reference.load_scene("paris", [*push, "run.t_end=30", "run.digits=15", "run.sections=highest"])
+    aside = reference.write(reference.solve(scene, level="enclosed"), tmp_path / "aside")
+    assert check(aside).returncode == 0
+    forge(aside, manifest=lambda document: document["sections"]["possible"].update(highest=[]))
+    assert check(aside).returncode == bool(last)
+
+
 def test_what_is_not_a_dataset_is_refused(check, tmp_path):
     assert check(tmp_path).returncode == 2
     copy = shutil.copytree(GOLDEN / "weightless", tmp_path / "copy")

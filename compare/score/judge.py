@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
 from pathlib import Path
@@ -23,6 +24,7 @@ from reference.dataset.golden import WITHIN, Dense
 from reference.errors import counted, did_you_mean, in_words
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
+from reference.numbers.columns import POSITION
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
@@ -135,6 +137,7 @@ def judge(
         )
         if not in_doubt(result) and (isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed):
             break
+    result = replace(result, notes=result.notes + _as_good_as_none(result))
     if candidate.positions and (scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])):
         result = replace(result, candidate=replace(candidate, conventions=(*candidate.conventions, scale)))
     if explain and result.off_path and candidate.positions and result.covered:
@@ -266,6 +269,29 @@ def _rest(scene: Scene) -> tuple[float, float]:
     except UnreachableError:
         return 0.0, 0.0
     return float(x), float(y)
+
+
+def _as_good_as_none(score: Score) -> tuple[str, ...]:
+    """Return a warning where a bob that does not move would agree as well, so that to agree says little.
+
+    It may stay at its release, as in a program that never steps, or at its rest position, as in one without a swing.
+    """
+    if not (score.agrees and score.candidate.positions and score.transits is None):
+        return ()
+    places = {
+        "where it is released": np.array([float(q) for q in Start.of(score.scene.exact, PLACEHOLDER_BITS).position])
+    }
+    with suppress(UnreachableError):
+        places["at its rest position"] = rest_in_metres(score.scene)
+    given = [i for i, name in enumerate(POSITION) if name in score.candidate.columns]
+    truth = score.errors.truth.states[:, given]
+    farthest = {word: float(np.linalg.norm(truth - place[given], axis=1).max()) for word, place in places.items()}
+    word = min(farthest, key=lambda word: farthest[word])
+    if farthest[word] > score.allowed_m:
+        return ()
+    moves = f"the true one is never more than {farthest[word]:.2g} m from there"
+    advice = ": set a tolerance far below that" if farthest[word] > score.errors.bound_m else ""
+    return (f"a bob that stays {word} would agree as well, as {moves}{advice}",)
 
 
 def _flung_off(scene: Scene) -> tuple[str, ...]:

@@ -200,8 +200,8 @@ def _motion(scene: Scene) -> dict[str, Any]:
     They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
     """
     from ..model.start import Start
-    from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, SMALL, left_out, offset, turns_too_far
-    from ..sweeps.part import solve_part
+    from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, ONE_SIDE, SMALL, left_out, offset, turns_too_far
+    from ..sweeps.part import highest_on_one_side, solve_part
     from ..sweeps.promote import Promoted
     from ..sweeps.request import request
 
@@ -227,9 +227,12 @@ def _motion(scene: Scene) -> dict[str, Any]:
     off = offset(start, float(k.length) * smallest)
     if off > 1:
         return {"reason": LEAN}
+    too_fast = turns_too_far(start, 0.5 / swing)
+    if not too_fast and highest_on_one_side(sweep):
+        return {"reason": ONE_SIDE}
     motion |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
     turned, error_of_turn = math.radians(abs(turn)) * seconds / HOUR, float(row["precession_error_deg_per_h"])
-    reason = FAST if turns_too_far(start, 0.5 / swing) else "" if off <= turned else SMALL
+    reason = FAST if too_fast else "" if off <= turned else SMALL
     if not reason:
         motion |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
         if abs(turn) > error_of_turn:

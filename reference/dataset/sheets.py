@@ -49,10 +49,13 @@ class Sheet:
 
 
 def grid_sheet(solution: Solution) -> Sheet:
-    """Return `grid.csv`: exact times, and the state at each."""
+    """Return `grid.csv`: exact times, and the state at each; of the release what the scene gives, as it is."""
     decimals = {"t": exact_decimals(solution.times), **grid_decimals(solution)}
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
-    printed = solution.grid.printed(decimals)
+    first, *later = solution.grid.printed(decimals)
+    given = {name: fixed_decimal(value, decimals[name]) for name, value in solution.scene.exact.released.items()}
+    release = tuple(given.get(name, text) for name, text in zip(GRID, first, strict=True))
+    printed = [release, *later]
     return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
 
 

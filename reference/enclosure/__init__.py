@@ -11,7 +11,7 @@ intervals are Fractions; no flint object leaves this package.
 """
 
 from .approximant import pair, turned
-from .prove import Enclosure, enclose
+from .prove import Enclosure, check_gates, enclose
 from .shapes import EnclosedTransit, Interval
 
-__all__ = ["EnclosedTransit", "Enclosure", "Interval", "enclose", "pair", "turned"]
+__all__ = ["EnclosedTransit", "Enclosure", "Interval", "check_gates", "enclose", "pair", "turned"]

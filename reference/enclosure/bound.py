@@ -41,6 +41,9 @@ class SceneBalls:
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
             # xdot = 0 for ever: in a plane that does not turn, or at rest on the vertical
             self.still = x and ((vx and rate.is_zero()) or (at_rest and y and (sin * cos * rate).is_zero()))
+            # whether the velocity at the release is exactly horizontal, and c exactly vertical (Lemma 13.2)
+            self.level = horizontal(inputs, self.release[1][2])
+            self.upright = weight[1].is_zero()
             self.begin(v)
 
     def begin(self, v: Vector) -> None:
@@ -66,6 +69,15 @@ class SceneBalls:
         angle, azimuth, *rates = (ball(q / 180) for q in inputs.angles)
         (s, c), (sa, ca), (da, db) = angle.sin_cos_pi(), azimuth.sin_cos_pi(), times(arb.pi(), rates)
         return [s * ca, s * sa, -c], [c * ca * da - s * sa * db, c * sa * da + s * ca * db, s * da]
+
+
+def horizontal(inputs: Any, vz: arb) -> bool:
+    """Return whether the velocity at the release is exactly horizontal; `vz` is a ball of its vertical component."""
+    if inputs.position and all(isinstance(q, Fraction) for q in inputs.position):
+        x, y, vx, vy = inputs.position
+        # of exact inputs: r·v = 0 leaves z vz = -(x vx + y vy)
+        return bool(x * vx + y * vy == 0)
+    return vz.is_zero()
 
 
 class Scaled:

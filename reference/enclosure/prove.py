@@ -6,6 +6,7 @@ Untrusted: no bound is computed here. Every step goes to the trusted `Course`, w
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -17,6 +18,7 @@ from typing import Any, NamedTuple
 from flint import arb
 
 from ..errors import UnreachableError
+from ..model.sections import gate_without_rest
 from ..numbers.precision import log2
 from ..numbers.taylor_step import TaylorStep
 from .bound import SceneBalls
@@ -30,6 +32,7 @@ COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
 RADIUS_BITS = 400  # up to which one radius is always cheaper than columns: a step by columns takes six times as long
 RADIUS_SHARE = 0.2  # beyond that, share of the target bits that one radius may lose before columns are cheaper
 LEAST_BITS, MAX_BITS = 96, 2048
+LOOK_BITS = 128  # in which a scene is looked at before its proof
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
@@ -199,13 +202,40 @@ class _Run:
         return [position, velocity]
 
 
+def check_gates(inputs: Any, words: tuple[str, ...]) -> None:
+    """Refuse gates of a scene that no precision encloses, before any work.
+
+    Raises:
+        InputError: as `demand_rest_positions`.
+    """
+    with suppress(ArithmeticError, ValueError):  # of other faults of a scene the proof tells the reason
+        demand_rest_positions(SceneBalls(inputs, LOOK_BITS), words)
+
+
+def demand_rest_positions(balls: SceneBalls, words: tuple[str, ...]) -> None:
+    """Refuse gates whose rest position cannot be singled out (Lemma 13.3).
+
+    Raises:
+        InputError: it names the gate.
+    """
+    if words:
+        from .sections import form
+
+    for word in words:
+        try:
+            form(balls, word)
+        except ArithmeticError:
+            reason = "in so fast a rotation a proof singles none out, unlike lower levels"
+            raise gate_without_rest(word, reason) from None
+
+
 def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None, lost: Lost | None = None) -> ProofPlan:
     """Choose method and precision for balls of `radius` at `end`.
 
     Raises:
         UnreachableError: it would take more than MAX_BITS.
     """
-    balls = SceneBalls(inputs, 128)
+    balls = SceneBalls(inputs, LOOK_BITS)
     w, span = float(balls.w0), float(end)
     loss = span * float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * w) / 0.693
     target = magnitude(inputs.length / radius) + log2(2 + span * w)

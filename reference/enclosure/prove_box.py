@@ -13,7 +13,7 @@ from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
 from .balls import interval, times
 from .box import BoxBalls, Windows
-from .prove import SCENE_GUARD_BITS, plan_for, until
+from .prove import SCENE_GUARD_BITS, demand_rest_positions, plan_for, until
 from .shapes import Box, Interval, ProvedBox, ProvedDerivatives
 
 LOOK_BITS = 192  # in which a box is looked at
@@ -69,6 +69,7 @@ def enclose_box(
     begun, reached, count, end = process_time(), Fraction(0), 0, until_times[-1]
     try:
         balls = BoxBalls(box, LOOK_BITS)
+        demand_rest_positions(balls, sections)
         bits = plan_for(box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius").bits
         windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits, sections)
         course, latest = windows.course, windows.course.times[-1]

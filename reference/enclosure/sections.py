@@ -32,18 +32,33 @@ def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
     return (across := cross(along, balls.c)), zero, dot(across, rest)
 
 
-class Form(Slope):
-    """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'."""
+def vanishes_at_release(balls: SceneBalls, word: str) -> bool:
+    """Return whether exact zeros of the inputs show that F(0) = 0, for every pendulum (Lemma 13.2)."""
+    kind, _, azimuth = word.partition(" ")
+    (x, y, _), (vx, vy, _) = balls.release
+    if kind in WAYS:
+        # c has no component to the east
+        return bool(balls.level and (balls.upright or vy.is_zero()))
+    sin, cos = ball(Fraction(azimuth.removesuffix("@0")) / 180).sin_cos_pi()
+    if kind == "turn":
+        return bool((vx * cos + vy * sin).is_zero())
+    return azimuth.endswith("@0") and (y * cos - x * sin).is_zero()
 
-    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb) -> None:
+
+class Form(Slope):
+    """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'.
+
+    `slow` says that the form is exactly 0 at the release.
+    """
+
+    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
         (piece, (eta, u, bend)), h = covered, covered.piece.k.h
         # a, b, d as integers over 2^bits, which are off by at most `miss` in all
         factors, miss = fixed([*times(h, a), *b, h * d], piece.step.bits)
         terms = zip(factors, [*piece.p, *piece.v, fmpz_poly([-piece.unit])], strict=True)
         self.covered, self.piece, self.centre, self.unit = covered, piece, ball(piece.step.centre), piece.unit**2
         self.lost, x, y = miss * max(map(len, piece.p)) * (piece.sizes.p + piece.sizes.k), h * size(a), size(b)
-        # at rest, of a velocity alone
-        self.slow, self.flat = all(q.is_zero() for q in [*a, d, *piece.balls.release[1]]), False
+        self.slow, self.flat = slow, False
         self.hold(arb_poly(sum((n * g for n, g in terms if n), fmpz_poly())), x * eta + y * u, x * u + y * bend)
 
     def hold(self, f: Any, *offs: arb) -> None:
@@ -69,8 +84,8 @@ class Form(Slope):
 class Apsis(Form):
     """The form of highest and lowest points, b·v, by bounds of second order: v is along the sphere (Lemma 13.4)."""
 
-    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb) -> None:
-        super().__init__(covered, a, b, d)
+    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
+        super().__init__(covered, a, b, d, slow)
         piece, (eta, u, bend), long = self.piece, covered.tube, size(b)
         miss, bits = dot(piece.p, piece.v), piece.step.bits
         x = [f(UNIT) / piece.unit for f in (*piece.p, *piece.v, *(f.derivative() for f in piece.v))]
@@ -100,7 +115,8 @@ class Sections:
         """Return a scan for the passages of a section."""
         with ctx.workprec(balls.prec):
             f, kind = form(balls, word), self.apsis if word in WAYS else Form
-        return Scan(balls, lambda covered: kind(covered, *f), EnclosedPassage, WAYS.get(word, 0))
+            slow = vanishes_at_release(balls, word)
+        return Scan(balls, lambda covered: kind(covered, *f, slow), EnclosedPassage, WAYS.get(word, 0))
 
     def advance(self, covered: Covered) -> None:
         """Take the next step's tube."""

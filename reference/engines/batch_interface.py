@@ -116,6 +116,8 @@ class Outcomes:
         apsis_first, apsis_last: times of the first and of the last one, in s.
         turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from
             east to north: the sum of the changes from one to the next, each taken between -π/2 and π/2.
+        same_side: highest points that lie on the same side of the plumb line as the one before, int32: none of a swing
+            to and fro, nearly all of a bob that goes over the top.
         least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 for a swing in a plane, 0
             for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
             are counted.
@@ -137,6 +139,7 @@ class Outcomes:
     apsis_first: Array
     apsis_last: Array
     turn: Array
+    same_side: Any
     least_bend: Array
     least_fall: Array
     largest_angle: Array
@@ -148,7 +151,7 @@ class Outcomes:
     def empty(cls, count: int) -> Self:
         """Return the outcomes of `count` rows, to be filled in: nothing found, nothing known."""
         columns: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
-        for name in ("steps", "transits", "close_pairs", "apsides"):
+        for name in ("steps", "transits", "close_pairs", "apsides", "same_side"):
             columns[name] = np.zeros(count, np.int32)
         columns |= {"fate": np.zeros(count, np.int8), "state": np.full((count, 6), np.nan)}
         for name, kind in (("transit_row", np.int64), ("transit_t", np.float64), ("transit_direction", np.int8)):

@@ -213,4 +213,6 @@ def describe_highest_points(
     azimuth = np.arctan2(p, x)
     outcomes.apsides[row], outcomes.least_bend[row], outcomes.least_fall[row] = len(t), bend, fall.min()
     outcomes.apsis_first[row], outcomes.apsis_last[row] = t[0], t[-1]
-    outcomes.turn[row] = azimuth[-1] - azimuth[0] - np.pi * np.sum(np.round(np.diff(azimuth) / np.pi))
+    half_turns = np.round(np.diff(azimuth) / np.pi)
+    outcomes.turn[row] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)
+    outcomes.same_side[row] = np.count_nonzero(half_turns % 2 == 0)

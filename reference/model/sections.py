@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from ..errors import InputError, UnreachableError
 from ..numbers.precision import to_mpf
 from ..scenes.inputs import azimuth_of
 from .algebra import cross, dot, scale
@@ -32,10 +33,20 @@ def form_of(word: str, start: Start) -> Form:
     """Return the form of a section's word, in the precision of a scene's start.
 
     Raises:
-        UnreachableError: a gate through the rest position, and the scene has none.
+        InputError: a gate through the rest position, and the scene has none.
     """
     ctx, angle = start.ctx, to_mpf(azimuth_of(word) / 180, start.ctx)
-    return form_along(word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest)
+    try:
+        return form_along(word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest)
+    except UnreachableError:
+        raise gate_without_rest(word, "so fast a rotation, or weightlessness, leaves none") from None
+
+
+def gate_without_rest(word: str, reason: str) -> InputError:
+    """Return the error of a gate through a rest position that does not exist, or is not known; `reason` says why."""
+    expected = f"a section that needs no rest position: {reason}"
+    advice = f"Write {word}@0 for the plane through the suspension's vertical, or leave this gate out."
+    return InputError("run.sections", word, expected, advice)
 
 
 def direction_of(word: str) -> int:

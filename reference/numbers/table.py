@@ -8,7 +8,7 @@ Numbers are integers over a power of two. Whole columns of them can be put into 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -123,16 +123,18 @@ class Table(Framed):
             for row in self.values
         ]
 
-    def undecided(self, decimals: Mapping[str, int]) -> tuple[Fraction, str, str] | None:
+    def undecided(self, decimals: Mapping[str, int], exact: Container[str] = ()) -> tuple[Fraction, str, str] | None:
         """Return the least known of the numbers of which the bounds do not decide each printed digit, or None.
 
         It comes as its bound in units of the last printed digit, its column and its text. A number is decided if every
-        number within the bound is printed alike.
+        number within the bound is printed alike. `exact` are columns whose first number is known exactly.
         """
         scales, unit = [10 ** decimals[name] for name in self.columns], 1 << self.bits
         worst: tuple[Fraction, str, str] | None = None
-        for row, errors in zip(self.values, self.errors, strict=True):
+        for k, (row, errors) in enumerate(zip(self.values, self.errors, strict=True)):
             for name, value, error, scale in zip(self.columns, row, errors, scales, strict=True):
+                if k == 0 and name in exact:
+                    continue
                 if rounded((value - error) * scale, unit) != rounded((value + error) * scale, unit):
                     text = with_decimal_point(rounded(value * scale, unit), decimals[name])
                     worst = max((Fraction(error * scale, unit), name, text), worst or (Fraction(0), "", ""))

@@ -60,6 +60,11 @@ class Inputs:
         return values | {f"release.{name}": value for name, value in release}
 
     @property
+    def released(self) -> dict[str, Fraction]:
+        """The columns of the state at t = 0 that the scene gives as they are: x, y, vx and vy, or none."""
+        return dict(zip(RELEASES["position"], self.position, strict=True)) if self.position else {}
+
+    @property
     def at_rest(self) -> bool:
         """True if the bob is released without any velocity."""
         moving = self.position[2:] if self.position else (self.angles or ())[2:]

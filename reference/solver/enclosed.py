@@ -53,6 +53,7 @@ def solve_enclosed(
     need_flint()
     from .. import enclosure
 
+    enclosure.check_gates(scene.exact, scene.run.sections or ())
     problem = ProofTask(scene, engine, run_pilot(scene.exact, tuple(scene.exact.grid)), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
         confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval

@@ -257,8 +257,14 @@ def separated(
 
 
 def check_decided(solution: Solution) -> None:
-    """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit."""
-    undecided = [number for table, decimals in tables_of(solution) if (number := table.undecided(decimals))]
+    """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit.
+
+    What the scene itself gives of the release is exact, and rounded as it is.
+    """
+    (grid, decimals), *others = tables_of(solution)
+    every = [grid.undecided(decimals, solution.scene.exact.released)]
+    every += [table.undecided(places) for table, places in others]
+    undecided = [number for number in every if number]
     if undecided:
         raise UndecidedRounding(*max(undecided))
 

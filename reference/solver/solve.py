@@ -17,6 +17,8 @@ from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
+from ..model.sections import form_of
+from ..model.start import Start
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.fields import CONFIRMATIONS, Confirmation
@@ -124,6 +126,8 @@ def solve(
     for name, value in proving.items():
         if value and settings.level != "enclosed":
             raise InputError(name, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
+    for word in settings.sections or ():
+        form_of(word, Start.of(scene.exact, LONG_DOUBLE.prec))  # refuses a gate without a rest position before any work
     # a proof is not imported unless it is asked for
     if uncertain is not None:
         from .uncertain import solve_ranges

@@ -229,6 +229,13 @@ def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
     return [(solver, share) for solver, share in shares if share.any()]
 
 
+def highest_on_one_side(request: Request) -> bool:
+    """Return whether two highest points of the first row that follow one another lie on one side, as over the top."""
+    rows = engine_rows(request.scene, request.table, range(1))
+    runs = [engine.solve(rows[chosen], request.run_options) for engine, chosen in _shared(request.engine, rows)]
+    return any(run.same_side.any() for run in runs)
+
+
 def _finite(rows: Rows) -> Any:
     numbers = (getattr(rows, name).reshape(len(rows), -1) for name in ("length", "drag", "turn", "pull", "n", "V"))
     sound = np.isfinite(np.concatenate(list(numbers), axis=1)).all(axis=1)

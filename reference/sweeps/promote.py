@@ -88,7 +88,9 @@ def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tu
     bent = fall > LEAST_BEND * (rows.rate * across) ** 2
     if decided and len(t) and bent[high].all():
         run.apsides[0], run.apsis_first[0], run.apsis_last[0] = len(t), t[0], t[-1]
-        run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(np.round(np.diff(azimuth) / np.pi))
+        half_turns = np.round(np.diff(azimuth) / np.pi)
+        run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)
+        run.same_side[0] = np.count_nonzero(half_turns % 2 == 0)
     late = np.max(np.array(points.bound("t"), float), initial=0) + np.spacing(run.apsis_last)
     off = np.linalg.norm([np.array(points.bound(name), float) for name in POSITION], axis=0)
     aside = np.max(off / (across[1:-1] * float(length)), initial=0) + np.spacing(2 * np.pi)

@@ -24,7 +24,7 @@ from ..record import INVARIANT_BITS
 from ..sheets import Sheet
 
 STEEP = 4  # where |z| is below l/4, z does not follow well enough from x and y
-NEAR = 64  # a nudge of z is at most its size over this
+NEAR = 64  # a nudge of z is at most its size over this; where the bound of z is more, what is divided by z means little
 NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 SLACK = Fraction(21, 20)
 
@@ -185,8 +185,11 @@ class _Moments:
 
     @property
     def _whole(self) -> Array:
-        """Whether all of each state is known: at a transit with a level cord nothing tells vz."""
-        level = abs(self.columns[2]) <= self.bounds[2]
+        """Whether all of each state is known: at a transit with a nearly level cord vz = -y vy/z tells nothing.
+
+        There the rounding of y, vy and z multiplies, and differences of one at a time do not bound what it does.
+        """
+        level = abs(self.columns[2]) <= NEAR * self.bounds[2]
         return ~np.asarray(level & (self.transits is not None), dtype=bool)
 
     @property

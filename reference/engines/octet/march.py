@@ -81,13 +81,20 @@ def note_transit(out: Array, at: int, row: int, moments: Moments, time: float, s
 def note_highest(out: Array, at: int, time: float, x: float, p: float, u: float, fall: float, pull: float) -> None:
     """Note a highest point (x, p, u); half turns are counted where the direction, less a half turn, passes east."""
     bend = fall / (pull * u * (2.0 - u))
+    side = 1.0
     if p < 0.0 or (p == 0.0 and x < 0.0):
+        side = -1.0
         x, p = -x, -p
     if out[at + rows.APSIDES] == 0.0:
         out[at + rows.A_FIRST], out[at + rows.LEAST_BEND], out[at + rows.LEAST_FALL] = time, bend, fall
         out[at + rows.X_FIRST], out[at + rows.P_FIRST] = x, p
-    elif out[at + rows.X_LAST] * x + out[at + rows.P_LAST] * p < 0.0:
-        out[at + rows.HALF_TURNS] += 1.0 if out[at + rows.X_LAST] * p - out[at + rows.P_LAST] * x < 0.0 else -1.0
+    else:
+        along = out[at + rows.X_LAST] * x + out[at + rows.P_LAST] * p
+        if along < 0.0:
+            out[at + rows.HALF_TURNS] += 1.0 if out[at + rows.X_LAST] * p - out[at + rows.P_LAST] * x < 0.0 else -1.0
+        if along * side * out[at + rows.SIDE_LAST] > 0.0:
+            out[at + rows.SAME_SIDE] += 1.0
+    out[at + rows.SIDE_LAST] = side
     out[at + rows.APSIDES] += 1.0
     out[at + rows.A_LAST], out[at + rows.X_LAST], out[at + rows.P_LAST] = time, x, p
     out[at + rows.LEAST_BEND] = min(out[at + rows.LEAST_BEND], bend)

@@ -17,7 +17,7 @@ FORM, COLUMNS = 17, 24  # the form of a section: a, b and d
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
 APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND, LEAST_FALL = range(13, 24)
-RESULTS = 24
+SIDE_LAST, SAME_SIDE, RESULTS = 24, 25, 26
 TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against the motion
 _ENGINES = Path(__file__).parents[1]
 SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]  # of the kernel
@@ -74,6 +74,7 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     result.least_bend[:] = np.where(r[APSIDES] > 0, r[LEAST_BEND], np.nan)
     result.apsides[:] = np.where(result.least_bend >= LEAST, r[APSIDES], 0)
     has_apsides = result.apsides > 0
+    result.same_side[:] = np.where(has_apsides, r[SAME_SIDE], 0)
     result.least_fall[:] = np.where(has_apsides, r[LEAST_FALL] / (unit * unit), np.nan)
     result.apsis_first[:], result.apsis_last[:] = np.where(has_apsides, r[A_FIRST : A_LAST + 1], np.nan)
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])

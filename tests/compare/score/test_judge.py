@@ -802,3 +802,30 @@ def test_a_tolerance_and_an_end_may_be_any_real_number():
     rows = {"t": golden.t[:5], "x": golden.x[:5], "y": golden.y[:5]}
     score = judge(rows, "paris", tolerance=Fraction(1, 1000), t_end=Fraction(120))
     assert "tolerance 0.001 m" in str(score) and len(score.errors.t) == 3
+
+
+def rows_of(name):
+    golden = load(name)
+    return {"t": golden.t, "x": golden.x, "y": golden.y, "z": golden.z}
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance", "where"),
+    [
+        ("nanometre_paris", None, "at its rest position"),
+        ("nanometre_paris", 1e-12, None),
+        ("at_rest", None, "where it is released"),
+        ("millimetre", None, None),
+        ("vertical_picometre", None, None),
+    ],
+)
+def test_a_judge_that_a_bob_without_motion_would_pass_says_so(name, tolerance, where):
+    rows = rows_of(name)
+    score = judge(rows, name, tolerance=tolerance)
+    notes = [note for note in score.notes if "would agree as well" in note]
+    assert (score.verdict, len(notes)) == ("agrees", where is not None)
+    assert where is None or where in notes[0]
+    assert [f"Note: {note}." in str(score) for note in notes] == [True] * len(notes)
+    # it is as the note says
+    still = {**rows, **{axis: np.full(len(rows["t"]), rows[axis].mean()) for axis in ("x", "y", "z")}}
+    assert (judge(still, name, tolerance=tolerance, explain=False).verdict == "agrees") == (where is not None)

@@ -91,6 +91,27 @@ def test_every_number_of_a_swing_that_is_left_out_has_its_reason(foucault, scene
         assert told is None or {told[3]} == {*reasons.values()}
 
 
+ROUND = {  # swings that go over the top, and the same bobs with too little energy for it, or a wide swing's
+    ("over_top", "run.t_end=10"): True,
+    ("barely_over", "run.t_end=20"): True,
+    ("over_top", "run.t_end=10", "pendulum.drag=0.001"): True,
+    ("over_top", "run.t_end=10", "site.gravity_is=effective", "release.vy=0.5"): True,
+    ("over_top", "run.t_end=10", "release.vx=5"): False,
+    ("barely_over", "run.t_end=20", "release.vx=6.2"): False,
+    ("two_radians", "run.t_end=20"): False,
+}
+
+
+@pytest.mark.parametrize("words", ROUND)
+def test_a_bob_that_goes_over_the_top_has_no_period_and_the_proof_says_the_same(foucault, words):
+    scene, *changes = words
+    assigned = [word for change in changes for word in ("--set", change)]
+    document = json.loads(foucault("show", scene, *assigned, "--proved", "--json")[1])
+    for part in ("motion", "proved"):
+        assert ("lie on one side" in document[part].get("reason", "")) == ROUND[words], document[part]
+        assert (document[part].get("period_s") is None) == ROUND[words]
+
+
 @pytest.mark.parametrize(
     ("words", "reason"),
     [

@@ -125,3 +125,21 @@ def test_a_transit_that_no_proof_can_tell_from_the_end_of_the_run_is_possible_an
     # a decided transit that is said to be possible is still found
     forge(folder, manifest=lambda document: document["possible"][0].update(from_s="0"))
     assert any("that is decided" in problem for problem in verify(folder).problems)
+
+
+# drag lets so little remain of the swing that its last highest points are undecided up to the end of the run
+OVERDAMPED = {
+    "id": "overdamped",
+    "inputs": "binary64",
+    "pendulum": {"length": "0.11", "drag": "24"},
+    "site": {"latitude": "50"},
+    "release": {"x": "0.00001", "y": "0"},
+    "run": {"t_end": "10.6", "grid_step": "1", "digits": 15, "level": "enclosed", "sections": ["highest"]},
+}
+
+
+def test_an_undecided_passage_ends_with_the_run_however_many_decimals_its_end_has(tmp_path):
+    solution = reference.solve(reference.parse_scene(OVERDAMPED))
+    manifest = read_files(write(solution, tmp_path / "overdamped")).manifest
+    (part,) = manifest.sections.possible["highest"]
+    assert Fraction(part.from_s) < Fraction(part.to_s) == Fraction(10.6)

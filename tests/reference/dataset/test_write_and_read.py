@@ -29,7 +29,7 @@ from reference.dataset.place import dataset_id, default_folder, golden_folder
 from reference.dataset.record import Making, command
 from reference.dataset.render import MOST, render
 from reference.dataset.sheets import Sheet, nearest_doubles, scene_inputs
-from reference.dataset.verify import problems_of
+from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import check_target, write
 from reference.errors import DatasetError, InputError
 from reference.numbers.columns import GRID
@@ -441,3 +441,20 @@ def test_a_number_that_its_error_reaches_gets_the_double_of_the_printed_one():
     table = Table(("x",), 4, [(16,), (17,), (-17,), (-16,)], [(16,)] * 4)
     sheet = Sheet(("t", "x"), [("0", text) for text in ("0.9", "1.1", "-1.1", "-0.9")], {})
     assert nearest_doubles(table, sheet) == {"x": [0.9, 17 / 16, -17 / 16, -0.9]}
+
+
+LEVEL_CORD = {  # released near the horizontal: many transits with a level cord, where vz = -y vy/z means little
+    "id": "level_cord",
+    "pendulum": {"length": "0.196"},
+    "site": {"latitude": "1.228134", "gravity": "0.740342943", "altitude": "1142.5"},
+    "release": {"angle": "175", "azimuth": "-149.276", "angle_rate": "16", "azimuth_rate": "16.5758637"},
+    "run": {"t_end": "80.72", "grid_step": "2.69"},
+}
+
+
+@pytest.mark.parametrize("name", ["two_radians", "level_cord"])
+@pytest.mark.parametrize("digits", [2, 3, 4])
+def test_a_level_cord_is_no_reason_to_refuse_few_digits(name, digits, tmp_path):
+    scene = reference.parse_scene(LEVEL_CORD) if name == "level_cord" else reference.load_scene(name)
+    written = write(reference.solve(scene, digits=digits, level="computed"), tmp_path / name)
+    assert verify(written).problems == []

@@ -62,6 +62,18 @@ def test_every_digit_that_is_changed_is_found(name, solution, texts):
     assert found > 40
 
 
+def test_a_release_between_two_decimals_may_be_either_of_them_and_no_other():
+    changes = ["release.x=0.30000000005", "run.t_end=60", "run.digits=10"]
+    solution = reference.solve(reference.load_scene("paris", changes), level="enclosed")
+    texts = render(solution)
+    for number in ("0.3000000000", "0.3000000001"):
+        page = texts["certified.txt"].replace(" 0.3000000000\n", f" {number}\n")
+        grid = texts["grid.csv"].replace("\n0,0.3000000000,", f"\n0,{number},")
+        check_dataset({**texts, "certified.txt": page, "grid.csv": grid}, solution.proof.enclosure.proved)
+    for number in ("0.2999999999", "0.3000000002"):
+        refuse(solution, texts, grid=texts["grid.csv"].replace("\n0,0.3000000000,", f"\n0,{number},"))
+
+
 def swapped(lines):
     return [lines[0], lines[2], lines[1], *lines[3:]]
 

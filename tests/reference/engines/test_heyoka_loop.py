@@ -90,7 +90,7 @@ def test_octet_says_the_same_of_every_row():
     rows = rows_of(list(random_kinds(20261124, 20)))
     options = RunOptions(times=True)
     own, other = BATCH.solve(rows, options), OCTET.solve(rows, options)
-    for name in ("fate", "transits", "close_pairs", "apsides", "transit_row", "transit_direction"):
+    for name in ("fate", "transits", "close_pairs", "apsides", "same_side", "transit_row", "transit_direction"):
         assert np.array_equal(getattr(own, name), getattr(other, name)), name
     for name in ("state", "t_first", "t_last", "apsis_first", "apsis_last", "turn", "largest_angle", "transit_t"):
         assert np.allclose(getattr(own, name), getattr(other, name), rtol=1e-8, atol=1e-8, equal_nan=True), name

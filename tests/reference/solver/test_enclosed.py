@@ -14,7 +14,7 @@ from small_scenes import make_scene
 import reference
 from reference.dataset.golden import load
 from reference.dataset.sheets import grid_sheet, transits_sheet
-from reference.dataset.verify import problems_of
+from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
 from reference.enclosure import prove
 from reference.enclosure.course import FINISHED, Course
@@ -45,6 +45,17 @@ def test_an_enclosed_file_is_digit_for_digit_the_confirmed_one(enclosed):
     assert grid_sheet(enclosed) == grid_sheet(confirmed)
     ours, theirs = transits_sheet(enclosed), transits_sheet(confirmed)
     assert [row[:-1] for row in ours.rows] == [row[:-1] for row in theirs.rows]
+
+
+TIES = ["release.x=0.30000000005", "release.vy=-0.000123456785", "run.t_end=60", "run.digits=10"]  # of the last digit
+
+
+@pytest.mark.parametrize("level", ["computed", "confirmed", "enclosed"])
+def test_a_release_between_two_decimals_is_rounded_as_it_is_given_and_proved(level, tmp_path):
+    solution = reference.solve(reference.load_scene("paris", TIES), level=level)
+    first = grid_sheet(solution).rows[0]
+    assert (first[1], first[5]) == ("0.3000000000", "-0.0001234568")  # ties to even
+    assert verify(reference.write(solution, tmp_path / "tie")).problems == []
 
 
 def test_every_ball_contains_a_much_finer_run(enclosed):
@@ -263,8 +274,9 @@ def test_a_transit_that_heyoka_sees_elsewhere_is_named(monkeypatch):
 
 
 def test_a_number_exactly_between_two_decimals_is_refused_with_advice():
-    """x = 0.35 m has no nearest number of one digit."""
-    scene = make_scene(release={"x": "0.35", "y": "0.1"}, run={"t_end": "1", "digits": 1, "level": "enclosed"})
+    """z = -0.35 m, which follows from the length, has no nearest number of one digit."""
+    run = {"t_end": "1", "digits": 1, "level": "enclosed"}
+    scene = make_scene(pendulum={"length": "0.35"}, release={"x": "0", "y": "0", "vx": "0.01"}, run=run)
     with pytest.raises(UnreachableError, match="ask for one digit more"):
         reference.solve(scene)
 

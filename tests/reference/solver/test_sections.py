@@ -140,3 +140,45 @@ def test_all_levels_find_the_same_passages():
 def test_a_wrong_section_is_refused_with_what_was_expected(words):
     with pytest.raises(InputError, match=r"run\.sections.*(highest, lowest, gate AZIMUTH|each section once)"):
         reference.solve("paris", sections=words)
+
+
+V11 = {  # Ω²l is 27.7 m/s², gravity 0.57: nothing but the axis of rotation holds the bob
+    "id": "v11",
+    "pendulum": {"length": "362.83"},
+    "site": {"latitude": "80.9", "gravity": "0.572", "rotation_rate": "0.27638", "equatorial_radius": "2.528"},
+    "release": {"x": "22.59", "y": "13.88", "vx": "0.855", "vy": "-0.55"},
+    "run": {"t_end": "754.7", "grid_step": "44.4", "digits": 15},
+}
+# Ω²l is 0.8 g: there is a rest position, but a proof does not single it out
+LEANING = {
+    "id": "leaning",
+    "pendulum": {"length": "10"},
+    "site": {"latitude": "45", "gravity": "10", "gravity_is": "effective", "rotation_rate": "0.9"},
+    "release": {"x": "1", "y": "0.3"},
+    "run": {"t_end": "5", "grid_step": "5", "digits": 12},
+}
+WEIGHTLESS = LEANING | {"id": "weightless", "site": {"gravity": "0", "rotation_rate": "0"}}
+
+
+@pytest.mark.parametrize(
+    "scene, levels, reason",
+    [
+        (V11, (*LEVELS, "uncertain"), "so fast a rotation, or weightlessness, leaves none"),
+        (WEIGHTLESS, (*LEVELS, "uncertain"), "so fast a rotation, or weightlessness, leaves none"),
+        (LEANING, ("enclosed", "uncertain"), "in so fast a rotation a proof singles none out"),
+    ],
+)
+def test_a_gate_without_a_rest_position_is_refused_with_its_reason_at_every_level(scene, levels, reason):
+    for level in levels:
+        options = {"uncertain": {"pendulum.length": "0.001"}} if level == "uncertain" else {"level": level}
+        with pytest.raises(InputError, match=r"run\.sections: got 'gate 33\.3'") as caught:
+            reference.solve(scene, sections=["highest", "gate 33.3"], **options)
+        assert reason in str(caught.value)
+        assert "Write gate 33.3@0 for the plane through the suspension's vertical" in str(caught.value)
+
+
+def test_where_a_rest_position_is_known_the_gate_through_it_is_found():
+    for level in ("self_consistent", "confirmed"):
+        assert len(reference.solve(LEANING, level=level, sections="gate 33.3").sections["gate 33.3"].table) == 1
+    beside = reference.solve(LEANING, level="enclosed", sections="gate 33.3@0").sections["gate 33.3@0"]
+    assert not beside.possible

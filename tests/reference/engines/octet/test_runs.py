@@ -16,6 +16,7 @@ from random_rows import KINDS, random_kinds, rows_of
 from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Outcomes, Rows, RunOptions
 from reference.engines.octet.batch import BATCH
 from reference.engines.octet.march import march
+from reference.scenes.scene import load_scene
 
 SPAN = Fraction(100)
 LISTS = ("transit_row", "transit_t", "transit_direction")
@@ -74,6 +75,13 @@ def test_highest_points_are_counted_once(paris):
     assert (np.abs(run.apsides - 2 * swings) < 1.0).all()
     assert (np.abs(run.apsides - run.transits) <= 1).all()
     assert np.allclose((run.apsis_last - run.apsis_first) / (run.apsides - 1), 0.5 * 500 / swings, rtol=2e-3)
+
+
+def test_highest_points_on_the_side_of_the_one_before_are_those_of_a_bob_that_goes_over_the_top():
+    inputs = [load_scene(name, ["run.t_end=20"]).exact for name in ("over_top", "barely_over", "hard", "paris")]
+    run = BATCH.solve(rows_of(inputs), RunOptions())
+    assert run.same_side.tolist() == [run.apsides[0] - 1, run.apsides[1] - 1, 0, 0]
+    assert (run.apsides > 1).all()
 
 
 def test_the_plane_turns_as_foucault_found(paris):
