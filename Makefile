@@ -30,7 +30,7 @@ pytest: .venv/testing
 
 # For every day: model, closed forms, solver with proofs, score; not what takes longest and is seldom touched
 SELDOM := $(patsubst %,tests/reference/solver/test_%.py,confirming extreme_scenes ranges sampled_confirmation sections sensitivity) \
-  $(patsubst %,tests/compare/score/test_%.py,baseline experiments explanation passages wild)
+  $(patsubst %,tests/compare/score/test_%.py,baseline experiments explanation false_causes passages same_words wild)
 quick: .venv/testing
 	@echo "Running the tests of every day: one to two minutes on two cores"
 	$(PYTEST) tests/reference/numbers tests/reference/model tests/reference/solver tests/compare/score $(addprefix --ignore=,$(SELDOM))
