@@ -56,6 +56,8 @@ class Candidate:
         transits: times of xdot = 0 in s that came with it, or None.
         notes: remarks that a reader ought to know.
         conventions: what reading found out about names, units and scales.
+        clock_s: what its clock showed in the first row, in s, where t is counted from that row; None if t is counted
+            from the release.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Candidate:
     transits: Array | None = field(default=None, repr=False)
     notes: tuple[str, ...] = ()
     conventions: tuple[Deviation, ...] = ()
+    clock_s: float | None = None
 
     def __repr__(self) -> str:
         return f"Candidate({Path(self.name).name}: {counted(len(self.t), 'row')} of t, {', '.join(self.columns)})"
@@ -93,7 +96,7 @@ class Candidate:
 
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
-        """Check the arrays and make a candidate of them.
+        """Check the arrays and make a candidate of them, without rows of NaN after which others follow: lost frames.
 
         Raises:
             InputError: a column is missing, lengths differ, a number is not finite, or times do not increase.
@@ -105,6 +108,15 @@ class Candidate:
             if column.ndim != 1 or len(column) != t.size:
                 expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
                 raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
+        lost = _lost_frames(columns)
+        if lost.any():
+            first = float(t[int(np.argmax(lost))])
+            note = f"{counted(int(lost.sum()), 'row')} of NaN left out, the first at t = {first:.10g} s"
+            more["notes"] = (*more.get("notes", ()), note)  # type: ignore[misc]
+            more["low"] = {word: part[~lost] for word, part in (more.get("low") or {}).items()}  # type: ignore[attr-defined]
+            t = t[~lost]
+            columns = {word: column[~lost] for word, column in columns.items()}
+        for word, column in (("t", t), *columns.items()):
             invalid = ~(np.abs(column) <= LARGEST)  # true for NaN as well
             if invalid.any():
                 row, expected = int(np.argmax(invalid)), f"a finite number below {LARGEST:g} in size"
@@ -114,6 +126,14 @@ class Candidate:
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
         _check_order(t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True)
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
+
+
+def _lost_frames(columns: dict[str, Array]) -> Array:
+    """Return which rows hold NaN though a later row does not: no run recovers from NaN, but a camera may miss a frame."""
+    lost = np.isnan(np.column_stack([*columns.values()])).any(axis=1)
+    later = np.flatnonzero(~lost)
+    lost[later[-1] if len(later) else 0 :] = False
+    return lost
 
 
 def checked_transits(times: Array, name: str) -> Array:

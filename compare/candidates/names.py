@@ -1,7 +1,8 @@
 """Which column stands where: the words of a header, or of `--columns`, as programs use them; units in SI.
 
 `pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t; `vx`, `xdot`, `dx/dt`
-and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other sign.
+and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other sign. A name may have a direction and a unit
+behind it, in any order: `x_east_m`, `x_m_east`, `pos_x_m`.
 """
 
 from __future__ import annotations
@@ -29,12 +30,16 @@ VELOCITY = re.compile(rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_S
 TIME_WORDS: set[str] = set(vocabulary["time_words"])
 TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
 LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
-BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
-AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
+BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
+AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")  # one piece or two
+LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
+LABEL = re.compile(r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?", re.IGNORECASE)
 TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
 LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
+OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
+TYPES: set[str] = set(vocabulary["types"])  # that may stand in a line below the header
 PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
 SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
 NEEDED = ("t", "x", "y")  # columns of a trajectory, of which those of z and of velocities may be missing
@@ -71,15 +76,21 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         InputError: its unit contradicts `units`.
     """
     text = unquoted(word)
-    for name, suffix in _parts(text) if len(text) <= LONGEST else ():
+    if len(text) > LONGEST:
+        return None
+    label = LABEL.fullmatch(text)
+    text = label[1] if label else text
+    for name, suffix, direction in _parts(text):
         named = _column(name)
         if named is None:
             continue
         (column, sign, rank), unit = named, suffix
         rank = 2 if suffix == text else rank  # it is called by its unit
-        if suffix.lower() in DIRECTIONS and column != "t":
-            turned, sign = DIRECTIONS[suffix.lower()]
-            column, unit, rank = f"{column[:-1]}{turned}", "", 2
+        if direction:
+            if column == "t":
+                continue
+            turned, sign = DIRECTIONS[direction.lower()]
+            column, rank = f"{column[:-1]}{turned}", 2
         if suffix.lower() in ("t", "time") and column != "t":
             unit = ""  # x(t)
         default = units.get(column, "")
@@ -100,8 +111,17 @@ def unquoted(word: str) -> str:
     return text[1:-1].strip() if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`" else text
 
 
-def _parts(text: str) -> list[tuple[str, str]]:
-    """Return the ways to take a word apart into a name and a unit, the most likely first."""
+def _parts(text: str) -> list[tuple[str, str, str]]:
+    """Return the ways to take a word apart into a name, a unit and a direction, the most likely first."""
+    ways = []
+    for name, last in _with_unit(text):
+        if last.lower() in DIRECTIONS:
+            ways += [(before, unit, last) for before, unit in _with_unit(name)]
+    return ways + [(name, unit, "") for name, unit in _with_unit(text)]
+
+
+def _with_unit(text: str) -> list[tuple[str, str]]:
+    """Return the ways to take a text apart into a name and a unit, which may be empty."""
     if brackets := BRACKETS.fullmatch(text):
         return [(brackets[1], brackets[2])]
     ways = [(text, "")]
@@ -109,7 +129,13 @@ def _parts(text: str) -> list[tuple[str, str]]:
         ways.append(("t", text))
     if after := AFTER.fullmatch(text):
         ways.append((after[1], after[2]))
-    return ways
+    return ways + _last_apart(text)
+
+
+def _last_apart(text: str) -> list[tuple[str, str]]:
+    """Return a text without its last piece, and this piece."""
+    last = LAST.fullmatch(text)
+    return [(last[1], last[2])] if last else []
 
 
 def _column(name: str) -> tuple[str, int, int] | None:
@@ -216,7 +242,7 @@ class Layout:
         return columns, low
 
 
-def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: str) -> Layout:
+def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: str, units: Sequence[str] = ()) -> Layout:
     """Resolve the words of a header.
 
     Args:
@@ -224,12 +250,15 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
         needed: columns that must be among them: `NEEDED`, beside which others are read, or t alone.
         naming: what the user says of the columns, of which the units count here.
         where: the header's name in messages.
+        units: those of a line below or above the header, one for each column; empty where there is none.
 
     Raises:
         InputError: a column is missing or there twice, or its unit is not known.
     """
     of_units = defaults(naming.units)
     meanings = [meaning(word, of_units) for word in words]
+    if units:
+        meanings = [_with_line_of_units(*each, of_units, where) for each in zip(meanings, words, units, strict=True)]
     places: dict[str, int] = {}
     factors: dict[str, Fraction] = {}
     conventions, renamed, converted = [], [], []
@@ -260,6 +289,52 @@ def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: s
     if converted:
         conventions.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
     return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(conventions))
+
+
+def _with_line_of_units(
+    meant: Meaning | None, word: str, printed: str, of_units: dict[str, str], where: str
+) -> Meaning | None:
+    """Return what a word means if a line of units names a unit for it.
+
+    Raises:
+        InputError: the header or --units says another one.
+    """
+    unit = bare_unit(printed)
+    if meant is None or not unit:
+        return meant
+    said = meaning(word, {})
+    assert said is not None
+    size = size_of(unit, meant.column)
+    if size is None:
+        return replace(meant, factor=None, unit=unit)
+    if said.unit and said.factor is not None and abs(said.factor) != size:
+        raise InputError(f"{where}: {word.strip()}", unit, f"{said.unit}, as the header says", "Leave one of them out.")
+    default = of_units.get(meant.column)
+    if default and size != size_of(default, meant.column):
+        raise InputError("--units", default, f"no other unit of {meant.column} than {unit}, as its line of units says")
+    sign = 1 if meant.factor is None or meant.factor > 0 else -1
+    return replace(meant, factor=size * sign, unit=unit)
+
+
+def bare_unit(printed: str) -> str:
+    """Return a unit without brackets and quotes; nothing for a word that stands for none."""
+    text = unquoted(printed)
+    bracketed = len(text) > 1 and text[0] in "([{<" and text[-1] in ")]}>"
+    text = text[1:-1].strip() if bracketed else text
+    return "" if text in SKIPPED or text.lower() in TYPES else text
+
+
+def units_of(words: Sequence[str]) -> list[str] | None:
+    """Return the units of a line that holds nothing else, one for each word; None for another line.
+
+    Names of types, such as double, stand for no unit, and so does an empty word.
+    """
+    found = [bare_unit(word) for word in words]
+    known = [any(size_of(unit, column) is not None for column in ("t", "x", "vx")) for unit in found]
+    other = [not unit or plain_unit(unit) in OTHER_UNITS for unit in found]
+    typed = any(unquoted(word).lower() in TYPES for word in words)
+    all_known = all(one or another for one, another in zip(known, other, strict=True))
+    return found if all_known and (any(known) or typed) else None
 
 
 def given(count: int, naming: Naming) -> Layout:

@@ -1,13 +1,15 @@
 """Read a candidate or its transit times from a file or a stream; the first bytes tell text from NumPy's files.
 
 - A line of text names the columns in any order: t, x, y and any of z, vx, vy, vz, in these words or others
-  (`names.py`). Without such a line three columns are t, x, y, four are t, x, y, z.
-- Fields are separated by commas, semicolons, tabs or white space. A line that begins with #, %, ! or // is a comment,
-  and the header may be one. Columns of other names are not read.
+  (`names.py`); a line of units may be below it. Without such a line three columns are t, x, y, four are t, x, y, z.
+- Fields are separated by commas, semicolons, tabs, bars or white space, and may be in quotes. Decimals have a point or
+  a comma. A line that begins with #, %, ! or // is a comment, and the header may be one. Columns of other names are not
+  read. Times are numbers, or hours:minutes:seconds with a date or without. Rows without a number are left out.
 - foucPend (Mathar, appendix B): no header; t x y z X Y Z φ λ speed separated by white space, of which the first
   four are read; `# P n t f` names a transit.
 
-The number of bytes and rows and the length of a line are limited. Errors name the line.
+Of a text that can be read in two ways, nothing is read: an error says what to write. The number of bytes and rows and the
+length of a line are limited. Errors name the line.
 """
 
 from __future__ import annotations
@@ -16,13 +18,14 @@ import codecs
 import errno
 import math
 import os
+import re
 import sys
+from array import array
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
+from dataclasses import dataclass
 from decimal import Context, Decimal
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from tempfile import SpooledTemporaryFile
 from typing import IO
@@ -30,16 +33,37 @@ from typing import IO
 import numpy as np
 
 from reference import InputError
-from reference.errors import checked_path, plain
+from reference.errors import checked_path, counted, plain as printable
 from reference.numbers.precision import Array
 from reference.scenes.scene import MAX_ROWS
 from reference.system.documents import open_at_once
 
-from .arrays import AS_NAMED, read_archive, read_array
+from .arrays import read_archive, read_array
 from .candidate import Candidate, Deviation, checked_transits
-from .names import NEEDED, Naming
-from .text import COMMENT, MARKS, MAX_BYTES, MAX_LINE, MAX_LINES, Header, Spelling, is_number, spelling
+from .clock import HOW, counted_from, decimal, seconds_of
+from .header import COMMAS, Header
+from .names import NEEDED, Layout, Naming
+from .text import (
+    COMMENT,
+    GROUPED,
+    MARKS,
+    MAX_BYTES,
+    MAX_LINE,
+    MAX_LINES,
+    MOMENT,
+    THOUSANDS,
+    doubtful_number,
+    is_clock,
+    is_missing,
+    is_number,
+    padded,
+    plain,
+    possible_separators,
+    split,
+    without_end,
+)
 
+EMPTY = " \t,;|\""  # characters of a line without a field
 _TELLING = 6  # bytes that tell an archive from text
 CHUNK = 1 << 22
 SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
@@ -105,7 +129,7 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
                     raise OSError(errno.EBADF, "Standard input is closed")
                 stream, name = sys.stdin.buffer, "standard input"
             else:
-                path, name = checked_path(field, source, expected), plain(str(source))
+                path, name = checked_path(field, source, expected), printable(str(source))
                 stream = stack.enter_context(open_at_once(path))
                 os.set_blocking(stream.fileno(), True)
             if not stream.seekable():
@@ -134,9 +158,16 @@ def read_text(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     reader = ColumnReader(name, NEEDED, naming)
     columns, low = reader.columns(stream)
     times = checked_transits(np.array(reader.transits), f"{name}: # P") if reader.transits else None
-    notes = ("the last line does not end with a newline: it may be cut off",) if reader.cut_off else ()
-    conventions = reader.layout.conventions
-    return Candidate.of(name, columns.pop("t"), columns, low=low, transits=times, notes=notes, conventions=conventions)
+    return Candidate.of(
+        name,
+        columns.pop("t"),
+        columns,
+        low=low,
+        transits=times,
+        notes=tuple(reader.notes),
+        conventions=tuple(reader.conventions),
+        clock_s=reader.clock_s,
+    )
 
 
 def _binary(data: bytes) -> tuple[str, str] | None:
@@ -154,6 +185,37 @@ def _binary(data: bytes) -> tuple[str, str] | None:
     return ("a zero byte", "Binary data is read from .npy and .npz only.") if b"\0" in data else None
 
 
+@dataclass(frozen=True)
+class Reading:
+    """A way to read the rows of a text.
+
+    Attributes:
+        separator: between fields; white space if empty.
+        layout: which column stands where.
+        width: the number of columns; further fields are empty.
+    """
+
+    separator: str
+    layout: Layout
+    width: int
+
+    def fields(self, row: str) -> list[str]:
+        """Return the fields of the columns that are read; fewer if the row is cut off."""
+        fields = split(row, self.separator)
+        return [fields[place] for place in self.layout.places.values() if place < len(fields)]
+
+    def counts(self, row: str) -> bool:
+        """Return whether a row has as many fields as there are columns."""
+        fields = split(row, self.separator)
+        return len(fields) >= self.width and not any(fields[self.width :])
+
+    def fits(self, row: str) -> bool:
+        """Return whether every field that is read is a number, or says that there is none."""
+        time, *others = self.fields(row) or [""]
+        readable = is_number(time) or is_clock(time) or is_missing(time)
+        return self.counts(row) and readable and all(is_number(field) or is_missing(field) for field in others)
+
+
 class ColumnReader:
     """A reader of one text; `columns` reads it.
 
@@ -166,12 +228,13 @@ class ColumnReader:
     def __init__(self, name: str, needed: tuple[str, ...], naming: Naming) -> None:
         self.name, self.alone = name, len(needed) == 1
         self.header = Header(name, needed, naming)
-        self.spelled, self.layout, self.fields = Spelling(None), AS_NAMED, 0  # of a row, once one has been seen
-        self.respelled = False
         self.rows: list[str] = []
+        self.lines = array("l")  # the number of each row's line
+        self.readings: list[Reading] = []  # ways to read the first row
+        self.conventions: list[Deviation] = []
+        self.notes: list[str] = []
         self.transits: list[float] = []  # that comments of foucPend name
-        self.line = 0
-        self.cut_off = False  # the last line does not end with a newline
+        self.clock_s: float | None = None  # what a clock showed in the first row, from which t is counted
 
     def columns(self, stream: IO[bytes]) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return the columns by name in SI units, and their low parts if some number is finer than a double.
@@ -182,80 +245,205 @@ class ColumnReader:
         Raises:
             InputError: the text cannot be read; the message names the line.
         """
-        rows = self._rows_of(stream)
-        first = next(rows, None)
-        if first is None:
+        self._take_lines(stream)
+        if not self.rows:
             formats = " with a column t" if self.alone else ", foucPend's output, .npy or .npz"
             raise self.header.refuse(f"a CSV file{formats}")
-        separator, places = self.spelled.separator, self.layout.places
-        indices = [*places.values()]
+        reading = self._only_reading()
+        places = reading.layout.places
+        self.conventions = [*reading.layout.conventions]
+        indices, separator = [*places.values()], reading.separator
         try:
-            table = np.loadtxt(chain([first], rows), delimiter=separator, usecols=indices, comments=None, ndmin=2)
+            if not self._is_plain(reading):
+                raise ValueError
+            plain_rows = (self._counted(reading, i) for i in range(len(self.rows)))
+            table = np.loadtxt(plain_rows, delimiter=separator or None, usecols=indices, comments=None, ndmin=2)
         except ValueError:
-            where, row = f"{self.name}: line {self.line}", self.rows[-1]
-            fields = {name: row.split(separator)[i].strip() for name, i in places.items()}
-            bad = next(((f"{where}: {name}", text[:40]) for name, text in fields.items() if not is_number(text)), None)
-            raise InputError(*(bad or (where, row[:80])), "a number") from None
-        low = _low_parts(self.rows, separator, indices, table)
+            self._spell_plainly(reading)
+            indices, separator = [*range(len(indices))], ""
+            table = np.loadtxt(self.rows, comments=None, ndmin=2)
+        low = _low_parts(self.rows, separator or None, indices, table)
         columns, rest = (dict(zip(places, np.ascontiguousarray(part.T), strict=True)) for part in (table, low))
-        return self.layout.converted(columns, rest if low.any() else {})
+        return reading.layout.converted(columns, rest if low.any() else {})
 
-    def _rows_of(self, stream: IO[bytes]) -> Iterator[str]:
-        """Yield the rows, of which the first and the lines above it tell which column is where."""
-        for data in iter(partial(stream.readline, MAX_LINE + 1), b""):
-            self.line += 1
+    def _take_lines(self, stream: IO[bytes]) -> None:
+        """Take the rows, and from the first of them and the lines above it the ways to read them."""
+        for line, data in enumerate(iter(partial(stream.readline, MAX_LINE + 1), b""), 1):
             if len(data) > MAX_LINE:
                 got = f"a line of more than {MAX_LINE} bytes"
                 raise InputError(self.name, got, "lines of numbers", "Is it text?")
-            if self.line > MAX_LINES:
+            if line > MAX_LINES:
                 got, most = f"more than {MAX_LINES} lines", f"at most {MAX_LINES}, comments and empty ones included"
                 raise InputError(self.name, got, most, "Thin the output out.")
-            if not self.fields and (binary := _binary(data)):
+            if not self.rows and (binary := _binary(data)):
                 got, advice = binary
                 raise InputError(self.name, got, "text in UTF-8", advice)
-            text = data.decode("utf-8", "replace").strip()
-            text = text if self.fields else text.removeprefix("\ufeff")
-            if not text:
+            text = data.decode("utf-8", "replace").strip(" \r\n\v\f")
+            text = text.removeprefix("\ufeff") if line == 1 else text
+            if not text.strip().strip(EMPTY):
                 continue
-            self.cut_off = data[-1:] != b"\n"
-            if text[0] in MARKS and (remark := COMMENT.match(text)):
-                if not self.fields:
-                    self.header.add(self.line, remark[1], True)
+            cut_off = data[-1:] != b"\n"
+            begins = text.lstrip()
+            if begins[0] in MARKS and (remark := COMMENT.match(begins)):
+                if not self.rows:
+                    self.header.add(line, remark[1], True)
                 if remark[1].split()[:1] == ["P"] and not self.alone:
-                    self._take_transit(remark[1])
-            elif self.fields or self._begins(text):
-                if "D" in text and not self.spelled.fortran:
-                    self.spelled, self.respelled = replace(self.spelled, fortran=True), True
-                row, separator = self.spelled.plain(text) if self.respelled else text, self.spelled.separator
-                count = row.count(separator) + 1 if separator else len(row.split())
-                if count != self.fields:
-                    got, expected = f"{count} fields", f"{self.fields} as in the first row"
-                    raise InputError(f"{self.name}: line {self.line}", got, expected, "Is the line cut off?")
+                    self._take_transit(remark[1], line)
+            elif self.rows or self._begins(text, line):
                 if len(self.rows) == MAX_ROWS:
                     most = f"at most {MAX_ROWS}"
                     raise InputError(self.name, f"more than {MAX_ROWS} rows", most, "Thin the output out.")
-                self.rows.append(row)
-                yield row
+                self.rows.append(text)
+                self.lines.append(line)
+            if cut_off:
+                self.notes.append("the last line does not end with a newline: it may be cut off")
 
-    def _take_transit(self, remark: str) -> None:
+    def _take_transit(self, remark: str, line: int) -> None:
         try:
             self.transits.append(float(remark.split()[2]))
         except (IndexError, ValueError):
             expected = "# P, a count, a time in s, a frequency"
-            raise InputError(f"{self.name}: line {self.line}", f"# {remark[:80]}", expected) from None
+            raise InputError(f"{self.name}: line {line}", f"# {remark[:80]}", expected) from None
 
-    def _begins(self, text: str) -> bool:
-        """Return True if a line is the first row, after taking from it and the lines above which column is where."""
-        spelled = spelling(text)
-        if spelled is None:
-            self.header.add(self.line, text, False)
+    def _begins(self, text: str, line: int) -> bool:
+        """Return True if a line is the first row, after taking from it and the lines above the ways to read it."""
+        separators = possible_separators(text)
+        if not separators:
+            self.header.add(line, text, False)
             return False
-        made = self.header.layout(text, spelled, self.line)
-        conventions = (*made.conventions, *([DECIMAL_COMMA] if spelled.decimal_comma else []))
-        self.layout = replace(made, conventions=conventions)
-        self.spelled, self.fields = spelled, len(spelled.fields(text))
-        self.respelled = spelled != Spelling(spelled.separator)
+        refusals, readings = [], []
+        for separator, _ in separators:
+            try:
+                readings.append(Reading(separator, *self.header.layout(text, separator, line)))
+            except InputError as error:
+                refusals.append(error)
+        if not readings:
+            raise refusals[0]
+        self.readings = [reading for reading in readings if reading.fits(text)] or readings[:1]
         return True
+
+    def _only_reading(self) -> Reading:
+        """Return the one way to read all rows.
+
+        Raises:
+            InputError: there are two that give other numbers.
+        """
+        if len(self.readings) == 1:
+            return self.readings[0]
+        possible = [reading for reading in self.readings if all(map(reading.fits, self.rows))]
+        for other in possible[1:]:
+            ways = (possible[0], other)
+            for row, line in zip(self.rows, self.lines, strict=True):
+                first, second = ([plain(field) for field in way.fields(row)] for way in ways)
+                same = [*ways[0].layout.places] == [*other.layout.places] and [*map(float, first)] == [*map(float, second)]
+                if not same:
+                    got, expected = f"{', '.join(first)} or {', '.join(second)} from {row!r}", "one way to read it"
+                    advice = "Name the columns in a first line, and separate them by semicolons."
+                    raise InputError(f"{self.name}: line {line}", got[:80], expected, advice)
+        return (possible or self.readings)[0]
+
+    def _is_plain(self, reading: Reading) -> bool:
+        """Return whether the rows hold no quotes and no commas but separators, and points that are decimal."""
+        separator = reading.separator
+        if any('"' in row for row in self.rows) or (separator != "," and any("," in row for row in self.rows)):
+            return False
+        some = [number for row in self.rows[:SAMPLE] for number in reading.fields(row)]
+        return any("." in number and not GROUPED.fullmatch(number) for number in some)
+
+    def _counted(self, reading: Reading, i: int) -> str:
+        """Return a row.
+
+        Raises:
+            InputError: it has more or fewer fields than there are columns.
+        """
+        row, separator = self.rows[i], reading.separator
+        count = row.count(separator) + 1 if separator else len(row.split())
+        if count != reading.width and not reading.counts(row):
+            self._refuse_count(reading, i)
+        return row
+
+    def _refuse_count(self, reading: Reading, i: int) -> None:
+        count = len(without_end(split(self.rows[i], reading.separator)))
+        expected = f"{reading.width} as in the first row"
+        advice = "Is the line cut off?"
+        if count > reading.width:
+            advice = COMMAS if reading.separator == "," else "Are there two numbers in one field?"
+        raise InputError(f"{self.name}: line {self.lines[i]}", f"{count} fields", expected, advice)
+
+    def _spell_plainly(self, reading: Reading) -> None:
+        """Put the numbers of the columns that are read in place of the rows, with points and separated by blanks.
+
+        Rows in which a position is missing are left out.
+
+        Raises:
+            InputError: a row or a number cannot be read, or in two ways.
+        """
+        names = [*reading.layout.places]
+        kept, lines, lost = [], array("l"), []
+        for i, row in enumerate(self.rows):
+            if not reading.counts(row):
+                self._refuse_count(reading, i)
+            fields = reading.fields(row)
+            missing = [is_missing(field) for field in fields]
+            if any(missing) and not self.alone and (all(missing) or not missing[0]):
+                lost.append(fields[0])
+                continue
+            for name, field in zip(names, fields, strict=True):
+                if not (is_number(field) or (name == "t" and is_clock(field))):
+                    raise self._no_number(i, name, field)
+            kept.append(fields)
+            lines.append(self.lines[i])
+        if not kept:
+            raise InputError(self.name, f"no number of {' or '.join(names[1:])} in any row", "rows of numbers")
+        if lost:
+            self.notes.append(f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}")
+        self.lines = lines
+        columns = [*zip(*kept, strict=True)]
+        if is_clock(columns[0][0]):
+            columns[0] = self._clock(columns[0], reading)
+        self._check_marks(columns, reading)
+        if any("," in number for column in columns for number in column):
+            self.conventions.append(DECIMAL_COMMA)
+        self.rows = [" ".join(map(plain, fields)) for fields in zip(*columns, strict=True)]
+
+    def _no_number(self, i: int, name: str, field: str) -> InputError:
+        advice = ""
+        if THOUSANDS.fullmatch(field):
+            advice = "Write numbers without marks between thousands."
+        elif name == "t":
+            advice = HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
+        return InputError(f"{self.name}: line {self.lines[i]}: {name}", field[:40], "a number", advice)
+
+    def _clock(self, texts: Sequence[str], reading: Reading) -> Sequence[str]:
+        """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
+
+        Raises:
+            InputError: a text is none of a clock, or a unit says that it is none.
+        """
+        if "t" in reading.layout.factors:
+            raise InputError(f"{self.name}: t", texts[0], "a number, as its unit says", "Leave the unit out.")
+        places = [f"{self.name}: line {line}: t" for line in self.lines]
+        times = [seconds_of(text, place) for text, place in zip(texts, places, strict=True)]
+        kind = "dates with hours:minutes:seconds" if MOMENT.fullmatch(texts[0]) else "hours:minutes:seconds"
+        self.conventions.append(Deviation("clock_text", f"times are {kind}, converted to seconds"))
+        if self.alone or not times[0]:
+            return [decimal(time) for time in times]
+        self.clock_s = float(times[0])
+        return counted_from(times[0], times)
+
+    def _check_marks(self, columns: Sequence[Sequence[str]], reading: Reading) -> None:
+        """Refuse numbers whose marks may be decimal or not."""
+        commas_separate = reading.separator == ","
+        doubtful = doubtful_number(columns, commas_separate)
+        if doubtful is not None:
+            mark = "comma" if "," in doubtful else "point"
+            got, expected = doubtful, f"a {mark} that is decimal or one between thousands, and some number that shows which"
+            advice = f"Write {doubtful.replace(',', '.')}0 or {re.sub('[,.]', '', doubtful)}."
+            raise InputError(self.name, got, expected, advice)
+        fractions = any("." in number or "," in number for column in columns for number in column)
+        needless = None if fractions or not commas_separate else padded([number for column in columns for number in column])
+        if needless is not None:
+            raise InputError(self.name, f"{needless} between commas", "whole numbers without needless zeros", COMMAS)
 
 
 def _low_parts(lines: list[str], separator: str | None, indices: list[int], table: Array) -> Array:
