@@ -30,18 +30,19 @@ from reference.scenes.scene import AnyScene, as_scene
 
 from ..candidates.arrays import candidate_from, real_array
 from ..candidates.candidate import Candidate, Deviation, checked_transits
+from ..candidates.clock import shown
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import named, read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
+from .clock_start import SUBTRACT, TOLERANCE, counted_from_release
 from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
 READINGS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
-TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
 BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
 ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
@@ -106,14 +107,18 @@ def judge(
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
     times = None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
     if candidate is None and times is not None:
+        _check_transits(times, scene)
         candidate = Candidate.of_transits("transits", times[times <= float(scene.exact.t_end)])
     elif not isinstance(candidate, Candidate):
         candidate = read(candidate) if isinstance(candidate, str | Path) else candidate_from(candidate)
     times = candidate.transits if times is None else times
+    if candidate.positions:
+        candidate, times = counted_from_release(candidate, times, scene, tolerance)
     if t_end is not None:
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
     _check_times(candidate, scene)
+    until = None if times is None else _end_of_run(candidate, times, scene)
     problem, why = _reading(candidate, scene, inputs)
     for golden, truth in _truths(candidate, problem, times is not None, announce, report):
         errors = trajectory_errors(candidate, truth, golden)
@@ -130,7 +135,7 @@ def judge(
             tolerance_m=allowed,
             swing=errors.swing(_rest(scene)),
             drifts=drifts(candidate, problem),
-            transits=None if times is None or unjudged else judged_transits(times, golden, errors, allowed),
+            transits=None if times is None or unjudged else judged_transits(times, golden, errors, allowed, until),
             notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
             covers=covers,
             as_model=as_model,
@@ -207,20 +212,39 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
 
 
+def _check_transits(times: Array, scene: Scene) -> None:
+    """Refuse transits that are all beyond the scene's end."""
+    end = float(scene.exact.t_end)
+    if len(times) and times[0] > end:
+        raise InputError("transits: t", f"{times[0]:.10g} s first", f"times from 0 to {scene.run.t_end} s", SUBTRACT)
+
+
+def _end_of_run(candidate: Candidate, transits: Array, scene: Scene) -> float:
+    """Return the time in s at which a run ended: no later transit can be among its own."""
+    end = float(scene.exact.t_end)
+    last = float(candidate.t[-1])
+    goes_on = not candidate.positions or bool(len(transits) and transits[-1] > last)
+    return end if goes_on else min(last, end)
+
+
 def _check_times(candidate: Candidate, scene: Scene) -> None:
     """Refuse times beyond the scene's span, and say what they may be.
 
     Raises:
         InputError: the last time is more than a grid step beyond the scene's end.
     """
-    last, end = float(candidate.t[-1]), float(scene.exact.t_end)
+    first, last, end = float(candidate.t[0]), float(candidate.t[-1]), float(scene.exact.t_end)
     if last <= end + float(scene.exact.grid_step):
         return
-    unit = next((word for word in FINER if last * float(TIMES[word]) <= end * (1 + SAME)), None)
+    span = last - first
+    unit = next((word for word in FINER if span * float(TIMES[word]) <= end * (1 + SAME)), None)
     longer = f"--t-end {scene.run.t_end} leaves out later rows, --set run.t_end={last:.10g} makes the scene longer."
-    if unit is not None and last > FAR * end:
-        seconds = last * float(TIMES[unit])
-        longer = f"They look like {LONG_NAMES[unit]}: --units {unit} reads them so, and they end at {seconds:.10g} s."
+    if unit is not None and span > FAR * end:
+        seconds, start = last * float(TIMES[unit]), first * float(TIMES[unit])
+        what = f"and they end at {seconds:.10g} s" if seconds <= end * (1 + SAME) else f"from {shown(start)} on"
+        longer = f"They look like {LONG_NAMES[unit]}: --units {unit} reads them so, {what}."
+    elif first > 0 and span <= end:
+        longer = f"{longer} Did the clock start before the release? {SUBTRACT}"
     expected = f"times from 0 to {scene.run.t_end} s"
     raise InputError(f"{candidate.name}: t", f"{last:.10g} at the end", expected, longer)
 

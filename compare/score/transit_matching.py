@@ -206,17 +206,24 @@ def _truth(golden: Golden | Solution, times: Array) -> Dense:
 
 
 def judged_transits(
-    times: Array, golden: Golden | Solution, errors: TrajectoryErrors, tolerance_m: float
+    times: Array, golden: Golden | Solution, errors: TrajectoryErrors, tolerance_m: float, end_of_run: float | None = None
 ) -> TransitErrors:
-    """Return the errors of a candidate's transits, in s; of those that the truth's end or proof leaves open none."""
+    """Return the errors of a candidate's transits, in s; of those that the truth's end or proof leaves open none.
+
+    A transit of the truth after the end of the run, in s, matches none, unless an error within the tolerance moves it.
+    """
     end = float(golden.scene.exact.t_end)
-    judged = times[times <= end]  # beyond its end the truth is not known
+    end_of_run = end if end_of_run is None else min(end_of_run, end)
+    judged = times[times <= end_of_run]  # beyond its end the truth is not known
     for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth, omega = golden.transits, swing_rate(golden.scene, errors.speed_m_s)
+    t, ax = truth["t"], truth["ax"]
+    beyond_m = (t - end_of_run) * (np.abs(ax) / omega if omega else np.zeros_like(ax))
+    kept = (t <= end_of_run) | (beyond_m <= tolerance_m)
 
     def xdot(at: Array) -> Array:
         return _truth(golden, at).states[:, 3]
 
-    until = min(float(errors.t[-1]), end)
-    return transit_errors(judged, truth["t"], truth["ax"], omega, until, tolerance_m=tolerance_m, away=xdot)
+    until = min(float(errors.t[-1]), end_of_run)
+    return transit_errors(judged, t[kept], ax[kept], omega, until, tolerance_m=tolerance_m, away=xdot)
