@@ -11,11 +11,12 @@ from collections.abc import Generator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...model.carried import carried
+from ...model.force import acceleration
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes, zero_at_release
 from ...numbers.columns import STATE
@@ -78,7 +79,31 @@ def _few_bits(h: float) -> Fraction:
 
 
 OTHER_STEPS = Fraction(5, 8)  # of the span: the longest step of a run that takes other steps, if one would do
+UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
+
+
+class EarlyZero(NamedTuple):
+    """A zero of xdot too near t = 0 for a run to see: its time in s, before the release if negative, and direction."""
+
+    time_s: Any
+    direction: int
+
+
+def early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
+    """Return the zero of xdot near a release whose vx is not zero but less than a run's rounding; None if it is more.
+
+    Released with vx = 1e-30 m/s, the bob turns back after some 1e-30 s: the zero of xdot's tangent, whose relative error
+    is below the run's epsilon, as vx is below that of the other speeds.
+    """
+    vx, *others = start.v
+    scale = max(start.rate, start.fastest_rate, *(float(abs(speed)) for speed in others))
+    if vx == 0 or abs(vx) > start.ctx.ldexp(scale, UNSEEN_BITS - precision_bits):
+        return None
+    ax = acceleration(start.n, start.v, start.k)[0]
+    if abs(ax) <= start.ctx.ldexp(scale * scale, UNSEEN_BITS - precision_bits):
+        return None
+    return EarlyZero(-vx / ax, 1 if ax > 0 else -1)
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
@@ -96,7 +121,11 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     zeros: list[Zero] = []
     started = time.process_time()
     if watching:
-        states, zeros = march(stepper, times, zero_at_release(start), report)
+        early = early_zero(start, plan.number.prec)
+        release = stepper.state
+        states, zeros = march(stepper, times, zero_at_release(start) or int(early is not None), report)
+        if early is not None and early.time_s > 0:
+            zeros.insert(0, Zero(stepper.numbers.of(early.time_s), early.direction, release))
     else:
         states = stepper.propagate(times, report, pace)
     return result(plan, stepper, states, zeros if watching else None, started)
