@@ -69,6 +69,9 @@ def assert_agrees(
     """
     scene = as_scene(scene)
     rows, times = real_array(states, "states"), real_array(t, "t")
+    if rows.ndim == 2 and rows.shape[0] != times.size == rows.shape[1]:
+        advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
+        raise InputError("states", f"shape {rows.shape} for {times.size} times", "shape (rows, columns)", advice)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
     arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}

@@ -54,6 +54,14 @@ class Files:
     foreign: list[str]
 
 
+LINE_ENDS = "its lines end with CR LF and not with LF: copy the files as binary ones (in Git: `* -text`)"
+
+
+def with_lf(data: bytes) -> bytes:
+    """Return a text whose lines end with LF, where a copy ended them with CR LF."""
+    return data.replace(b"\r\n", b"\n")
+
+
 def read_files(folder: Path) -> Files:
     """Read a dataset and check its seal, its hashes and the form of its tables.
 
@@ -74,10 +82,15 @@ def read_files(folder: Path) -> Files:
     for name, record in manifest.files.items():
         try:
             size = (folder / name).stat().st_size
-            if size != record.bytes:  # so that nothing larger is read
+            if size > 2 * record.bytes:  # so that nothing larger is read
                 problems.append(f"{name}: {size} bytes, the manifest says {record.bytes}")
                 continue
             data = (folder / name).read_bytes()
+            if size != record.bytes:
+                ends_changed = hashlib.sha256(with_lf(data)).hexdigest() == record.sha256
+                what = LINE_ENDS if ends_changed else f"{size} bytes, the manifest says {record.bytes}"
+                problems.append(f"{name}: {what}")
+                continue
             if hashlib.sha256(data).hexdigest() != record.sha256:
                 problems.append(f"{name}: a byte was changed (sha256 differs)")
             elif name == FUNCTION[1]:
@@ -135,6 +148,8 @@ def read_manifest(folder: Path) -> Manifest:
         raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
     except (ValueError, RecursionError) as error:
         raise refused(f"is not JSON in UTF-8: {error}") from None
+    if manifest.text() == with_lf(text.encode()).decode() != text:
+        raise DatasetError(str(folder), [f"{MANIFEST}: {LINE_ENDS}"])
     if manifest.text() != text:
         raise refused("is not in the form in which it is written: spaces, the order of keys, or a key twice")
     if manifest.expected_seal() != manifest.seal:

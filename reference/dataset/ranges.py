@@ -19,6 +19,7 @@ from ..solver.ranges import Ends, Intervals, Ranges
 from ..solver.solution import Passages, exact_decimals
 from ..solver.solve import solve
 from ..system.documents import json_document
+from .files import LINE_ENDS
 from .manifest import differences, text_of
 from .place import RANGES, dataset_id, golden_folder, id_with
 from .sheets import open_intervals, scene_inputs
@@ -114,10 +115,12 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
         names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in manifest else []))
         texts |= {name: (folder / name).read_bytes().decode() for name in names}
         if text_of({**manifest, "seal": _seal(manifest)}) != texts[RANGES]:
-            raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed"])
+            hint = _hint(texts[RANGES], _hash(text_of({**manifest, "seal": _seal(manifest)})))
+            raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed{hint}"])
         for name, digest in manifest["sha256"].items():
             if _hash(texts[name]) != digest:
-                raise DatasetError(str(folder), [f"{name}: a byte was changed (sha256 differs)"])
+                hint = _hint(texts[name], digest)
+                raise DatasetError(str(folder), [f"{name}: a byte was changed (sha256 differs){hint}"])
         scene_id = manifest["id"].partition("+")[0].removesuffix(f".{manifest['inputs']}")
         scene = parse_scene({"id": scene_id, "inputs": manifest["inputs"], **manifest["scene"]})
         tables = {name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in names}
@@ -141,6 +144,12 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
             raise
         raise DatasetError(str(folder), [f"cannot be read: {type(error).__name__} {error}"]) from None
     return ranges, texts
+
+
+def _hint(text: str, digest: str) -> str:
+    """Return what to say of a text that does not fit its hash: that a copy changed its line ends, or nothing."""
+    lines = text.replace("\r\n", "\n")
+    return f": {LINE_ENDS}" if lines != text and _hash(lines) == digest else ""
 
 
 def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]) -> Passages[Intervals]:

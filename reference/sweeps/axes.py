@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MAX_PREC, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,8 @@ MOST_VALUES = 10**7  # of a field: they are held as text
 MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
 FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
 PARQUET = (".parquet", ".pq")
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")  # thousands, or a decimal comma before three digits
+_DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
@@ -256,10 +259,17 @@ def _text(value: Any) -> str:
 
 
 def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]]:
-    """Return the columns of a CSV file: of each its name, which may be a value, and the values below it."""
+    """Return the columns of a CSV file: of each its name, which may be a value, and the values below it.
+
+    The first line tells whether commas, semicolons or tabs separate them. A first column without a name is the index
+    of a data frame, and is left out.
+    """
     with _readable(option, path), regular(path, option, MOST_BYTES, "a CSV file") as stream:
         text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
-        lines = list(islice(filter(None, csv.reader(text)), MOST_VALUES + 2))
+        first = text.readline()
+        separator = next((mark for mark in ";\t" if mark in first), ",")
+        rows = csv.reader(chain([first], text), delimiter=separator)
+        lines = list(islice((line for line in rows if any(line)), MOST_VALUES + 2))
     if not 0 < len(lines) <= MOST_VALUES + 1:
         raise InputError(option, str(path), f"a CSV file of 1 to {MOST_VALUES:,} rows")
     names, *below = lines
@@ -267,7 +277,22 @@ def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]
         if len(line) != len(names):
             expected = f"{len(names)} values as in the first"
             raise InputError(option, f"{path}, row {number}", expected, f"It has {len(line)}.")
+    if len(names) > 1 and not names[0].strip():
+        names, below = names[1:], [line[1:] for line in below]
+    if separator != ",":
+        below = [[_with_point(option, cell) for cell in line] for line in below]
     return [(full_name(name), tuple(line[i].strip() for line in below)) for i, name in enumerate(names)]
+
+
+def _with_point(option: str, cell: str) -> str:
+    """Return a value with a point for its decimal comma.
+
+    Raises:
+        InputError: its comma may separate thousands.
+    """
+    if _GROUPED.fullmatch(cell.strip()):
+        raise InputError(option, cell, "a point for the decimal mark", "Does its comma separate thousands?")
+    return cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell.strip()) else cell
 
 
 def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:

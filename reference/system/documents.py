@@ -50,7 +50,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
     """
     data = _read(path, field, MAX_BYTES, "a TOML file")
     try:
-        text = data.decode()
+        text = data.decode("utf-8-sig")  # some editors write a byte order mark
         if _DEEP_KEY.search(text):
             raise InputError(field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words")
         return tomllib.loads(text)

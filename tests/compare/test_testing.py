@@ -247,3 +247,10 @@ def test_the_examples_in_the_docstrings_run():
 
     assert doctest.testmod(compare.testing).failed == 0
     assert doctest.testmod(compare).failed == 0
+
+
+@pytest.mark.parametrize("columns", [2, 4, 6])
+def test_states_that_stand_in_columns_are_said_to_be_transposed(golden, columns):
+    states = np.column_stack([getattr(golden, name)[:50] for name in ("x", "y", "vx", "vy", "z", "vz")[:columns]])
+    with pytest.raises(InputError, match=rf"shape \({columns}, 50\) for 50 times.*transpose them, as in sol\.y\.T"):
+        assert_agrees("paris", golden.t[:50], states.T)

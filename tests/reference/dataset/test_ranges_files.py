@@ -206,3 +206,12 @@ def test_verify_finds_tables_with_other_ends_of_lines(ranges, tmp_path, file, sp
     assert "a byte was changed" in verify_ranges(folder)[0]
     sealed_anew(folder, lambda said: None)
     assert "does not hold what is proved" in verify_ranges(folder)[0]
+
+
+@pytest.mark.parametrize("name", ["grid.csv", "transits.csv", "ranges.json"])
+def test_line_ends_that_a_copy_changed_are_named(ranges, tmp_path, name):
+    folder = write_ranges(ranges, tmp_path / "out")
+    data = (folder / name).read_bytes()
+    (folder / name).write_bytes(data.replace(b"\n", b"\r\n"))
+    (problem,) = verify_ranges(folder)
+    assert problem.startswith(name) and "its lines end with CR LF and not with LF" in problem

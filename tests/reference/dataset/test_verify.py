@@ -534,3 +534,13 @@ def test_figures_that_another_machine_measures_otherwise_are_told_and_not_wrong(
     assert "1 measured figure differs" in recompute(dataset)[1][0]  # and so may the hardware
     forge(dataset, manifest=lambda document: document["invariant"].update(drift_m2_s2="1.0e-3"))
     assert any("invariant.drift_m2_s2 = 1.0e-3" in line for line in recompute(dataset)[0])
+
+
+@pytest.mark.parametrize("name", ["grid.csv", "certified.txt", MANIFEST])
+def test_line_ends_that_a_copy_changed_are_named(dataset, name):
+    data = (dataset / name).read_bytes()
+    (dataset / name).write_bytes(data.replace(b"\n", b"\r\n"))
+    with pytest.raises(DatasetError, match=rf"{name}: its lines end with CR LF and not with LF"):
+        reference.load(dataset)
+    (dataset / name).write_bytes(data.replace(b"\n", b"\r\n", 1) + b"x")
+    assert "CR LF" not in problems(dataset)

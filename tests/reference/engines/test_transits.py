@@ -357,3 +357,19 @@ def test_a_moving_release_may_have_a_transit_in_its_first_step():
 def test_a_run_shorter_than_the_quiet_start_has_no_transit(paris):
     done = run(Plan(paris.exact, "momentum", real(160), (Fraction(0), Fraction(1, 10)), transits=True))
     assert len(done.transits) == 0
+
+
+@pytest.mark.parametrize("vx", ["1e-22", "1e-25", "1e-30", "1e-300", "-1e-24", "-1e-30"])
+def test_a_push_below_the_rounding_of_a_run_turns_at_the_time_that_the_exact_inputs_give(vx):
+    """Released 1 m to the east and pulled back by about g/20 m/s², it turns after vx/ax s; pushed back, it does not."""
+    scene = make_scene(
+        pendulum={"length": "20"},
+        site={"latitude": "50", "gravity": "9.81", "gravity_is": "effective"},
+        release={"x": "1", "y": "0", "vx": vx, "vy": "0.3"},
+        run={"t_end": "30", "digits": 10, "level": "confirmed"},
+    )
+    still = scene.with_values(["release.vx=0"])
+    made, expected = solve(scene), solve(still)
+    early, later = made.transits["t"][: float(vx) > 0], made.transits["t"][float(vx) > 0 :]
+    assert np.allclose(early.astype(float), float(vx) / 0.49007805, rtol=1e-6)
+    assert np.allclose(later.astype(float), expected.transits["t"].astype(float), rtol=0, atol=1e-9)

@@ -73,6 +73,12 @@ def test_an_unquoted_whole_number_is_exact_and_allowed(tmp_path):
     assert load_scene(path).exact.length == 67
 
 
+def test_a_byte_order_mark_does_no_harm(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_bytes(b'\xef\xbb\xbfid = "s"\n[pendulum]\nlength = "67"\n[release]\nx = "0.3"\ny = "0"\n')
+    assert load_scene(path).exact.length == 67
+
+
 REFUSED = [
     ("length of 0", {"pendulum": {"length": "0"}}, "pendulum.length", "above 0"),
     ("negative length", {"pendulum": {"length": "-1"}}, "pendulum.length", "above 0"),

@@ -161,3 +161,26 @@ def test_rows_of_parquet_are_exactly_the_doubles_that_they_hold(tmp_path):
 
 def test_every_number_of_a_scene_can_be_varied():
     assert {"pendulum.length", "site.inverse_flattening", "release.azimuth_rate", "run.t_end"} <= set(varied_names())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "site.latitude;release.x\n48.85;0.3\n-10;1\n",
+        "site.latitude;release.x\n48,85;0,3\n-10;1\n",
+        "\ufeffsite.latitude\trelease.x\r\n48.85\t0.3\r\n-10\t1\r\n",
+        ",site.latitude,release.x\n0,48.85,0.3\n1,-10,1\n",
+        ";site.latitude;release.x\n0;48,85;0,3\n1;-10;1\n;;\n",
+    ],
+)
+def test_rows_are_read_as_spreadsheets_and_data_frames_write_them(tmp_path, text):
+    path = tmp_path / "rows.csv"
+    path.write_text(text, encoding="utf-8", newline="")
+    assert listed(path).values == {"site.latitude": ("48.85", "-10"), "release.x": ("0.3", "1")}
+
+
+def test_a_comma_before_three_digits_is_not_guessed_at(tmp_path):
+    path = tmp_path / "rows.csv"
+    path.write_text("site.latitude;site.altitude\n48,85;1,250\n")
+    with pytest.raises(InputError, match="got '1,250', expected a point.*thousands"):
+        listed(path)
