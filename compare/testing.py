@@ -69,7 +69,7 @@ def assert_agrees(
     """
     scene = as_scene(scene)
     rows, times = real_array(states, "states"), real_array(t, "t")
-    if rows.ndim == 2 and rows.shape[0] != times.size == rows.shape[1]:
+    if rows.ndim == 2 and 1 < rows.shape[0] != times.size == rows.shape[1]:
         advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
         raise InputError("states", f"shape {rows.shape} for {times.size} times", "shape (rows, columns)", advice)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):

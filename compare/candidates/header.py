@@ -10,7 +10,7 @@ from typing import NamedTuple
 from reference import InputError
 
 from .names import Layout, Naming, advice, by_number, given, layout, meaning, units_of
-from .text import RULE, split, without_end, words
+from .text import says_nothing, split, without_end, words
 
 MOST = 1000  # lines above the first row that are looked at
 FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
@@ -49,7 +49,7 @@ class Header:
         Raises:
             InputError: there are too many before the first row.
         """
-        if RULE.fullmatch(text) or not text.strip(" \t,;|"):
+        if says_nothing(text):
             return
         self.lines.append(Line(number, text, comment))
         if len(self.lines) > MOST:

@@ -59,11 +59,11 @@ from .text import (
     padded,
     plain,
     possible_separators,
+    says_nothing,
     split,
     without_end,
 )
 
-EMPTY = " \t,;|\""  # characters of a line without a field
 _TELLING = 6  # bytes that tell an archive from text
 CHUNK = 1 << 22
 SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
@@ -280,8 +280,10 @@ class ColumnReader:
                 raise InputError(self.name, got, "text in UTF-8", advice)
             text = data.decode("utf-8", "replace").strip(" \r\n\v\f")
             text = text.removeprefix("\ufeff") if line == 1 else text
-            if not text.strip().strip(EMPTY):
+            if says_nothing(text):
                 continue
+            if "\r" in text:
+                raise InputError(self.name, "lines that end with CR alone", "LF or CR LF", "Save it with other line ends.")
             cut_off = data[-1:] != b"\n"
             begins = text.lstrip()
             if begins[0] in MARKS and (remark := COMMENT.match(begins)):

@@ -14,7 +14,8 @@ MAX_LINE = 1 << 20
 MAX_LINES = 4_000_000
 MARKS = frozenset("#%!/")  # with which a comment begins
 COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
-RULE = re.compile(r"[-=+|:_\s]*---[-=+|:_\s]*")  # drawn below a header, as in Markdown
+RULE = "-=+|:_ \t"  # characters of a line drawn below a header, as in Markdown
+EMPTY = " \t,;|\""  # characters of a line without a field
 SEPARATORS = (",", ";", "\t", "|", "")  # the last is white space
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+|[0-9]*,[0-9]+)([eEdD][+-]?[0-9]+)?")
 NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
@@ -43,6 +44,12 @@ def is_number(text: str) -> bool:
 def is_clock(text: str) -> bool:
     """Return True for hours:minutes:seconds, with a date before it or without."""
     return CLOCK.fullmatch(text) is not None or MOMENT.fullmatch(text) is not None
+
+
+def says_nothing(line: str) -> bool:
+    """Return True for a line that has no field, or is drawn."""
+    text = line.strip()
+    return not text.strip(EMPTY) or ("---" in text and not text.strip(RULE))
 
 
 def is_missing(text: str) -> bool:

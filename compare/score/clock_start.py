@@ -1,18 +1,26 @@
-"""A candidate whose clock did not start at the release: its times are counted from its first row, if that is there."""
+"""Clocks that did not start at the release.
+
+Rows are counted from the first of them, if that is the release. Of passages the differences are compared: what the clock
+showed at the release is fitted, as an interval.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
 from reference import InputError, Scene
+from reference.dataset.ranges import ends
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ..candidates.candidate import Candidate, Deviation
 from ..candidates.clock import shown
+
+Ends = tuple[Fraction, Fraction]
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 SUBTRACT = "Subtract what the clock showed at the release."
@@ -55,12 +63,61 @@ def counted_from_release(
 
 
 def started_elsewhere(times: Array, scene: Scene) -> bool:
-    """Return whether no time is in the scene's span, though all would fit into it."""
+    """Return whether no time is in the scene's span, though all would fit into it; one time alone tells nothing."""
     end = float(scene.exact.t_end + scene.exact.grid_step)
-    return bool(times[0] > end and times[-1] - times[0] <= end)
+    return bool(len(times) > 1 and times[0] > end and times[-1] - times[0] <= end)
 
 
 def since(clock_s: float, times: Array) -> Array:
     """Return times in s since another, each the nearest double to the difference of the decimals."""
     start = Fraction(repr(clock_s))
     return np.array([float(Fraction(repr(float(time))) - start) for time in times])
+
+
+def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[Ends]:
+    """Return what a clock may have shown at the release, as intervals in s: each time then lies in some interval.
+
+    Two times or more are needed: one would fit at any.
+
+    Args:
+        times: of passages, by the clock, in s.
+        intervals: of the passages since the release, in s.
+    """
+    true = _merged(intervals)
+    if len(times) < 2 or not true:
+        return []
+    possible = [(times[0] - high, times[0] - low) for low, high in reversed(true)]
+    for time in times[1:]:
+        shifted = [(time - high, time - low) for low, high in reversed(true)]
+        possible = [*_common(possible, shifted)]
+    return possible
+
+
+def starts_in_words(starts: Iterable[Ends]) -> str:
+    """Return what a clock may have shown at the release, each end rounded outward."""
+    return ", or ".join("{} to {} s".format(*ends(low, high)) for low, high in starts)
+
+
+def _merged(intervals: Iterable[Ends]) -> list[Ends]:
+    """Return the union of intervals as disjoint ones in order."""
+    merged: list[Ends] = []
+    for low, high in sorted(intervals):
+        if merged and low <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(high, merged[-1][1]))
+        else:
+            merged.append((low, high))
+    return merged
+
+
+def _common(first: Sequence[Ends], second: Sequence[Ends]) -> Iterator[Ends]:
+    """Yield what two unions of disjoint intervals, in order, have in common."""
+    i = k = 0
+    while i < len(first) and k < len(second):
+        low = max(first[i][0], second[k][0])
+        high = min(first[i][1], second[k][1])
+        if low <= high:
+            yield low, high
+        if first[i][1] < second[k][1]:
+            i += 1
+        else:
+            k += 1

@@ -14,6 +14,8 @@ from reference.numbers.precision import Array
 from reference.solver.uncertain import solve_ranges
 
 from ..candidates.candidate import Candidate
+from ..candidates.clock import shown
+from .clock_start import SUBTRACT, clock_starts, starts_in_words
 
 LISTED = 5  # of the numbers outside, those in the lines for people: the farthest of each column first
 ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing
@@ -47,6 +49,8 @@ class Measured:
         transits: the number of its transits or passages at times where the proof decides; None if it has none.
         outside: every number that contradicts the proof, the farthest of a column first.
         notes: remarks that a reader ought to know.
+        section: the word of the section whose passages the transits are; None for transits.
+        starts: what the clock may have shown at the release, in s, if all passages fit by such a clock alone.
     """
 
     name: str
@@ -56,6 +60,7 @@ class Measured:
     outside: tuple[Outside, ...]
     notes: tuple[str, ...]
     section: str | None = None
+    starts: tuple[tuple[Fraction, Fraction], ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -69,8 +74,9 @@ class Measured:
         zero, section = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
         parts += [] if self.transits is None else [f"{counted(self.transits, zero)}{section}"]
         scene, what = self.ranges.scene.id, " and ".join(parts)
+        clock = f" by a clock that showed {starts_in_words(self.starts)} at the release" if self.starts else ""
         if not self.outside:
-            yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved"
+            yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved{clock}"
         else:
             numbers = counted(len(self.outside), "number")
             yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
@@ -90,6 +96,7 @@ class Measured:
             "rows": self.rows,
             "transits": self.transits,
             "section": self.section,
+            "clock_at_release_s": [[*map(float, start)] for start in self.starts],
             "outside": [number._asdict() for number in self.outside],
             "notes": list(self.notes),
         }
@@ -122,34 +129,40 @@ def measured(
     """
     end, sections = ranges.scene.exact.t_end, ranges.scene.run.sections or ()
     times = [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
-    zeros = [] if transits is None else sorted(_decimal(t) for t in transits if t > 0)
-    kept, seen = [t for t in times if t <= end], [t for t in zeros if t <= end]
-    late = len(times) - len(kept) + len(zeros) - len(seen)
+    zeros = [] if transits is None else sorted(_decimal(t) for t in transits)
+    kept, seen = [t for t in times if t <= end], [t for t in zeros if 0 < t <= end]
     name = name if candidate is None else candidate.name
-    if not kept and not seen:
+    if candidate is not None and (candidate.clock_s is not None or (not kept and _span(times) <= end)):
+        raise InputError(f"{name}: t", f"{_clock_of(candidate)} in the first row", "times since the release", SUBTRACT)
+    other_clock = candidate is None and _span(zeros) <= end
+    if not kept and not seen and not other_clock:
         raise InputError(name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end.")
-    if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or not seen)):
-        inputs, last = ranges.scene.exact, max([*kept, *seen])
-        # a swing beyond the last one, so that a transit is not cut off
-        swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
-        grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not last else [])})
-        sought = {"run.transits": str(bool(seen and not section)).lower(), "run.sections": section or ""}
-        scene = ranges.scene.with_values(sought)
-        box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
-        ranges = solve_ranges(scene, box, report=report, times=grid)
-    if seen and not _intervals(ranges, section):
+    if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or (kept and not seen))):
+        ranges = _proved(ranges, kept, seen, section, report)
+    if (seen or not kept) and not _intervals(ranges, section):
         none = f"none: {section or 'xdot'} has no single zeros in this scene"
         raise InputError(name, "transits", none, "Give positions instead.")
-    free, word = _intervals(ranges, section), section or TRANSIT
-    decided = [t for t in seen if not _undecided(t, free)]
+    word = section or TRANSIT
+    decided = [t for t in seen if not _undecided(t, _intervals(ranges, section))]
+    off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
+    off += _zeros(decided, _intervals(ranges, section), word)
+    starts: list[tuple[Fraction, Fraction]] = []
+    if other_clock and (off or not decided):
+        whole = ranges if ranges.times[-1] >= end else _proved(ranges, [], [end], section, report)
+        starts = _starts(zeros, _intervals(whole, section))
+    if starts:
+        ranges, off, seen, decided = whole, [], zeros, zeros
+    if not seen:
+        span = f"times above 0, up to {float(end):g} s"
+        raise InputError(f"{name}: t", f"{float(zeros[0]):.10g} s first", span, SUBTRACT)
     if seen and not decided and not kept:
+        free = _intervals(ranges, section)
         (low, high) = next(ends for ends, single in free if not single and ends[0] <= seen[0] <= ends[1])
         advice = f"The proof leaves {float(low):g} to {float(high):g} s open. Take smaller widths, or another section."
         raise InputError(f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice)
-    off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
-    off += _zeros(decided, free, word)
     farthest = {number.column: number.by for number in sorted(off, key=lambda number: number.by)}
     notes = list(candidate.notes if candidate else ())
+    late = 0 if starts else sum(t > end for t in [*times, *zeros])
     if late:
         notes.append(f"after {float(end):g} s {counted(late, 'time')} left out")
     if open_ := len(seen) - len(decided):
@@ -158,7 +171,36 @@ def measured(
         notes.append(f"for passages of {sections[0]} write --section '{sections[0]}'")
     off.sort(key=lambda number: (number.by < farthest[number.column], number.column not in STATE, -number.by))
     count = len(decided) if transits is not None else None
-    return Measured(name, ranges, len(kept), count, tuple(off), tuple(notes), section)
+    return Measured(name, ranges, len(kept), count, tuple(off), tuple(notes), section, tuple(starts))
+
+
+def _proved(
+    ranges: Ranges, kept: Sequence[Fraction], seen: Sequence[Fraction], section: str | None, report: Any
+) -> Ranges:
+    """Return a proof at the times of rows, and of transits or passages a swing beyond the last that was seen."""
+    end, inputs, last = ranges.scene.exact.t_end, ranges.scene.exact, max([*kept, *seen], default=ranges.scene.exact.t_end)
+    # a swing beyond the last one, so that a transit is not cut off
+    swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
+    grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not kept or not last else [])})
+    sought = {"run.transits": str(bool((seen or not kept) and not section)).lower(), "run.sections": section or ""}
+    box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
+    return solve_ranges(ranges.scene.with_values(sought), box, report=report, times=grid)
+
+
+def _span(times: Sequence[Fraction]) -> Fraction:
+    return times[-1] - times[0] if times else Fraction(0)
+
+
+def _clock_of(candidate: Candidate) -> str:
+    return shown(float(candidate.t[0]) if candidate.clock_s is None else candidate.clock_s)
+
+
+def _starts(times: Sequence[Fraction], intervals: Intervals) -> list[tuple[Fraction, Fraction]]:
+    """Return what a clock may have shown at the release, if every time lies in an interval by it, none in the same one."""
+    possible = clock_starts(times, [ends for ends, _ in intervals])
+    middles = [(low + high) / 2 for low, high in possible]
+    fits = [not any(_zeros([t - middle for t in times], intervals, TRANSIT)) for middle in middles]
+    return [start for start, fit in zip(possible, fits, strict=True) if fit]
 
 
 def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float) -> Iterator[Outside]:

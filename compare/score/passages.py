@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ..truth import DIGITS, Report, golden_of, truth_at
+from .clock_start import SUBTRACT, Ends, clock_starts, starts_in_words
 from .errors import entry, swing_rate
 from .judge import TOLERANCE
 from .transit_matching import TransitErrors, transit_errors
@@ -36,6 +38,7 @@ class PassageScore:
         tolerance_m: largest weighted error allowed, in m.
         bound_m: how well the truth is known, as a distance in m.
         level: that of the truth.
+        starts: what the clock may have shown at the release, in s, if all passages are right by such a clock alone.
     """
 
     name: str
@@ -46,6 +49,7 @@ class PassageScore:
     tolerance_m: float
     bound_m: float
     level: str
+    starts: tuple[Ends, ...] = ()
 
     @property
     def allowed_m(self) -> float:
@@ -66,6 +70,9 @@ class PassageScore:
         yield entry("tolerance", f"{self.tolerance_m:.3g} m")
         yield entry("inputs read as", self.scene.inputs)
         yield entry("reference", self.level, f"within {self.bound_m:.2g} m")
+        if self.starts:
+            clock = f"the clock showed {starts_in_words(self.starts)} at the release"
+            yield f"Reading: all passages agree if {clock}. {SUBTRACT}"
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document."""
@@ -78,6 +85,7 @@ class PassageScore:
             "tolerance_m": self.tolerance_m,
             "transits": self.errors.document(self.allowed_m),
             "reference": {"level": self.level, "bound_m": self.bound_m},
+            "clock_at_release_s": [[*map(float, start)] for start in self.starts],
         }
 
 
@@ -106,22 +114,45 @@ def score_passages(
         UnreachableError: the scene cannot be solved.
     """
     scene = scene.with_values({"run.sections": section, "run.transits": "false"})
-    judged = times[(times > 0) & (times <= float(scene.exact.t_end))]
-    if not len(judged):
-        raise InputError(f"{name}: t", "no time in the scene's span", f"times above 0, up to {scene.run.t_end} s")
-    golden = golden_of(scene, DIGITS, announce, report, float(judged[-1]))
+    end = float(scene.exact.t_end)
+    judged = times[(times > 0) & (times <= end)]
+    golden = golden_of(scene, DIGITS, announce, report, float(judged[-1]) if len(judged) else end)
     truth = golden.sections[section]
     speed = float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
     away = _distances(section, scene, swing_rate(scene, speed))
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
     allowed = TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
+    if not len(judged):
+        starts = [*_starts(times, truth, away, allowed)]
+        advice = f"By the passages the clock showed {starts_in_words(starts)} at the release. " if starts else ""
+        span = f"times above 0, up to {scene.run.t_end} s"
+        raise InputError(f"{name}: t", "no time in the scene's span", span, f"{advice}{SUBTRACT if len(times) else ''}")
 
     def distances(at: Array) -> Array:
         return away(truth_at(golden, at).states)[0]
 
     errors = transit_errors(judged, truth["t"], slopes, 1.0, float(judged[-1]), tolerance_m=allowed, away=distances)
     bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
-    return PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
+    score = PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
+    if score.verdict == "agrees":
+        return score
+    golden = golden_of(scene, DIGITS, announce, report, end)
+    return replace(score, starts=tuple(_starts(times, golden.sections[section], away, score.allowed_m)))
+
+
+def _starts(
+    times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float
+) -> Iterator[Ends]:
+    """Yield what the clock may have shown at the release, in s, if every passage agrees by it, none with the same one."""
+    _, slopes = away(np.column_stack([truth[column] for column in STATE]))
+    intervals = []
+    for time, slope in zip(truth["t"], np.abs(slopes), strict=True):
+        if slope:
+            late_s = Fraction(allowed_m / float(slope))
+            intervals.append((Fraction(float(time)) - late_s, Fraction(float(time)) + late_s))
+    exact = [Fraction(repr(float(time))) for time in times]
+    if len({*exact}) == len(exact):
+        yield from clock_starts(exact, intervals)
 
 
 def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tuple[Array, Array]]:

@@ -1,14 +1,10 @@
-// Read a trajectory, or times of xdot = 0, from text, as compare/candidates does: header, units, separators, comments.
+// Read a trajectory, or times of xdot = 0, from text, as compare/candidates does: the same rules, once more.
 // `vocabulary` holds its tables of words and units, its patterns and limits by their names there (parts.py); what cannot
-// be read throws Unreadable.
+// be read throws Unreadable. tests/compare/candidates/spellings.py lists texts that both must read alike.
 "use strict";
 
 class Unreadable extends Error {}
 
-const NUMBER = /^[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?$/i;
-const NOT_FINITE = /^[+-]?(nan|inf|infinity)$/i;
-
-const isNumber = (text) => NUMBER.test(text) || NOT_FINITE.test(text);
 const patterns = new Map();
 
 // The pattern of a source, made once; `whole` is one of all of a text.
@@ -20,10 +16,91 @@ function pattern(source, flags = "") {
 
 const whole = (source, flags = "") => pattern(`^(?:${source})$`, flags);
 const allColumns = (vocabulary) => vocabulary.UNNAMED[7]; // t, x, y, z, vx, vy, vz
+const stripped = (text, characters) => [...text].every((letter) => characters.includes(letter));
+const unquoted = (word) => word.trim().replace(/^(["'`])(.*)\1$/, "$2").trim();
+
+// Fields: compare/candidates/text.py.
+
+const isNumber = (text, vocabulary) => whole(vocabulary.NUMBER).test(text) || whole(vocabulary.NOT_FINITE, "i").test(text);
+const isClock = (text, vocabulary) => whole(vocabulary.CLOCK).test(text) || whole(vocabulary.MOMENT).test(text);
+const isMissing = (text, vocabulary) => vocabulary.MISSING.includes(text.toLowerCase());
+const isGrouped = (text, vocabulary) => whole(vocabulary.GROUPED).test(text);
+
+// A line that has no field, or is drawn.
+function saysNothing(line, vocabulary) {
+  const text = line.trim();
+  return stripped(text, vocabulary.EMPTY) || (text.includes("---") && stripped(text, vocabulary.RULE));
+}
+
+function unquotedField(field) {
+  const text = field.trim();
+  return text.length > 1 && text.startsWith('"') && text.endsWith('"') ? text.slice(1, -1).replaceAll('""', '"').trim() : text;
+}
+
+// The fields of a line; a field in quotes may hold the separator, which is white space if empty.
+function split(text, separator, vocabulary) {
+  const quotes = text.split('"').length - 1;
+  const line = quotes % 2 ? text.replaceAll('"', "") : text;
+  if (!line.includes('"')) {
+    return separator ? line.split(separator).map((field) => field.trim()) : line.split(/\s+/).filter(Boolean);
+  }
+  if (!separator) return [...line.matchAll(pattern(vocabulary.QUOTED_WORD, "g"))].map((match) => unquotedField(match[0]));
+  const mark = separator === "|" ? "\\|" : separator;
+  const fields = (line + separator).matchAll(pattern(`((?:"[^"]*"|[^"${mark}])*)${mark}`, "g"));
+  return [...fields].map((match) => unquotedField(match[1]));
+}
+
+// The separators under which most fields of a line are numbers, the likeliest first.
+function possibleSeparators(line, vocabulary) {
+  const isOne = (field) => isNumber(field, vocabulary) || isClock(field, vocabulary) || whole(vocabulary.HEXFLOAT, "i").test(field);
+  const found = [];
+  for (const separator of vocabulary.SEPARATORS) {
+    if (!line.includes(separator)) continue;
+    const fields = split(line, separator, vocabulary).filter((field) => !isMissing(field, vocabulary));
+    const share = fields.filter(isOne).length / Math.max(1, fields.length);
+    if (share > 0.5) found.push({ separator, share });
+  }
+  return found.sort((one, other) => other.share - one.share).map(({ separator }) => separator);
+}
+
+function withoutEnd(fields) {
+  let end = fields.length;
+  while (end > 1 && !fields[end - 1].trim()) end -= 1;
+  return fields.slice(0, end);
+}
+
+// The ways to take a header apart, the most likely first.
+function wordsOf(line, vocabulary) {
+  const marks = vocabulary.SEPARATORS.filter((separator) => separator && line.includes(separator));
+  const joined = line.replace(pattern(vocabulary.BEFORE_BRACKET, "g"), "");
+  const ways = marks.map((separator) => split(line, separator, vocabulary));
+  ways.push(line.trim().split(pattern(vocabulary.APART)), split(joined, "", vocabulary), split(line, "", vocabulary));
+  return ways.map(withoutEnd);
+}
+
+const plain = (number, vocabulary) => number.replaceAll(",", ".").replace(pattern(vocabulary.FORTRAN, "g"), "e");
+
+// A number whose mark may be decimal or may separate thousands; undefined if the numbers decide it.
+function doubtfulNumber(columns, commasSeparate, vocabulary) {
+  const [examples, proven] = [{}, new Set()];
+  let wholeBesidePoint = false;
+  for (const column of columns) {
+    const marked = column.filter((number) => /[.,]/.test(number));
+    const grouped = marked.filter((number) => isGrouped(number, vocabulary));
+    for (const number of grouped) examples[number.includes(",") ? "," : "."] ??= number;
+    for (const number of marked) if (!isGrouped(number, vocabulary)) proven.add(number.includes(",") ? "," : ".");
+    wholeBesidePoint ||= grouped.length > 0 && grouped.length < column.length;
+  }
+  if (examples[","] && !proven.has(",")) return examples[","];
+  if (!examples["."] || proven.has(".")) return undefined;
+  return proven.has(",") || (wholeBesidePoint && !commasSeparate) ? examples["."] : undefined;
+}
+
+// Names and units: compare/candidates/names.py.
 
 function plainUnit(word, vocabulary) {
-  const plain = word.trim().toLowerCase().replace(/[µμ]/g, "u").replace(/^\.+|\.+$/g, "");
-  return vocabulary.OTHER_WORDS[plain] ?? plain;
+  const bare = word.trim().toLowerCase().replace(/[µμ]/g, "u").replace(/^\.+|\.+$/g, "");
+  return vocabulary.OTHER_WORDS[bare] ?? bare;
 }
 
 // The size of a unit in SI units, as [numerator, denominator]; undefined if it is none of its column.
@@ -39,17 +116,15 @@ function sizeOf(unit, column, vocabulary) {
   return above && below && [above[0] * below[1], above[1] * below[0]];
 }
 
-const unquoted = (word) => word.trim().replace(/^(["'`])(.*)\1$/, "$2").trim();
-
 // The column, sign and rank of a name without a unit: rank 0 is the column's own name, 2 another word.
 function columnOf(name, vocabulary) {
   if (allColumns(vocabulary).includes(name)) return { column: name, sign: 1, rank: 0 };
   if (allColumns(vocabulary).includes(name.toLowerCase())) return { column: name.toLowerCase(), sign: 1, rank: 1 };
   const spelled = name.toLowerCase().normalize("NFD").replaceAll("\u0307", "dot").replace(/['’′]$/, "prime");
-  const plain = spelled.replace(/[^\p{L}\p{N}]/gu, "");
-  if (vocabulary.TIME_WORDS.includes(plain)) return { column: "t", sign: 1, rank: 2 };
+  const bare = spelled.replace(/[^\p{L}\p{N}]/gu, "");
+  if (vocabulary.TIME_WORDS.includes(bare)) return { column: "t", sign: 1, rank: 2 };
   for (const [source, speed] of [[vocabulary.POSITION, ""], [vocabulary.VELOCITY, "v"]]) {
-    const match = whole(source).exec(plain);
+    const match = whole(source).exec(bare);
     if (!match) continue;
     const given = match.slice(1).filter(Boolean);
     const last = given[given.length - 1];
@@ -60,94 +135,91 @@ function columnOf(name, vocabulary) {
   return undefined;
 }
 
+// The ways to take a text apart into a name and a unit, which may be empty.
+function withUnit(text, vocabulary) {
+  const brackets = whole(vocabulary.BRACKETS).exec(text);
+  if (brackets) return [[brackets[1], brackets[2]]];
+  const ways = [[text, ""]];
+  if (whole(vocabulary.TIME_UNITS).test(text.toLowerCase())) ways.push(["t", text]);
+  for (const source of [vocabulary.AFTER, vocabulary.LAST]) {
+    const parts = whole(source).exec(text);
+    if (parts) ways.push([parts[1], parts[2]]);
+  }
+  return ways;
+}
+
+// The ways to take a word apart into a name, a unit and a direction, the most likely first.
+function partsOf(text, vocabulary) {
+  const ways = [];
+  for (const [name, last] of withUnit(text, vocabulary)) {
+    if (!(last.toLowerCase() in vocabulary.DIRECTIONS)) continue;
+    ways.push(...withUnit(name, vocabulary).map(([before, unit]) => [before, unit, last]));
+  }
+  return [...ways, ...withUnit(text, vocabulary).map(([name, unit]) => [name, unit, ""])];
+}
+
 // What a word of a header means: {column, factor: [numerator, denominator] or undefined if unknown, unit, rank}.
 function meaning(word, vocabulary) {
-  const text = unquoted(word);
-  if (text.length > vocabulary.LONGEST) return undefined;
-  const brackets = whole(vocabulary.BRACKETS).exec(text);
-  const after = whole(vocabulary.AFTER).exec(text);
-  let ways = [[text, ""]];
-  if (whole(vocabulary.TIME_UNITS).test(text.toLowerCase())) ways.push(["t", text]);
-  if (after) ways.push([after[1], after[2]]);
-  if (brackets) ways = [[brackets[1], brackets[2]]];
-  for (const [name, suffix] of ways) {
+  const long = unquoted(word);
+  if (long.length > vocabulary.LONGEST) return undefined;
+  const text = whole(vocabulary.LABEL, "i").exec(long)?.[1] ?? long;
+  for (const [name, suffix, direction] of partsOf(text, vocabulary)) {
     const named = columnOf(name, vocabulary);
     if (!named) continue;
     let { column, sign, rank } = named;
     let unit = suffix;
     if (suffix === text) rank = 2; // it is called by its unit
-    const turned = vocabulary.DIRECTIONS[suffix.toLowerCase()];
-    if (turned && column !== "t") {
+    if (direction) {
+      if (column === "t") continue;
+      const turned = vocabulary.DIRECTIONS[direction.toLowerCase()];
       column = column.slice(0, -1) + turned[0];
-      [sign, unit, rank] = [turned[1], "", 2];
+      [sign, rank] = [turned[1], 2];
     }
     if (["t", "time"].includes(suffix.toLowerCase()) && column !== "t") unit = ""; // x(t)
     const size = unit ? sizeOf(unit, column, vocabulary) : [1, 1];
     if (size) return { column, factor: [size[0] * sign, size[1]], unit, rank };
-    if (brackets) return { column, factor: undefined, unit, rank };
+    if (whole(vocabulary.BRACKETS).test(text)) return { column, factor: undefined, unit, rank };
   }
   return undefined;
 }
 
-// How a line is written if it is a row, that is if most of its fields are numbers; else null.
-function spelling(line, vocabulary) {
-  let best = null;
-  const hexfloat = whole(vocabulary.HEXFLOAT, "i"); // never read, but no word either
-  for (const comma of line.includes(",") ? [false, true] : [false]) {
-    for (const separator of [",", ";", "\t", null]) {
-      if ((separator !== null && !line.includes(separator)) || (comma && separator === ",")) continue;
-      const fields = fieldsOf(line, { separator, comma }, vocabulary);
-      const count = fields.length - (fields[fields.length - 1] === "" ? 1 : 0);
-      const share = fields.filter((field) => isNumber(field) || hexfloat.test(field)).length / Math.max(1, count);
-      if (share > (best ? best.share : 0)) best = { separator, comma, share };
-    }
+// A unit without brackets and quotes; nothing for a word that stands for none.
+function bareUnit(printed, vocabulary) {
+  const text = unquoted(printed);
+  const bare = /^[([{<].*[)\]}>]$/.test(text) ? text.slice(1, -1).trim() : text;
+  return vocabulary.SKIPPED.includes(bare) || vocabulary.TYPES.includes(bare.toLowerCase()) ? "" : bare;
+}
+
+// The units of a line that holds nothing else, one for each word; undefined for another line.
+function unitsOf(words, vocabulary) {
+  const found = words.map((word) => bareUnit(word, vocabulary));
+  const known = found.map((unit) => ["t", "x", "vx"].some((column) => sizeOf(unit, column, vocabulary)));
+  const others = found.map((unit) => !unit || vocabulary.OTHER_UNITS.includes(plainUnit(unit, vocabulary)));
+  const typed = words.some((word) => vocabulary.TYPES.includes(unquoted(word).toLowerCase()));
+  const all = known.every((one, i) => one || others[i]);
+  return all && (known.some(Boolean) || typed) ? found : undefined;
+}
+
+const sameSize = (one, other) => one[0] * other[1] === other[0] * one[1];
+
+// What a word means if a line of units names a unit for it.
+function withLineOfUnits(meant, word, printed, vocabulary) {
+  const unit = bareUnit(printed, vocabulary);
+  if (!meant || !unit) return meant;
+  const size = sizeOf(unit, meant.column, vocabulary);
+  if (!size) return { ...meant, factor: undefined, unit };
+  if (meant.unit && meant.factor && !sameSize([Math.abs(meant.factor[0]), meant.factor[1]], size)) {
+    throw new Unreadable(`The header says ${meant.unit} of ${word.trim()}, and the line of units ${unit}: leave one of them out.`);
   }
-  return best && best.share > 0.5 ? best : null;
-}
-
-function fieldsOf(line, { separator, comma }, vocabulary) {
-  let plain = line.replaceAll('"', "").replace(pattern(vocabulary.FORTRAN, "g"), "e");
-  if (comma) plain = plain.replaceAll(",", ".");
-  return separator === null ? plain.trim().split(/\s+/) : plain.split(separator).map((field) => field.trim());
-}
-
-// The ways to take a header apart, the most likely first.
-function wordsOf(line, vocabulary) {
-  const ways = [",", ";", "\t"].filter((separator) => line.includes(separator)).map((separator) => line.split(separator));
-  const bare = line.trim();
-  const joined = bare.replace(pattern(vocabulary.BEFORE_BRACKET, "g"), "");
-  ways.push(bare.split(pattern(vocabulary.APART)), joined.split(/\s+/), bare.split(/\s+/));
-  return ways.map((way) => (way.length > 1 && !way[way.length - 1].trim() ? way.slice(0, -1) : way));
-}
-
-// The words of the header among the lines above the first row, or those that the number of columns stands for.
-function headerOf(above, count, needed, vocabulary) {
-  const columns = (way) => new Set(way.map((word) => meaning(word, vocabulary)?.column).filter(Boolean));
-  const complete = (way) => needed.every((name) => columns(way).has(name));
-  for (const { text, comment, number } of above.slice().reverse()) {
-    const ways = wordsOf(text, vocabulary);
-    const fitting = ways.filter((way) => way.length === count);
-    const enough = comment ? Math.max(Math.min(vocabulary.FEW, needed.length), Math.floor(count / 2)) : 0;
-    const other = (way) => complete(way) && (!comment || columns(way).size === way.length);
-    const header = fitting.find(complete) ?? ways.find(other) ?? fitting.find((way) => columns(way).size >= enough);
-    if (!header) continue;
-    if (header.length !== count) {
-      throw new Unreadable(`The first row has ${count} fields, and the header in line ${number} has ${header.length}.`);
-    }
-    return { words: header, conventions: [] };
-  }
-  if (needed.length === 1 && count === 1 && !above.length) return { words: ["t"], conventions: [] };
-  const names = needed.length > 1 && vocabulary.UNNAMED[count];
-  if (!names) throw new Unreadable(`No line names the columns: let the first be ${needed.join(",")}.`);
-  const conventions = [`no header: the columns are taken as ${names.join(", ")}`];
-  return { words: [...names, ...Array(count - names.length).fill("-")], conventions };
+  return { ...meant, factor: [size[0] * (meant.factor && meant.factor[0] < 0 ? -1 : 1), size[1]], unit };
 }
 
 // Which column stands where, and by what it comes to SI units.
-function layoutOf(words, needed, vocabulary) {
-  const meanings = words.map((word) => meaning(word, vocabulary));
+function layoutOf(words, needed, vocabulary, units = []) {
+  const named = words.map((word) => meaning(word, vocabulary));
+  const meanings = units.length ? named.map((meant, i) => withLineOfUnits(meant, words[i], units[i], vocabulary)) : named;
   const layout = {};
-  for (const name of allColumns(vocabulary)) {
+  for (const name of needed.length > 1 ? allColumns(vocabulary) : needed) {
     const places = meanings.flatMap((meant, i) => (meant && meant.column === name ? [i] : []));
     const rank = Math.min(...places.map((i) => meanings[i].rank));
     const best = places.filter((i) => meanings[i].rank === rank);
@@ -163,7 +235,7 @@ function layoutOf(words, needed, vocabulary) {
   return layout;
 }
 
-// What is to be said of a header: columns by other names, those not read, units converted; as names.py says it.
+// What is to be said of a header: columns by other names, those not read, units converted.
 function conventionsOf(words, places, vocabulary) {
   const read = Object.values(places);
   const renamed = read.filter(({ rank }) => rank === 2).map(({ word, factor, column }) => `${word} as ${factor[0] < 0 ? "-" : ""}${column}`);
@@ -174,69 +246,311 @@ function conventionsOf(words, places, vocabulary) {
   return units.length ? [...conventions, `${units.join(", ")}, converted to SI units`] : conventions;
 }
 
-// Read columns of a text: {t: […], x: […], …} in SI units, and notes. `needed` columns must be there, times first.
-function readColumns(text, needed, vocabulary, onComment = () => {}) {
-  if (text.includes("\0")) throw new Unreadable("This is no text: a CSV file is wanted.");
-  const above = [];
-  const columns = {};
-  const notes = [];
-  let [spelled, places, width, rows, finer] = [null, null, 0, 0, false];
-  text.replace(/^\ufeff/, "").split(/\r?\n/).forEach((raw, i) => {
-    const line = raw.trim();
-    if (!line) return;
-    const remark = whole(vocabulary.COMMENT, "s").exec(line);
-    if (remark) {
-      if (!places) above.push({ text: remark[1], comment: true, number: i + 1 });
-      onComment(remark[1], i + 1);
-      return;
-    }
-    if (!places) {
-      spelled = spelling(line, vocabulary);
-      if (!spelled) {
-        above.push({ text: line, comment: false, number: i + 1 });
-        if (above.length > vocabulary.MOST) throw new Unreadable(`Line ${i + 1} is no row of numbers, and none is before it.`);
-        return;
-      }
-      const fields = fieldsOf(line, spelled, vocabulary);
-      width = fields.length;
-      const count = width - (width > 1 && fields[width - 1] === "" ? 1 : 0);
-      const { words, conventions } = headerOf(above, count, needed, vocabulary);
-      places = layoutOf(words, needed, vocabulary);
-      const comma = spelled.comma ? [vocabulary.DECIMAL_COMMA] : [];
-      notes.push(...[...conventions, ...conventionsOf(words, places, vocabulary), ...comma].map((text) => `Reading: ${text}.`));
-      for (const name of Object.keys(places)) columns[name] = [];
-    }
-    const fields = fieldsOf(line, spelled, vocabulary);
-    if (fields.length !== width) {
-      throw new Unreadable(`Line ${i + 1} has ${fields.length} fields, and the first row has ${width}. Is it cut off?`);
-    }
-    for (const [name, { at, factor }] of Object.entries(places)) {
-      const field = fields[at];
-      if (!isNumber(field)) throw new Unreadable(`Line ${i + 1}: ${field.slice(0, 40) || "nothing"} is no number (${name}).`);
-      const value = (Number(field) * factor[0]) / factor[1];
-      if (!(Math.abs(value) <= vocabulary.LARGEST)) throw new Unreadable(`Line ${i + 1}: ${name} is ${field}. The run failed there.`);
-      finer ||= field.replace(/e.*/i, "").replace(/^[+-]?[0.]*/, "").replace(".", "").length > vocabulary.DOUBLE_DIGITS;
-      columns[name].push(value);
-    }
-    rows += 1;
-  });
-  if (!rows) throw new Unreadable("There are no rows of numbers.");
-  if (finer) notes.push("Numbers of more than 17 digits are rounded to doubles here; foucault score reads all of them.");
-  return { columns, notes };
+// The lines above the first row: compare/candidates/header.py. A line is {text, comment, number}.
+
+const columnsNamed = (way, vocabulary) => new Set(way.map((word) => meaning(word, vocabulary)?.column).filter(Boolean));
+const namesAll = (way, needed, vocabulary) => needed.every((name) => columnsNamed(way, vocabulary).has(name));
+
+function namedBy(line, count, needed, vocabulary) {
+  const ways = wordsOf(line.text, vocabulary);
+  const fitting = ways.filter((way) => way.length === count);
+  const other = (way) => namesAll(way, needed, vocabulary) && (!line.comment || columnsNamed(way, vocabulary).size === way.length);
+  const enough = line.comment ? Math.max(Math.min(vocabulary.FEW, needed.length), Math.floor(count / 2)) : 0;
+  const complete = fitting.find((way) => namesAll(way, needed, vocabulary));
+  return complete ?? ways.find(other) ?? fitting.find((way) => columnsNamed(way, vocabulary).size >= enough);
 }
 
-// Read a trajectory: {columns, transits (null if there are none), notes}.
+// The units in a line that holds nothing else, one for each column; undefined for another line.
+function lineOfUnits(line, count, vocabulary) {
+  const text = line.text.replace(pattern(`^${vocabulary.UNITS_LABEL}`, "i"), "");
+  const ways = [...wordsOf(text, vocabulary), split(text, "", vocabulary)].filter((way) => way.length === count);
+  return ways.map((way) => unitsOf(way, vocabulary)).find(Boolean);
+}
+
+// The place and the words of the last line that names the columns, or is meant to; null if none does.
+function headerOf(lines, least, most, needed, vocabulary) {
+  const ways = lines.map((line) => wordsOf(line.text, vocabulary));
+  const complete = ways.map((of) => new Set(of.filter((way) => namesAll(way, needed, vocabulary)).map((way) => way.length)));
+  const first = complete.findIndex((counts) => counts.size);
+  for (let i = lines.length - 1; i >= 0; i -= 1) {
+    const counts = new Set([...ways[i].map((way) => way.length), least]);
+    const fitting = [...counts].filter((count) => least <= count && count <= most).sort((one, other) => other - one);
+    const below = first >= 0 && i > first;
+    if (below && fitting.some((count) => complete[first].has(count) && lineOfUnits(lines[i], count, vocabulary))) continue;
+    const count = fitting.find((one) => complete[i].has(one)) ?? least;
+    const header = namedBy(lines[i], count, needed, vocabulary);
+    if (header) return { i, header };
+  }
+  return null;
+}
+
+// The units in the line below the header in line `i`, or in that above it; none if neither has any.
+function unitsBeside(lines, i, count, vocabulary) {
+  const beside = lines.filter((_, k) => k > i || k === i - 1);
+  const found = beside.map((line) => lineOfUnits(line, count, vocabulary)).filter(Boolean);
+  const other = found.find((units) => units.join() !== found[0].join());
+  if (other) throw new Unreadable(`There are two lines of units, ${found[0].join(", ")} and ${other.join(", ")}: leave one out.`);
+  if (found.length) return found[0];
+  for (const line of lines) {
+    const label = pattern(`^${vocabulary.UNITS_LABEL}`, "i").exec(line.text);
+    const units = label && unitsOf(line.text.slice(label[0].length).trim().split(/[\s,;]+/), vocabulary);
+    if (units && units.some((unit) => !vocabulary.SI_UNITS.includes(unit))) {
+      throw new Unreadable(`Line ${line.number} names units, but not one for each column: write them into the header.`);
+    }
+  }
+  return [];
+}
+
+// {words, places, width, conventions} of a first row, from it and the lines above it.
+function layoutAbove(lines, row, separator, number, needed, vocabulary) {
+  const fields = split(row, separator, vocabulary);
+  const least = withoutEnd(fields).length;
+  const found = headerOf(lines, least, fields.length, needed, vocabulary);
+  if (found) {
+    const { i, header } = found;
+    const width = header.length;
+    if (width < least || width > fields.length) {
+      const commas = separator === "," && width < least && least <= 2 * width ? ` ${vocabulary.COMMAS}` : "";
+      throw new Unreadable(`The first row has ${least} fields, and the header in line ${lines[i].number} has ${width}.${commas}`);
+    }
+    const places = layoutOf(header, needed, vocabulary, unitsBeside(lines, i, width, vocabulary));
+    return { places, width, conventions: conventionsOf(header, places, vocabulary) };
+  }
+  const alone = needed.length === 1;
+  const names = alone ? least === 1 && !lines.length && ["t"] : vocabulary.UNNAMED[least];
+  if (!names) throw new Unreadable(`No line names the columns: let the first be ${needed.join(",")}.`);
+  const words = [...names, ...Array(least - names.length).fill("-")];
+  const conventions = alone ? [] : [`no header: the columns are taken as ${names.join(", ")}`];
+  return { places: layoutOf(words, needed, vocabulary), width: least, conventions };
+}
+
+// Clocks: compare/candidates/clock.py. A decimal is [mantissa, digits], whose value is mantissa / 10^digits.
+
+const DAY_S = 86400;
+const MINUTE_S = 60;
+
+function decimalOf(text) {
+  const [, sign, before, after, exponent] = /^([+-]?)(\d*)\.?(\d*)(?:e([+-]?\d+))?$/i.exec(text);
+  const digits = after.length - Number(exponent ?? 0);
+  const mantissa = BigInt(`${before}${after}`) * (sign === "-" ? -1n : 1n);
+  return digits < 0 ? [mantissa * 10n ** BigInt(-digits), 0] : [mantissa, digits];
+}
+
+function sum([one, digits], [other, otherDigits], sign = 1n) {
+  const most = Math.max(digits, otherDigits);
+  return [one * 10n ** BigInt(most - digits) + sign * other * 10n ** BigInt(most - otherDigits), most];
+}
+
+const numberOf = ([mantissa, digits]) => Number(`${mantissa}e-${digits}`);
+
+// Times in s since another, each the nearest double to the difference of the decimals.
+const since = (start, times) => times.map((time) => numberOf(sum(decimalOf(String(time)), decimalOf(String(start)), -1n)));
+
+// What a clock shows in s, as a decimal: since midnight, or with a date since 1970.
+function secondsOf(text, number, vocabulary) {
+  const moment = whole(vocabulary.MOMENT).exec(text);
+  const clock = moment ? moment.slice(4, 7) : whole(vocabulary.CLOCK).exec(text)?.slice(1);
+  if (!clock) throw new Unreadable(`Line ${number}: ${text.slice(0, 40)} is no time as in the first row (t). ${vocabulary.HOW}`);
+  const [hours, minutes, seconds] = clock;
+  if (hours === undefined && !/[.,]/.test(seconds)) {
+    throw new Unreadable(`Line ${number}: are ${text} hours and minutes, or minutes and seconds? ${vocabulary.HOW}`);
+  }
+  const ofDay = sum(decimalOf(seconds.replace(",", ".")), [BigInt(3600 * Number(hours ?? 0) + MINUTE_S * Number(minutes)), 0]);
+  if (!moment) return ofDay;
+  const [year, month, day] = moment.slice(1, 4).map(Number);
+  const date = new Date(Date.UTC(year, month - 1, day));
+  date.setUTCFullYear(year);
+  if (date.getUTCMonth() !== month - 1 || date.getUTCDate() !== day || year === 0) {
+    throw new Unreadable(`Line ${number}: ${text.slice(0, 40)} is no date of the calendar (t).`);
+  }
+  const zone = moment[7] ? (Number(moment[8]) * MINUTE_S + Number(moment[9])) * MINUTE_S * (moment[7] === "-" ? -1 : 1) : 0;
+  return sum(ofDay, [BigInt(Math.round(date.getTime() / 1000) - zone), 0]);
+}
+
+// The times of a clock's texts in s: since the first row if it does not begin at 0, but of transits as they stand.
+function clockTimes(texts, numbers, alone, vocabulary) {
+  const times = texts.map((text, i) => secondsOf(text, numbers[i], vocabulary));
+  const kind = whole(vocabulary.MOMENT).test(texts[0]) ? "dates with hours:minutes:seconds" : "hours:minutes:seconds";
+  const convention = `times are ${kind}, converted to seconds`;
+  if (alone || !times[0][0]) return { times: times.map(numberOf), convention, start: null };
+  return { times: times.map((time) => numberOf(sum(time, times[0], -1n))), convention, start: numberOf(times[0]) };
+}
+
+// Rows: compare/candidates/read.py.
+
+const fieldsRead = (row, { separator, places }, vocabulary) => {
+  const fields = split(row, separator, vocabulary);
+  return Object.values(places).map(({ at }) => fields[at]).filter((field) => field !== undefined);
+};
+
+function counts(row, { separator, width }, vocabulary) {
+  const fields = split(row, separator, vocabulary);
+  return fields.length >= width && fields.slice(width).every((field) => !field);
+}
+
+function fits(row, reading, vocabulary) {
+  const [time = "", ...others] = fieldsRead(row, reading, vocabulary);
+  const readable = (field) => isNumber(field, vocabulary) || isMissing(field, vocabulary);
+  return counts(row, reading, vocabulary) && (readable(time) || isClock(time, vocabulary)) && others.every(readable);
+}
+
+// The ways to read the first row; none if the line is no row.
+function readingsOf(lines, row, number, needed, vocabulary) {
+  const [readings, refusals] = [[], []];
+  for (const separator of possibleSeparators(row, vocabulary)) {
+    try {
+      readings.push({ separator, ...layoutAbove(lines, row, separator, number, needed, vocabulary) });
+    } catch (error) {
+      if (!(error instanceof Unreadable)) throw error;
+      refusals.push(error);
+    }
+  }
+  if (refusals.length && !readings.length) throw refusals[0];
+  const fitting = readings.filter((reading) => fits(row, reading, vocabulary));
+  return fitting.length ? fitting : readings.slice(0, 1);
+}
+
+// The one way to read all rows.
+function onlyReading(readings, rows, vocabulary) {
+  if (readings.length === 1) return readings[0];
+  const possible = readings.filter((reading) => rows.every(({ text }) => fits(text, reading, vocabulary)));
+  for (const other of possible.slice(1)) {
+    for (const { text, number } of rows) {
+      const [first, second] = [possible[0], other].map((way) => fieldsRead(text, way, vocabulary).map((field) => plain(field, vocabulary)));
+      const same = Object.keys(possible[0].places).join() === Object.keys(other.places).join() && first.map(Number).join() === second.map(Number).join();
+      if (same) continue;
+      throw new Unreadable(`Line ${number} is ${first.join(", ")} or ${second.join(", ")}: name the columns in a first line, and separate them by semicolons.`);
+    }
+  }
+  return possible[0] ?? readings[0];
+}
+
+// The fields of the rows by column, their lines, and what is to be said; rows in which a position is missing are left out.
+function columnsOf(rows, reading, needed, vocabulary) {
+  const names = Object.keys(reading.places);
+  const alone = needed.length === 1;
+  const [kept, numbers, lost] = [[], [], []];
+  for (const { text, number } of rows) {
+    if (!counts(text, reading, vocabulary)) {
+      const count = withoutEnd(split(text, reading.separator, vocabulary)).length;
+      const many = reading.separator === "," ? vocabulary.COMMAS : "Are there two numbers in one field?";
+      throw new Unreadable(`Line ${number} has ${count} fields, and the first row has ${reading.width}. ${count > reading.width ? many : "Is it cut off?"}`);
+    }
+    const fields = fieldsRead(text, reading, vocabulary);
+    const missing = fields.map((field) => isMissing(field, vocabulary));
+    if (missing.some(Boolean) && !alone && (missing.every(Boolean) || !missing[0])) {
+      lost.push(fields[0]);
+      continue;
+    }
+    names.forEach((name, i) => {
+      if (isNumber(fields[i], vocabulary) || (name === "t" && isClock(fields[i], vocabulary))) return;
+      const thousands = whole(vocabulary.THOUSANDS).test(fields[i]) ? " Write numbers without marks between thousands." : "";
+      throw new Unreadable(`Line ${number}: ${fields[i].slice(0, 40) || "nothing"} is no number (${name}).${thousands}`);
+    });
+    kept.push(fields);
+    numbers.push(number);
+  }
+  if (!kept.length) throw new Unreadable(`No row has numbers of ${names.slice(1).join(" or ")}.`);
+  const notes = lost.length ? [`${lost.length} ${lost.length === 1 ? "row" : "rows"} without a position left out, the first at t = ${lost[0] || "?"}.`] : [];
+  return { columns: names.map((_, i) => kept.map((fields) => fields[i])), numbers, notes };
+}
+
+function checkMarks(columns, { separator }, vocabulary) {
+  const commasSeparate = separator === ",";
+  const doubtful = doubtfulNumber(columns, commasSeparate, vocabulary);
+  if (doubtful) {
+    const mark = doubtful.includes(",") ? "comma" : "point";
+    throw new Unreadable(`Is the ${mark} of ${doubtful} decimal, or between thousands? Write ${doubtful.replaceAll(",", ".")}0 or ${doubtful.replace(/[.,]/g, "")}.`);
+  }
+  if (!commasSeparate || columns.some((column) => column.some((number) => /[.,]/.test(number)))) return;
+  const needless = columns.flat().find((number) => whole(vocabulary.PADDED).test(number));
+  if (needless) throw new Unreadable(`${needless} between commas. ${vocabulary.COMMAS}`);
+}
+
+// Rows of NaN after which others follow are lost frames, and left out; at the end they say that the run failed.
+function withoutLostFrames(columns, notes) {
+  const names = Object.keys(columns);
+  const lost = columns.t.map((_, i) => names.some((name) => name !== "t" && Number.isNaN(columns[name][i])));
+  const last = lost.lastIndexOf(false);
+  const kept = columns.t.map((_, i) => i).filter((i) => !lost[i] || i > last);
+  const count = columns.t.length - kept.length;
+  if (!count) return columns;
+  notes.push(`${count} ${count === 1 ? "row" : "rows"} of NaN left out, the first at t = ${columns.t[lost.indexOf(true)]} s.`);
+  return Object.fromEntries(names.map((name) => [name, kept.map((i) => columns[name][i])]));
+}
+
+// Read columns of a text: {columns: {t: […], x: […], …} in SI units, notes, clock}. `needed` columns must be there, times
+// first. `clock` is what a clock showed in the first row, from which t is counted; null if t is since the release.
+function readColumns(text, needed, vocabulary, onComment = () => {}) {
+  if (text.includes("\0")) throw new Unreadable("This is no text: a CSV file is wanted.");
+  const [above, rows, notes] = [[], [], []];
+  let readings = [];
+  text.replace(/^\ufeff/, "").split(/\r*\n/).forEach((raw, i) => {
+    const line = raw.replace(/^[ \r\v\f]+|[ \r\v\f]+$/g, "");
+    const number = i + 1;
+    if (saysNothing(line, vocabulary)) return;
+    if (line.includes("\r")) throw new Unreadable("Lines end with CR alone: save it with other line ends.");
+    const remark = whole(vocabulary.COMMENT, "s").exec(line.trimStart());
+    if (remark) {
+      if (!rows.length) above.push({ text: remark[1], comment: true, number });
+      onComment(remark[1], number);
+      return;
+    }
+    if (!rows.length) readings = readingsOf(above, line, number, needed, vocabulary);
+    if (readings.length) {
+      rows.push({ text: line, number });
+      return;
+    }
+    above.push({ text: line, comment: false, number });
+    if (above.length > vocabulary.MOST) throw new Unreadable(`Line ${number} is no row of numbers, and none is before it.`);
+  });
+  if (!rows.length) throw new Unreadable("There are no rows of numbers.");
+  const reading = onlyReading(readings, rows, vocabulary);
+  const { columns: fields, numbers, notes: lost } = columnsOf(rows, reading, needed, vocabulary);
+  const conventions = [...reading.conventions];
+  let clock = null;
+  let times = null;
+  if (isClock(fields[0][0], vocabulary)) {
+    const { factor } = reading.places.t;
+    if (factor[0] !== factor[1]) throw new Unreadable(`The unit of t says that it is a number, and it is ${fields[0][0]}.`);
+    const made = clockTimes(fields[0], numbers, needed.length === 1, vocabulary);
+    conventions.push(made.convention);
+    [times, clock] = [made.times, made.start];
+  }
+  const written = times ? fields.slice(1) : fields;
+  const clockLate = times ? -1 : fields[0].findIndex((field) => !isNumber(field, vocabulary));
+  if (clockLate >= 0) throw new Unreadable(`Line ${numbers[clockLate]}: ${fields[0][clockLate].slice(0, 40)} is no number (t).`);
+  checkMarks(written, reading, vocabulary);
+  if (written.some((column) => column.some((field) => field.includes(",")))) conventions.push(vocabulary.DECIMAL_COMMA);
+  notes.push(...conventions.map((convention) => `Reading: ${convention}.`), ...lost);
+  let columns = {};
+  Object.entries(reading.places).forEach(([name, { factor }], i) => {
+    columns[name] = name === "t" && times ? times : fields[i].map((field) => (Number(plain(field, vocabulary)) * factor[0]) / factor[1]);
+  });
+  if (needed.length > 1) columns = withoutLostFrames(columns, notes);
+  for (const [name, column] of Object.entries(columns)) {
+    const row = column.findIndex((value) => !(Math.abs(value) <= vocabulary.LARGEST));
+    if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row]).toLowerCase()}. The run failed there.`);
+  }
+  const digits = (field) => field.replace(/e.*/i, "").replace(/^[+-]?[0.]*/, "").replace(".", "").length;
+  if (written.some((column) => column.some((field) => digits(plain(field, vocabulary)) > vocabulary.DOUBLE_DIGITS))) {
+    notes.push("Numbers of more than 17 digits are rounded to doubles here; foucault score reads all of them.");
+  }
+  return { columns, notes, clock };
+}
+
+// Read a trajectory: {columns, transits (null if there are none), notes, clock}.
 function readTrajectory(text, vocabulary) {
   const transits = [];
-  const { columns, notes } = readColumns(text, ["t", "x", "y"], vocabulary, (comment, number) => {
+  const { columns, notes, clock } = readColumns(text, ["t", "x", "y"], vocabulary, (comment, number) => {
     const words = comment.split(/\s+/);
     if (words[0] !== "P") return; // a transit of foucPend: # P, a count, a time in s, a frequency
-    if (!NUMBER.test(words[2] ?? "")) throw new Unreadable(`Line ${number}: a transit without a time.`);
+    if (!whole(vocabulary.NUMBER).test(words[2] ?? "")) throw new Unreadable(`Line ${number}: a transit without a time.`);
     transits.push(Number(words[2]));
   });
   checkTimes(columns.t, "increase", (before, after) => after > before);
   checkTimes(transits, "not decrease", (before, after) => after >= before);
-  return { columns, transits: transits.length ? transits : null, notes };
+  return { columns, transits: transits.length ? transits : null, notes, clock };
 }
 
 // Read times of xdot = 0 in s: they may be equal, and each but one of equal ones is an extra transit.
