@@ -109,6 +109,12 @@ class Candidate:
                 expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
                 raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
         lost = _lost_frames(columns)
+        for word, column in (("t", t), *columns.items()):
+            invalid = ~(np.abs(column) <= LARGEST) & ~lost  # true for NaN as well
+            if invalid.any():
+                row, expected = int(np.argmax(invalid)), f"a finite number below {LARGEST:g} in size"
+                advice = "The run failed there: score the rows before it, or correct it."
+                raise NotFiniteError(f"{name}: {word}", f"{column[row]} in row {row + 1}", expected, advice)
         if lost.any():
             first = float(t[int(np.argmax(lost))])
             note = f"{counted(int(lost.sum()), 'row')} of NaN left out, the first at t = {first:.10g} s"
@@ -116,12 +122,6 @@ class Candidate:
             more["low"] = {word: part[~lost] for word, part in (more.get("low") or {}).items()}  # type: ignore[attr-defined]
             t = t[~lost]
             columns = {word: column[~lost] for word, column in columns.items()}
-        for word, column in (("t", t), *columns.items()):
-            invalid = ~(np.abs(column) <= LARGEST)  # true for NaN as well
-            if invalid.any():
-                row, expected = int(np.argmax(invalid)), f"a finite number below {LARGEST:g} in size"
-                advice = "The run failed there: score the rows before it, or correct it."
-                raise NotFiniteError(f"{name}: {word}", f"{column[row]} in row {row + 1}", expected, advice)
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
         _check_order(t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from reference import InputError
 
 from .names import Layout, Naming, advice, by_number, given, layout, meaning, units_of
-from .text import says_nothing, split, without_end, words
+from .text import SEPARATORS, says_nothing, split, without_end, words
 
 MOST = 1000  # lines above the first row that are looked at
 FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
@@ -42,6 +42,20 @@ class Header:
     needed: Sequence[str]
     naming: Naming
     lines: list[Line] = field(default_factory=list)
+
+    @property
+    def decides(self) -> bool:
+        """True if a line or the user says how many columns there are."""
+        return bool(self.naming.columns or self.lines)
+
+    def uses(self, separator: str, row: str) -> bool:
+        """Return whether a line names the columns between separators other than white space, as many as in a row."""
+        if not separator or separator not in row:
+            return False
+        most = len(split(row, separator))
+        least = len(without_end(split(row, separator)))
+        ways = [without_end(split(line.text, separator)) for line in self.lines if separator in line.text]
+        return any(least <= len(way) <= most and set(self.needed) <= _columns(way) for way in ways)
 
     def add(self, number: int, text: str, comment: bool) -> None:
         """Take a line that is no row.
@@ -76,13 +90,29 @@ class Header:
             i, header = found
             if not least <= len(header) <= len(fields):
                 raise self._unequal(number, least, self.lines[i], len(header), separator)
+            if not set(self.needed) <= _columns(header):
+                self._refuse_line_below_header(i, header)
             units = self._units_beside(i, len(header))
             return layout(header, self.needed, self.naming, f"{self.name}: header", units), len(header)
         made = by_number(least, self.needed, self.naming)
         if made is None or (len(self.needed) == 1 and self.lines):
             expected = "a header that names the columns"
             raise InputError(f"{self.name}: first line", row[:80], expected, advice(self.needed))
+        self._refuse_other_comment([*made.places], least, number)
         return made, least
+
+    def _refuse_other_comment(self, columns: Sequence[str], count: int, number: int) -> None:
+        """Refuse a comment that names columns, but not as many as there are, or in another order or unit than taken."""
+        for line in self.lines:
+            for way in words(line.text):
+                meanings = [meant for meant in (meaning(word, {}) for word in way) if meant is not None]
+                named = [meant.column for meant in meanings]
+                if not set(self.needed) <= {*named} or 2 * len(named) < len(way):
+                    continue
+                separated = any(without_end(split(line.text, mark)) == way for mark in SEPARATORS if mark in line.text and mark)
+                same = named == [*columns[: len(named)]] and all(meant.factor == 1 for meant in meanings)
+                if separated or not same:
+                    raise self._unequal(number, count, line, len(way), "")
 
     def _header(self, least: int, most: int) -> tuple[int, list[str]] | None:
         """Return the place and the words of the last line that names the columns, or is meant to; None if none does.
@@ -109,6 +139,15 @@ class Header:
             if header is not None:
                 return i, header
         return None
+
+    def _refuse_line_below_header(self, i: int, words_of_line: Sequence[str]) -> None:
+        """Refuse a line that names nothing, below a header that is no comment: it may hold units that nobody knows."""
+        for line in self.lines[:i]:
+            ways = [way for way in words(line.text) if len(way) == len(words_of_line)]
+            if not line.comment and any(set(self.needed) <= _columns(way) for way in ways):
+                where, got = f"{self.name}: line {self.lines[i].number}", ", ".join(words_of_line)[:80]
+                expected = f"units below the header of line {line.number}, or a row of numbers"
+                raise InputError(where, got, expected, "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark.")
 
     def _unequal(self, number: int, count: int, line: Line, named: int, separator: str) -> InputError:
         """Return the error for a first row with another number of fields than the header."""
@@ -138,8 +177,13 @@ class Header:
     def _units(self, i: int, count: int) -> list[str] | None:
         """Return the units in a line that holds nothing else, one for each column; None for another line."""
         text = UNITS_LABEL.sub("", self.lines[i].text, count=1)
-        ways = (units_of(way) for way in [*words(text), split(text, "")] if len(way) == count)
-        return next((units for units in ways if units is not None), None)
+        for separator in SEPARATORS:
+            fields = split(text, separator)
+            if len(fields) >= count and not any(fields[count:]):
+                units = units_of(fields[:count])
+                if units is not None:
+                    return units
+        return None
 
     def _units_beside(self, i: int, count: int) -> list[str]:
         """Return the units in the line below the header in line `i`, or in that above it; none if neither has any.
@@ -161,7 +205,9 @@ class Header:
         """Refuse a line that says units but not of which column, unless it says SI units anyway."""
         for line in self.lines:
             label = UNITS_LABEL.match(line.text)
-            units = units_of(re.split(r"[\s,;]+", line.text[label.end() :].strip())) if label else None
+            rest = line.text[label.end() :] if label else line.text
+            found = re.split(r"[\s,;|]+", rest.strip(" \t,;|"))
+            units = units_of(found) if label or not line.comment or len(found) > 1 else None
             if units and not {*units} <= {*SI_UNITS}:
                 where, expected = f"{self.name}: line {line.number}", "a unit for each column"
                 raise InputError(where, line.text[:80], expected, "Write units into the header, or say --units ms,cm.")

@@ -51,6 +51,7 @@ from .text import (
     MAX_LINE,
     MAX_LINES,
     MOMENT,
+    SEPARATORS,
     THOUSANDS,
     doubtful_number,
     is_clock,
@@ -313,14 +314,19 @@ class ColumnReader:
         if not separators:
             self.header.add(line, text, False)
             return False
+        of_header = [(separator, 0.0) for separator in SEPARATORS if self.header.uses(separator, text)]
+        separators = of_header or separators
         refusals, readings = [], []
-        for separator, _ in separators:
+        for separator, share in separators:
             try:
                 readings.append(Reading(separator, *self.header.layout(text, separator, line)))
             except InputError as error:
-                refusals.append(error)
+                refusals.append((share, error))
         if not readings:
-            raise refusals[0]
+            raise refusals[0][1]
+        if not self.header.decides and any(share == 1 for share, _ in refusals):
+            got = f"{text[:40]}, which may be one number or two"
+            raise InputError(f"{self.name}: line {line}", got, "a first line that names the columns", f"Write {','.join(self.header.needed)} above it.")
         self.readings = [reading for reading in readings if reading.fits(text)] or readings[:1]
         return True
 
@@ -334,11 +340,10 @@ class ColumnReader:
             return self.readings[0]
         possible = [reading for reading in self.readings if all(map(reading.fits, self.rows))]
         for other in possible[1:]:
-            ways = (possible[0], other)
+            same_columns = [*possible[0].layout.places] == [*other.layout.places]
             for row, line in zip(self.rows, self.lines, strict=True):
-                first, second = ([plain(field) for field in way.fields(row)] for way in ways)
-                same = [*ways[0].layout.places] == [*other.layout.places] and [*map(float, first)] == [*map(float, second)]
-                if not same:
+                first, second = ([*map(_value, way.fields(row))] for way in (possible[0], other))
+                if not same_columns or first != second:
                     got, expected = f"{', '.join(first)} or {', '.join(second)} from {row!r}", "one way to read it"
                     advice = "Name the columns in a first line, and separate them by semicolons."
                     raise InputError(f"{self.name}: line {line}", got[:80], expected, advice)
@@ -392,7 +397,7 @@ class ColumnReader:
                 continue
             for name, field in zip(names, fields, strict=True):
                 if not (is_number(field) or (name == "t" and is_clock(field))):
-                    raise self._no_number(i, name, field)
+                    raise self._no_number(self.lines[i], name, field)
             kept.append(fields)
             lines.append(self.lines[i])
         if not kept:
@@ -400,21 +405,26 @@ class ColumnReader:
         if lost:
             self.notes.append(f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}")
         self.lines = lines
-        columns = [*zip(*kept, strict=True)]
+        columns: list[Sequence[str]] = [*zip(*kept, strict=True)]
+        written = columns
         if is_clock(columns[0][0]):
+            written = columns[1:]
             columns[0] = self._clock(columns[0], reading)
-        self._check_marks(columns, reading)
-        if any("," in number for column in columns for number in column):
+        elif any(is_clock(text) for text in columns[0]):
+            i = next(i for i, text in enumerate(columns[0]) if is_clock(text))
+            raise self._no_number(lines[i], "t", columns[0][i])
+        self._check_marks(written, reading)
+        if any("," in number for column in written for number in column):
             self.conventions.append(DECIMAL_COMMA)
         self.rows = [" ".join(map(plain, fields)) for fields in zip(*columns, strict=True)]
 
-    def _no_number(self, i: int, name: str, field: str) -> InputError:
+    def _no_number(self, line: int, name: str, field: str) -> InputError:
         advice = ""
         if THOUSANDS.fullmatch(field):
             advice = "Write numbers without marks between thousands."
         elif name == "t":
             advice = HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
-        return InputError(f"{self.name}: line {self.lines[i]}: {name}", field[:40], "a number", advice)
+        return InputError(f"{self.name}: line {line}: {name}", field[:40], "a number", advice)
 
     def _clock(self, texts: Sequence[str], reading: Reading) -> Sequence[str]:
         """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
@@ -446,6 +456,11 @@ class ColumnReader:
         needless = None if fractions or not commas_separate else padded([number for column in columns for number in column])
         if needless is not None:
             raise InputError(self.name, f"{needless} between commas", "whole numbers without needless zeros", COMMAS)
+
+
+def _value(field: str) -> str:
+    """Return the number in a field in one form, whatever form it has; other fields as they are."""
+    return repr(float(plain(field))) if is_number(field) else field
 
 
 def _low_parts(lines: list[str], separator: str | None, indices: list[int], table: Array) -> Array:

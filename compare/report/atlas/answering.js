@@ -19,7 +19,7 @@ function isOfTransits({ name, text }, words) {
 
 // Put the files of one drop together to a candidate.
 function candidateOf(files, words) {
-  const candidate = { columns: null, transits: null, notes: [] };
+  const candidate = { columns: null, transits: null, notes: [], clock: null };
   for (const file of files) {
     const ofTransits = isOfTransits(file, words);
     if (ofTransits ? candidate.transits : candidate.columns) throw new Unreadable("Drop one trajectory, and one file of transits at most.");
@@ -27,6 +27,7 @@ function candidateOf(files, words) {
       const read = (ofTransits ? readTransits : readTrajectory)(file.text, words);
       candidate.columns ??= read.columns && !ofTransits ? read.columns : null;
       candidate.transits ??= read.transits;
+      candidate.clock ??= read.clock ?? null;
       candidate.notes.push(...read.notes);
     } catch (error) {
       if (error instanceof Unreadable) error.message = `${file.name}: ${error.message}`;
@@ -56,8 +57,9 @@ const textsOf = (files) => Promise.all([...files].map(async (file) => ({ name: f
 // The verdict on files [{name, text}], and what is drawn of it; {refused} says why there is none.
 function answer(files, tolerance, truth) {
   try {
-    const candidate = candidateOf(files, truth.words);
-    const { path, ...result } = judge(candidate, truth, allowedBy(tolerance));
+    const allowed = allowedBy(tolerance);
+    const candidate = countedFromRelease(candidateOf(files, truth.words), truth, allowed);
+    const { path, ...result } = judge(candidate, truth, allowed);
     if (!path) return { ...result, path };
     const { errors, ...verdict } = path;
     const { t, x, y } = candidate.columns;

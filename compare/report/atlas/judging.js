@@ -74,8 +74,10 @@ function judgedRows(columns, truth) {
   const { t } = columns;
   const last = t[t.length - 1];
   if (last > end + step) {
-    const unit = words.FINER.find((finer) => last * ratio(words.TIMES[finer]) <= end * (1 + words.SAME) && last > words.FAR * end);
-    const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : "Leave later rows out.";
+    const span = last - t[0];
+    const unit = words.FINER.find((finer) => span * ratio(words.TIMES[finer]) <= end * (1 + words.SAME) && span > words.FAR * end);
+    const clock = t[0] > 0 && span <= end ? ` Did the clock start before the release? ${words.SUBTRACT}` : "";
+    const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : `Leave later rows out.${clock}`;
     throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
   }
   const known = truthAt(t, truth);
@@ -111,9 +113,40 @@ function boundOf(columns, { at, bounds, bound_m: bound }) {
   return Math.hypot(...POSITION.filter((name) => !columns || name in columns).map((name) => Number(bounds[name])));
 }
 
+// What a clock showed, for people: with the date if it counts from 1970.
+function shownBy(seconds, { words }) {
+  const text = `${seconds} s`;
+  if (!(seconds >= words.UNIX[0] && seconds < words.UNIX[1])) return text;
+  return `${text} since 1970, ${new Date(1000 * Math.floor(seconds)).toISOString().slice(0, 19).replace("T", " ")} UTC`;
+}
+
+// A candidate with times since the release: those of a clock that did not start there are counted from the first row, if
+// this is the release, as compare/score/clock_start.py does.
+function countedFromRelease(candidate, truth, tolerance) {
+  const { columns, transits, clock } = candidate;
+  if (!columns) return candidate;
+  const { t, x, y } = columns;
+  const end = truth.t_end + truth.grid_step;
+  const elsewhere = t.length > 1 && t[0] > end && t[t.length - 1] - t[0] <= end;
+  const start = clock ?? (elsewhere ? t[0] : null);
+  if (start === null) return candidate;
+  const [east, north] = [truth.grid.x[0], truth.grid.y[0]];
+  const distance = Math.hypot(x[0] - east, y[0] - north);
+  if (distance > (tolerance ?? truth.words.TOLERANCE * Math.hypot(east, north))) {
+    throw new Unreadable(`The clock showed ${shownBy(start, truth)} in the first row, which is ${distance.toPrecision(3)} m off the release. ${truth.words.SUBTRACT}`);
+  }
+  const note = `Reading: the clock showed ${shownBy(start, truth)} in the first row, which is at the release: times are counted from it.`;
+  return {
+    columns: clock === null || clock === undefined ? { ...columns, t: since(start, t) } : columns,
+    transits: transits && since(start, transits),
+    notes: [...candidate.notes, note],
+  };
+}
+
 // Judge a candidate {columns or null, transits or null, notes}; `tolerance` in m, null for a millionth of the amplitude,
 // or of what a candidate reaches that swings far less.
-function judge(candidate, truth, tolerance = null) {
+function judge(given, truth, tolerance = null) {
+  const candidate = countedFromRelease(given, truth, tolerance);
   const { columns, transits: times } = candidate;
   const judged = columns && judgedRows(columns, truth);
   const amplitude = judged && truth.at ? Math.max(truth.amplitude_m, reach(judged.golden.x, judged.golden.y)) : truth.amplitude_m;
@@ -135,7 +168,9 @@ function judge(candidate, truth, tolerance = null) {
     }
   }
   if (times && truth.transits) {
-    verdict.transits = transitErrors(times, truth, until, allowance);
+    if (!columns && times[0] > truth.t_end) throw new Unreadable(`The first transit is at ${times[0]} s, and the scene ends at ${truth.t_end} s. ${truth.words.SUBTRACT}`);
+    const goesOn = !columns || times.at(-1) > columns.t.at(-1);
+    verdict.transits = transitErrors(times, truth, until, allowance, goesOn ? truth.t_end : Math.min(columns.t.at(-1), truth.t_end));
   } else if (times) {
     if (!columns) throw new Unreadable(`${truth.no_transits}: drop a trajectory.`);
     verdict.notes.push(`${truth.no_transits}: its transits were not judged.`);
@@ -215,10 +250,12 @@ function unitOfTime(columns, truth) {
 }
 
 // Match transits in order; name the missed and the extra ones, as compare/score/transit_matching.py does.
-function transitErrors(times, truth, until, tolerance) {
+function transitErrors(times, truth, until, tolerance, endOfRun) {
   const possible = (time) => truth.possible.some(([from, to]) => time >= from && time <= to);
-  const mine = times.filter((time) => time > 0 && time <= truth.t_end && !possible(time));
-  const { t, weight } = truth.transits;
+  const mine = times.filter((time) => time > 0 && time <= endOfRun && !possible(time));
+  const all = truth.transits;
+  const among = (_, k) => all.t[k] <= endOfRun || (all.t[k] - endOfRun) * all.weight[k] <= tolerance; // of those after the run none
+  const [t, weight] = [all.t.filter(among), all.weight.filter(among)];
   const owner = owners(mine, t);
   const used = new Set(owner.filter((i) => i >= 0));
   const matched = [...t.keys()].filter((k) => owner[k] >= 0);

@@ -21,7 +21,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
 
-from ...candidates import candidate, names, read
+from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
 from ...score import judge
 from ...score.errors import swing_rate
@@ -178,10 +178,10 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
 
 def _vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
-    reading = names, text_reader, read, candidate
+    reading = names, text_reader, header, clock, read, candidate
     tables = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
     sentences = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
-    limits = {name: getattr(judge, name) for name in ("TOLERANCE", "FINER", "FAR", "SAME", "SMALL")}
+    limits = {name: getattr(judge, name) for name in ("TOLERANCE", "SUBTRACT", "FINER", "FAR", "SAME", "SMALL")}
     axes = [[*order, *signs, text] for (order, signs), (_, text) in conventions.AXES_SAID.items()]
     return tables | sentences | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
 

@@ -74,11 +74,19 @@ function wordsOf(line, vocabulary) {
   const marks = vocabulary.SEPARATORS.filter((separator) => separator && line.includes(separator));
   const joined = line.replace(pattern(vocabulary.BEFORE_BRACKET, "g"), "");
   const ways = marks.map((separator) => split(line, separator, vocabulary));
-  ways.push(line.trim().split(pattern(vocabulary.APART)), split(joined, "", vocabulary), split(line, "", vocabulary));
+  const spaced = [line.trim().split(pattern(vocabulary.APART)), split(joined, "", vocabulary), split(line, "", vocabulary)];
+  ways.push(...spaced.filter((way) => !way.some((word) => /[,;|]$/.test(word))));
   return ways.map(withoutEnd);
 }
 
 const plain = (number, vocabulary) => number.replaceAll(",", ".").replace(pattern(vocabulary.FORTRAN, "g"), "e");
+
+// The number in a field; Number knows no inf.
+function valueOf(field, vocabulary) {
+  if (!whole(vocabulary.NOT_FINITE, "i").test(field)) return Number(plain(field, vocabulary));
+  if (/nan/i.test(field)) return NaN;
+  return field.startsWith("-") ? -Infinity : Infinity;
+}
 
 // A number whose mark may be decimal or may separate thousands; undefined if the numbers decide it.
 function doubtfulNumber(columns, commasSeparate, vocabulary) {
@@ -263,8 +271,9 @@ function namedBy(line, count, needed, vocabulary) {
 // The units in a line that holds nothing else, one for each column; undefined for another line.
 function lineOfUnits(line, count, vocabulary) {
   const text = line.text.replace(pattern(`^${vocabulary.UNITS_LABEL}`, "i"), "");
-  const ways = [...wordsOf(text, vocabulary), split(text, "", vocabulary)].filter((way) => way.length === count);
-  return ways.map((way) => unitsOf(way, vocabulary)).find(Boolean);
+  const ways = vocabulary.SEPARATORS.map((separator) => split(text, separator, vocabulary));
+  const fitting = ways.filter((fields) => fields.length >= count && fields.slice(count).every((field) => !field));
+  return fitting.map((fields) => unitsOf(fields.slice(0, count), vocabulary)).find(Boolean);
 }
 
 // The place and the words of the last line that names the columns, or is meant to; null if none does.
@@ -293,12 +302,30 @@ function unitsBeside(lines, i, count, vocabulary) {
   if (found.length) return found[0];
   for (const line of lines) {
     const label = pattern(`^${vocabulary.UNITS_LABEL}`, "i").exec(line.text);
-    const units = label && unitsOf(line.text.slice(label[0].length).trim().split(/[\s,;]+/), vocabulary);
+    const rest = (label ? line.text.slice(label[0].length) : line.text).replace(/^[ \t,;|]+|[ \t,;|]+$/g, "");
+    const words = rest.split(/[\s,;|]+/);
+    const units = (label || !line.comment || words.length > 1) && unitsOf(words, vocabulary);
     if (units && units.some((unit) => !vocabulary.SI_UNITS.includes(unit))) {
       throw new Unreadable(`Line ${line.number} names units, but not one for each column: write them into the header.`);
     }
   }
   return [];
+}
+
+// Refuse a comment that names columns, but not as many as there are, or in another order or unit than taken.
+function refuseOtherComment(lines, names, count, needed, vocabulary) {
+  for (const line of lines) {
+    const marks = vocabulary.SEPARATORS.filter((mark) => mark && line.text.includes(mark));
+    const separated = new Set(marks.map((mark) => withoutEnd(split(line.text, mark, vocabulary)).join("\n")));
+    for (const way of wordsOf(line.text, vocabulary)) {
+      const meanings = way.map((word) => meaning(word, vocabulary)).filter(Boolean);
+      const named = meanings.map(({ column }) => column);
+      if (!needed.every((name) => named.includes(name)) || 2 * named.length < way.length) continue;
+      const same = named.join() === names.slice(0, named.length).join() && meanings.every(({ factor }) => factor && factor[0] === factor[1]);
+      if (same && !separated.has(way.join("\n"))) continue;
+      throw new Unreadable(`The first row has ${count} fields, and the header in line ${line.number} has ${way.length}.`);
+    }
+  }
 }
 
 // {words, places, width, conventions} of a first row, from it and the lines above it.
@@ -313,12 +340,17 @@ function layoutAbove(lines, row, separator, number, needed, vocabulary) {
       const commas = separator === "," && width < least && least <= 2 * width ? ` ${vocabulary.COMMAS}` : "";
       throw new Unreadable(`The first row has ${least} fields, and the header in line ${lines[i].number} has ${width}.${commas}`);
     }
+    const above = lines.slice(0, i).find((line) => !line.comment && wordsOf(line.text, vocabulary).some((way) => way.length === width && namesAll(way, needed, vocabulary)));
+    if (above && !namesAll(header, needed, vocabulary)) {
+      throw new Unreadable(`Line ${lines[i].number}, ${header.join(", ").slice(0, 80)}, is neither a row nor units of the header in line ${above.number}.`);
+    }
     const places = layoutOf(header, needed, vocabulary, unitsBeside(lines, i, width, vocabulary));
     return { places, width, conventions: conventionsOf(header, places, vocabulary) };
   }
   const alone = needed.length === 1;
   const names = alone ? least === 1 && !lines.length && ["t"] : vocabulary.UNNAMED[least];
   if (!names) throw new Unreadable(`No line names the columns: let the first be ${needed.join(",")}.`);
+  refuseOtherComment(lines, names, least, needed, vocabulary);
   const words = [...names, ...Array(least - names.length).fill("-")];
   const conventions = alone ? [] : [`no header: the columns are taken as ${names.join(", ")}`];
   return { places: layoutOf(words, needed, vocabulary), width: least, conventions };
@@ -394,18 +426,33 @@ function fits(row, reading, vocabulary) {
   return counts(row, reading, vocabulary) && (readable(time) || isClock(time, vocabulary)) && others.every(readable);
 }
 
+// Whether a line names the columns between separators other than white space, as many as in a row.
+function usedAbove(lines, row, separator, needed, vocabulary) {
+  if (!separator || !row.includes(separator)) return false;
+  const fields = split(row, separator, vocabulary);
+  const least = withoutEnd(fields).length;
+  const ways = lines.filter(({ text }) => text.includes(separator)).map(({ text }) => withoutEnd(split(text, separator, vocabulary)));
+  return ways.some((way) => least <= way.length && way.length <= fields.length && namesAll(way, needed, vocabulary));
+}
+
 // The ways to read the first row; none if the line is no row.
 function readingsOf(lines, row, number, needed, vocabulary) {
   const [readings, refusals] = [[], []];
-  for (const separator of possibleSeparators(row, vocabulary)) {
+  const possible = possibleSeparators(row, vocabulary);
+  const ofHeader = vocabulary.SEPARATORS.filter((separator) => usedAbove(lines, row, separator, needed, vocabulary));
+  for (const separator of possible.length && ofHeader.length ? ofHeader : possible) {
     try {
       readings.push({ separator, ...layoutAbove(lines, row, separator, number, needed, vocabulary) });
     } catch (error) {
       if (!(error instanceof Unreadable)) throw error;
-      refusals.push(error);
+      refusals.push({ separator, error });
     }
   }
-  if (refusals.length && !readings.length) throw refusals[0];
+  if (refusals.length && !readings.length) throw refusals[0].error;
+  const isWhole = ({ separator }) => split(row, separator, vocabulary).every((field) => isNumber(field, vocabulary));
+  if (!lines.length && refusals.some(isWhole)) {
+    throw new Unreadable(`Line ${number}, ${row.slice(0, 40)}, may be one number or two: write ${needed.join(",")} in a first line.`);
+  }
   const fitting = readings.filter((reading) => fits(row, reading, vocabulary));
   return fitting.length ? fitting : readings.slice(0, 1);
 }
@@ -416,9 +463,9 @@ function onlyReading(readings, rows, vocabulary) {
   const possible = readings.filter((reading) => rows.every(({ text }) => fits(text, reading, vocabulary)));
   for (const other of possible.slice(1)) {
     for (const { text, number } of rows) {
-      const [first, second] = [possible[0], other].map((way) => fieldsRead(text, way, vocabulary).map((field) => plain(field, vocabulary)));
-      const same = Object.keys(possible[0].places).join() === Object.keys(other.places).join() && first.map(Number).join() === second.map(Number).join();
-      if (same) continue;
+      const value = (field) => (isNumber(field, vocabulary) ? String(valueOf(field, vocabulary)) : field);
+      const [first, second] = [possible[0], other].map((way) => fieldsRead(text, way, vocabulary).map(value));
+      if (Object.keys(possible[0].places).join() === Object.keys(other.places).join() && first.join() === second.join()) continue;
       throw new Unreadable(`Line ${number} is ${first.join(", ")} or ${second.join(", ")}: name the columns in a first line, and separate them by semicolons.`);
     }
   }
@@ -468,15 +515,19 @@ function checkMarks(columns, { separator }, vocabulary) {
 }
 
 // Rows of NaN after which others follow are lost frames, and left out; at the end they say that the run failed.
-function withoutLostFrames(columns, notes) {
+function withoutLostFrames(columns, numbers, notes, vocabulary) {
   const names = Object.keys(columns);
-  const lost = columns.t.map((_, i) => names.some((name) => name !== "t" && Number.isNaN(columns[name][i])));
-  const last = lost.lastIndexOf(false);
-  const kept = columns.t.map((_, i) => i).filter((i) => !lost[i] || i > last);
-  const count = columns.t.length - kept.length;
+  const isLost = columns.t.map((_, i) => names.some((name) => name !== "t" && Number.isNaN(columns[name][i])));
+  const last = isLost.lastIndexOf(false);
+  const lost = isLost.map((one, i) => one && i < last);
+  for (const [name, column] of Object.entries(columns)) {
+    const row = column.findIndex((value, i) => !lost[i] && !(Math.abs(value) <= vocabulary.LARGEST));
+    if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row])}. The run failed there.`);
+  }
+  const count = lost.filter(Boolean).length;
   if (!count) return columns;
   notes.push(`${count} ${count === 1 ? "row" : "rows"} of NaN left out, the first at t = ${columns.t[lost.indexOf(true)]} s.`);
-  return Object.fromEntries(names.map((name) => [name, kept.map((i) => columns[name][i])]));
+  return Object.fromEntries(names.map((name) => [name, columns[name].filter((_, i) => !lost[i])]));
 }
 
 // Read columns of a text: {columns: {t: […], x: […], …} in SI units, notes, clock}. `needed` columns must be there, times
@@ -525,13 +576,9 @@ function readColumns(text, needed, vocabulary, onComment = () => {}) {
   notes.push(...conventions.map((convention) => `Reading: ${convention}.`), ...lost);
   let columns = {};
   Object.entries(reading.places).forEach(([name, { factor }], i) => {
-    columns[name] = name === "t" && times ? times : fields[i].map((field) => (Number(plain(field, vocabulary)) * factor[0]) / factor[1]);
+    columns[name] = name === "t" && times ? times : fields[i].map((field) => (valueOf(field, vocabulary) * factor[0]) / factor[1]);
   });
-  if (needed.length > 1) columns = withoutLostFrames(columns, notes);
-  for (const [name, column] of Object.entries(columns)) {
-    const row = column.findIndex((value) => !(Math.abs(value) <= vocabulary.LARGEST));
-    if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row]).toLowerCase()}. The run failed there.`);
-  }
+  columns = withoutLostFrames(columns, numbers, notes, vocabulary);
   const digits = (field) => field.replace(/e.*/i, "").replace(/^[+-]?[0.]*/, "").replace(".", "").length;
   if (written.some((column) => column.some((field) => digits(plain(field, vocabulary)) > vocabulary.DOUBLE_DIGITS))) {
     notes.push("Numbers of more than 17 digits are rounded to doubles here; foucault score reads all of them.");
