@@ -123,7 +123,7 @@ class Header:
             least: the number of fields of the first row, empty ones at its end left out.
             most: the number with them.
         """
-        lengths = [{len(way) for way in words(line.text)} for line in self.lines]
+        lengths = [{len(way) for way in self._ways(line)} for line in self.lines]
         headers = {i: counts for i in range(len(self.lines)) if (counts := self._complete(i))}
         first = min(headers, default=len(self.lines))
         for i in reversed(range(len(self.lines))):
@@ -159,7 +159,7 @@ class Header:
 
     def _named(self, line: Line, count: int) -> list[str] | None:
         """Return the words of a line that names the columns, or is meant to; None for another."""
-        ways = [(way, _columns(way)) for way in words(line.text)]
+        ways = [(way, _columns(way)) for way in self._ways(line)]
         fitting = [(way, named) for way, named in ways if len(way) == count]
         for way, named in fitting:
             if set(self.needed) <= named:
@@ -172,7 +172,17 @@ class Header:
 
     def _complete(self, i: int) -> set[int]:
         """Return into how many words a line can be taken apart so that they name all columns that are needed."""
-        return {len(way) for way in words(self.lines[i].text) if set(self.needed) <= _columns(way)}
+        return {len(way) for way in self._ways(self.lines[i]) if set(self.needed) <= _columns(way)}
+
+    def _ways(self, line: Line) -> list[list[str]]:
+        """Return the ways to take a line apart; where one names all columns that are needed, no less likely one."""
+        ways = words(line.text)
+        separators = [separator for separator in SEPARATORS if separator and separator in line.text]
+        explicit = ways[: len(separators)]
+        for likely in (explicit, *([way] for way in ways[len(separators) :])):
+            if any(set(self.needed) <= _columns(way) for way in likely):
+                return likely
+        return ways
 
     def _units(self, i: int, count: int) -> list[str] | None:
         """Return the units in a line that holds nothing else, one for each column; None for another line."""

@@ -76,7 +76,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         InputError: its unit contradicts `units`.
     """
     text = unquoted(word)
-    if len(text) > LONGEST:
+    if len(text) > LONGEST or text[-1:] in (",", ";", "|"):  # what ends with a separator is a part of a line
         return None
     label = LABEL.fullmatch(text)
     text = label[1] if label else text

@@ -98,9 +98,7 @@ def possible_separators(line: str) -> list[tuple[str, float]]:
 def words(line: str) -> list[list[str]]:
     """Return the ways to take a header apart, the most likely first; separators at its end add no word."""
     ways = [split(line, separator) for separator in SEPARATORS if separator and separator in line]
-    spaced = [APART.split(line.strip()), split(BEFORE_BRACKET.sub("", line), ""), split(line, "")]
-    # a word that ends with a comma shows that white space is not what separates them
-    ways += [way for way in spaced if not any(word[-1:] in (",", ";", "|") for word in way)]
+    ways += [APART.split(line.strip()), split(BEFORE_BRACKET.sub("", line), ""), split(line, "")]
     return [without_end(way) for way in ways]
 
 

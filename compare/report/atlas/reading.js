@@ -74,8 +74,7 @@ function wordsOf(line, vocabulary) {
   const marks = vocabulary.SEPARATORS.filter((separator) => separator && line.includes(separator));
   const joined = line.replace(pattern(vocabulary.BEFORE_BRACKET, "g"), "");
   const ways = marks.map((separator) => split(line, separator, vocabulary));
-  const spaced = [line.trim().split(pattern(vocabulary.APART)), split(joined, "", vocabulary), split(line, "", vocabulary)];
-  ways.push(...spaced.filter((way) => !way.some((word) => /[,;|]$/.test(word))));
+  ways.push(line.trim().split(pattern(vocabulary.APART)), split(joined, "", vocabulary), split(line, "", vocabulary));
   return ways.map(withoutEnd);
 }
 
@@ -169,7 +168,7 @@ function partsOf(text, vocabulary) {
 // What a word of a header means: {column, factor: [numerator, denominator] or undefined if unknown, unit, rank}.
 function meaning(word, vocabulary) {
   const long = unquoted(word);
-  if (long.length > vocabulary.LONGEST) return undefined;
+  if (long.length > vocabulary.LONGEST || /[,;|]$/.test(long)) return undefined; // what ends so is a part of a line
   const text = whole(vocabulary.LABEL, "i").exec(long)?.[1] ?? long;
   for (const [name, suffix, direction] of partsOf(text, vocabulary)) {
     const named = columnOf(name, vocabulary);
@@ -259,8 +258,16 @@ function conventionsOf(words, places, vocabulary) {
 const columnsNamed = (way, vocabulary) => new Set(way.map((word) => meaning(word, vocabulary)?.column).filter(Boolean));
 const namesAll = (way, needed, vocabulary) => needed.every((name) => columnsNamed(way, vocabulary).has(name));
 
-function namedBy(line, count, needed, vocabulary) {
+// The ways to take a line apart; where one names all columns that are needed, no less likely one.
+function likelyWays(line, needed, vocabulary) {
   const ways = wordsOf(line.text, vocabulary);
+  const explicit = vocabulary.SEPARATORS.filter((separator) => separator && line.text.includes(separator)).length;
+  const tiers = [ways.slice(0, explicit), ...ways.slice(explicit).map((way) => [way])];
+  return tiers.find((tier) => tier.some((way) => namesAll(way, needed, vocabulary))) ?? ways;
+}
+
+function namedBy(line, count, needed, vocabulary) {
+  const ways = likelyWays(line, needed, vocabulary);
   const fitting = ways.filter((way) => way.length === count);
   const other = (way) => namesAll(way, needed, vocabulary) && (!line.comment || columnsNamed(way, vocabulary).size === way.length);
   const enough = line.comment ? Math.max(Math.min(vocabulary.FEW, needed.length), Math.floor(count / 2)) : 0;
@@ -278,7 +285,7 @@ function lineOfUnits(line, count, vocabulary) {
 
 // The place and the words of the last line that names the columns, or is meant to; null if none does.
 function headerOf(lines, least, most, needed, vocabulary) {
-  const ways = lines.map((line) => wordsOf(line.text, vocabulary));
+  const ways = lines.map((line) => likelyWays(line, needed, vocabulary));
   const complete = ways.map((of) => new Set(of.filter((way) => namesAll(way, needed, vocabulary)).map((way) => way.length)));
   const first = complete.findIndex((counts) => counts.size);
   for (let i = lines.length - 1; i >= 0; i -= 1) {
@@ -522,7 +529,7 @@ function withoutLostFrames(columns, numbers, notes, vocabulary) {
   const lost = isLost.map((one, i) => one && i < last);
   for (const [name, column] of Object.entries(columns)) {
     const row = column.findIndex((value, i) => !lost[i] && !(Math.abs(value) <= vocabulary.LARGEST));
-    if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row])}. The run failed there.`);
+    if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row]).toLowerCase()}. The run failed there.`);
   }
   const count = lost.filter(Boolean).length;
   if (!count) return columns;
