@@ -35,7 +35,9 @@ def seconds_of(text: str, where: str) -> Fraction:
         raise InputError(where, text[:40], "a time as in the first row", HOW)
     hours, minutes, seconds = clock.groups()
     if hours is None and not {".", ","} & {*seconds}:
-        raise InputError(where, text[:40], "hours:minutes:seconds", "Are these hours and minutes, or minutes and seconds?")
+        raise InputError(
+            where, text[:40], "hours:minutes:seconds", "Are these hours and minutes, or minutes and seconds?"
+        )
     return _of_day(hours or "0", minutes, seconds)
 
 

@@ -109,7 +109,9 @@ class Header:
                 named = [meant.column for meant in meanings]
                 if not set(self.needed) <= {*named} or 2 * len(named) < len(way):
                     continue
-                separated = any(without_end(split(line.text, mark)) == way for mark in SEPARATORS if mark in line.text and mark)
+                separated = any(
+                    without_end(split(line.text, mark)) == way for mark in SEPARATORS if mark in line.text and mark
+                )
                 same = named == [*columns[: len(named)]] and all(meant.factor == 1 for meant in meanings)
                 if separated or not same:
                     raise self._unequal(number, count, line, len(way), "")
@@ -147,7 +149,9 @@ class Header:
             if not line.comment and any(set(self.needed) <= _columns(way) for way in ways):
                 where, got = f"{self.name}: line {self.lines[i].number}", ", ".join(words_of_line)[:80]
                 expected = f"units below the header of line {line.number}, or a row of numbers"
-                raise InputError(where, got, expected, "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark.")
+                raise InputError(
+                    where, got, expected, "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark."
+                )
 
     def _unequal(self, number: int, count: int, line: Line, named: int, separator: str) -> InputError:
         """Return the error for a first row with another number of fields than the header."""

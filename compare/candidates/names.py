@@ -33,7 +33,9 @@ LONGEST = 100  # characters of a word; the patterns' time grows with the square,
 BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
 AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")  # one piece or two
 LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
-LABEL = re.compile(r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?", re.IGNORECASE)
+LABEL = re.compile(
+    r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?", re.IGNORECASE
+)
 TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
 LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
@@ -242,7 +244,9 @@ class Layout:
         return columns, low
 
 
-def layout(words: Sequence[str], needed: Sequence[str], naming: Naming, where: str, units: Sequence[str] = ()) -> Layout:
+def layout(
+    words: Sequence[str], needed: Sequence[str], naming: Naming, where: str, units: Sequence[str] = ()
+) -> Layout:
     """Resolve the words of a header.
 
     Args:

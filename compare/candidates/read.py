@@ -284,7 +284,9 @@ class ColumnReader:
             if says_nothing(text):
                 continue
             if "\r" in text:
-                raise InputError(self.name, "lines that end with CR alone", "LF or CR LF", "Save it with other line ends.")
+                raise InputError(
+                    self.name, "lines that end with CR alone", "LF or CR LF", "Save it with other line ends."
+                )
             cut_off = data[-1:] != b"\n"
             begins = text.lstrip()
             if begins[0] in MARKS and (remark := COMMENT.match(begins)):
@@ -326,7 +328,12 @@ class ColumnReader:
             raise refusals[0][1]
         if not self.header.decides and any(share == 1 for share, _ in refusals):
             got = f"{text[:40]}, which may be one number or two"
-            raise InputError(f"{self.name}: line {line}", got, "a first line that names the columns", f"Write {','.join(self.header.needed)} above it.")
+            raise InputError(
+                f"{self.name}: line {line}",
+                got,
+                "a first line that names the columns",
+                f"Write {','.join(self.header.needed)} above it.",
+            )
         self.readings = [reading for reading in readings if reading.fits(text)] or readings[:1]
         return True
 
@@ -403,7 +410,9 @@ class ColumnReader:
         if not kept:
             raise InputError(self.name, f"no number of {' or '.join(names[1:])} in any row", "rows of numbers")
         if lost:
-            self.notes.append(f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}")
+            self.notes.append(
+                f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}"
+            )
         self.lines = lines
         columns: list[Sequence[str]] = [*zip(*kept, strict=True)]
         written = columns
@@ -449,11 +458,16 @@ class ColumnReader:
         doubtful = doubtful_number(columns, commas_separate)
         if doubtful is not None:
             mark = "comma" if "," in doubtful else "point"
-            got, expected = doubtful, f"a {mark} that is decimal or one between thousands, and some number that shows which"
+            got, expected = (
+                doubtful,
+                f"a {mark} that is decimal or one between thousands, and some number that shows which",
+            )
             advice = f"Write {doubtful.replace(',', '.')}0 or {re.sub('[,.]', '', doubtful)}."
             raise InputError(self.name, got, expected, advice)
         fractions = any("." in number or "," in number for column in columns for number in column)
-        needless = None if fractions or not commas_separate else padded([number for column in columns for number in column])
+        needless = (
+            None if fractions or not commas_separate else padded([number for column in columns for number in column])
+        )
         if needless is not None:
             raise InputError(self.name, f"{needless} between commas", "whole numbers without needless zeros", COMMAS)
 

@@ -15,7 +15,7 @@ MAX_LINES = 4_000_000
 MARKS = frozenset("#%!/")  # with which a comment begins
 COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
 RULE = "-=+|:_ \t"  # characters of a line drawn below a header, as in Markdown
-EMPTY = " \t,;|\""  # characters of a line without a field
+EMPTY = ' \t,;|"'  # characters of a line without a field
 SEPARATORS = (",", ";", "\t", "|", "")  # the last is white space
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+|[0-9]*,[0-9]+)([eEdD][+-]?[0-9]+)?")
 NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)

@@ -115,6 +115,8 @@ def judge(
     if candidate.positions:
         candidate, times = counted_from_release(candidate, times, scene, tolerance)
     if t_end is not None:
+        if candidate.t[0] > t_end:
+            _check_times(candidate, scene)
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
     _check_times(candidate, scene)

@@ -178,7 +178,11 @@ def _proved(
     ranges: Ranges, kept: Sequence[Fraction], seen: Sequence[Fraction], section: str | None, report: Any
 ) -> Ranges:
     """Return a proof at the times of rows, and of transits or passages a swing beyond the last that was seen."""
-    end, inputs, last = ranges.scene.exact.t_end, ranges.scene.exact, max([*kept, *seen], default=ranges.scene.exact.t_end)
+    end, inputs, last = (
+        ranges.scene.exact.t_end,
+        ranges.scene.exact,
+        max([*kept, *seen], default=ranges.scene.exact.t_end),
+    )
     # a swing beyond the last one, so that a transit is not cut off
     swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
     grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not kept or not last else [])})

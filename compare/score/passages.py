@@ -140,9 +140,7 @@ def score_passages(
     return replace(score, starts=tuple(_starts(times, golden.sections[section], away, score.allowed_m)))
 
 
-def _starts(
-    times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float
-) -> Iterator[Ends]:
+def _starts(times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float) -> Iterator[Ends]:
     """Yield what the clock may have shown at the release, in s, if every passage agrees by it, none with the same one."""
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
     intervals = []

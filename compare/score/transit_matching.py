@@ -206,7 +206,11 @@ def _truth(golden: Golden | Solution, times: Array) -> Dense:
 
 
 def judged_transits(
-    times: Array, golden: Golden | Solution, errors: TrajectoryErrors, tolerance_m: float, end_of_run: float | None = None
+    times: Array,
+    golden: Golden | Solution,
+    errors: TrajectoryErrors,
+    tolerance_m: float,
+    end_of_run: float | None = None,
 ) -> TransitErrors:
     """Return the errors of a candidate's transits, in s; of those that the truth's end or proof leaves open none.
 

@@ -53,7 +53,9 @@ class Spelling:
         return self.data.decode("utf-8", "replace")
 
 
-def numbers(rows: Sequence[Row], factors: Sequence[Fraction | int] = (1, 1, 1), start: str = "0") -> dict[str, list[float]]:
+def numbers(
+    rows: Sequence[Row], factors: Sequence[Fraction | int] = (1, 1, 1), start: str = "0"
+) -> dict[str, list[float]]:
     """Return the columns of rows, times factors, t since a start."""
     columns = {}
     for i, (name, factor) in enumerate(zip(NAMES, factors, strict=True)):
@@ -124,7 +126,9 @@ def of_the_field() -> dict[str, Spelling]:
     for letter in "dDE":
         for since in (0, 1, 3):
             rows = exponent(letter, since)
-            found[f"exponent {letter} from {since}"] = read(table("t x y", rows, " "), [tuple(map(_plain, row)) for row in rows])
+            found[f"exponent {letter} from {since}"] = read(
+                table("t x y", rows, " "), [tuple(map(_plain, row)) for row in rows]
+            )
     # R2: a line of units
     for name, line, factors in (
         ("plain", "s,m,m", (1, 1, 1)),
@@ -151,7 +155,9 @@ def of_the_field() -> dict[str, Spelling]:
     # R3: quotes
     found["quotes around all"] = read(table('"t","x","y"', HALVES, ",", lambda word: f'"{word}"'))
     found["quotes around commas"] = read(table('"t","x","y"', WHOLE, ",", lambda word: f'"{comma(word)}"'), WHOLE)
-    found["quotes where needed"] = read(table("t,x,y", WHOLE, ",", lambda word: f'"{comma(word)}"' if "." in word else word), WHOLE)
+    found["quotes where needed"] = read(
+        table("t,x,y", WHOLE, ",", lambda word: f'"{comma(word)}"' if "." in word else word), WHOLE
+    )
     found["quoted separator"] = read(table('Time (s) Run #1,"Position, X (m) Run #1","Position, Y (m) Run #1"', HALVES))
     found["quoted unread separator"] = read(table('t,x,y,"note, if any"', [(*row, '"a, b"') for row in HALVES]))
     found["latest"] = read(table("Latest: Time (s),Latest: X (m),Latest: Y (m)", HALVES))
@@ -173,7 +179,9 @@ def of_the_field() -> dict[str, Spelling]:
         found[f"name {x}"] = read(table(f"t_s,{x},{y}", HALVES), factors=(1, factor, factor))
     # R5: clocks, and times that are text
     found["clock text"] = read(table("time,x,y", [(f"00:00:0{float(t):.3f}", x, y) for t, x, y in HALVES]))
-    found["clock moments"] = read(table("time,x,y", [(f"2026-03-01T12:00:0{float(t):.3f}Z", x, y) for t, x, y in HALVES]))
+    found["clock moments"] = read(
+        table("time,x,y", [(f"2026-03-01T12:00:0{float(t):.3f}Z", x, y) for t, x, y in HALVES])
+    )
     since_1970 = [(f"176000000{t}" if "." in t else f"176000000{t}.0", x, y) for t, x, y in HALVES]
     found["clock 1970"] = read(table("time,x,y", since_1970), since_1970)
     # lost frames and the tails of spreadsheets
@@ -191,7 +199,9 @@ def of_the_field() -> dict[str, Spelling]:
     found["hours"] = read(table("t (h),x (m),y (m)", HALVES), factors=(3600, 1, 1))
     found["modelling"] = read(table("timestamp,x(t),y(t)", HALVES))
     found["index"] = read(table(",t,x,y", [(str(i), *row) for i, row in enumerate(HALVES)]))
-    found["latin"] = read(table("Zeit (s);Ost (m);Nord (m);Länge", [(*row, "1") for row in WHOLE], ";", comma).encode("latin-1"), WHOLE)
+    found["latin"] = read(
+        table("Zeit (s);Ost (m);Nord (m);Länge", [(*row, "1") for row in WHOLE], ";", comma).encode("latin-1"), WHOLE
+    )
     found["windows"] = read(table("t,x,y", HALVES, end="\r\n"))
     return found
 
@@ -204,21 +214,43 @@ def of_my_own() -> dict[str, Spelling]:
     # marks: decimal, between columns, between thousands
     found["comma between and within"] = refused(table("t,x,y", commas), "semicolons")
     found["comma between and within, no header"] = refused(table(None, commas), "semicolons")
-    found["comma between seven parts"] = refused(table(None, [(*row, "-66,9", ) for row in commas[1:]]), "semicolons")
+    found["comma between seven parts"] = refused(
+        table(
+            None,
+            [
+                (
+                    *row,
+                    "-66,9",
+                )
+                for row in commas[1:]
+            ],
+        ),
+        "semicolons",
+    )
     found["thousands in quotes"] = refused('t,x,y\n"0",0.3,0.4\n"1,234",0.2,0.1\n', "1,234")
     found["comma before three digits"] = refused("t;x;y\n1;1,250;2,500\n2;1,125;2,375\n", "1,250")
-    found["comma before three digits, once not"] = read("t;x;y\n1;0,250;2,500\n2;1,125;2,375\n", [("1", "0.25", "2.5"), ("2", "1.125", "2.375")])
+    found["comma before three digits, once not"] = read(
+        "t;x;y\n1;0,250;2,500\n2;1,125;2,375\n", [("1", "0.25", "2.5"), ("2", "1.125", "2.375")]
+    )
     found["thousands and comma"] = refused("t;x;y\n0;0,3;0,4\n1;1.234,5;0,1\n", "thousands")
     found["thousands of a point beside commas"] = refused("t;x;y\n1.000;0,3;0,4\n2.000;0,2;0,1\n", "1.000")
-    found["point of times beside commas"] = read("t;x;y\n0.000;0,3;0,4\n1.000;0,2;0,1\n", [("0", "0.3", "0.4"), ("1", "0.2", "0.1")])
-    found["thousands of a point alone"] = refused("t (ms);x (mm);y (mm)\n0;300;400\n1.000;278;362\n2.000;216;256\n", "1.000")
+    found["point of times beside commas"] = read(
+        "t;x;y\n0.000;0,3;0,4\n1.000;0,2;0,1\n", [("0", "0.3", "0.4"), ("1", "0.2", "0.1")]
+    )
+    found["thousands of a point alone"] = refused(
+        "t (ms);x (mm);y (mm)\n0;300;400\n1.000;278;362\n2.000;216;256\n", "1.000"
+    )
     found["thousands of a blank"] = refused("t;x;y\n0;0,3;0,4\n1 234,5;0,2;0,1\n", "thousands")
     found["thousands of an apostrophe"] = refused("t;x;y\n0;0.3;0.4\n1'234.5;0.2;0.1\n", "thousands")
     found["comma in front after a blank"] = refused("0 ,5 ,3\n1 ,25 ,4\n", "semicolons")
     found["comma in front"] = read("t;x;y\n0;,5;,25\n1;,25;-,5\n", [("0", "0.5", "0.25"), ("1", "0.25", "-0.5")])
     found["number and time, or a comma"] = refused("1,2\n2,6\n3,11\n", "first line", alone=True)
-    found["comma with exponents"] = read("t x y\n0 3,0E-01 4,0e-1\n5,0E-01 2,5E-1 +1,25E+00\n", [("0", "0.3", "0.4"), ("0.5", "0.25", "1.25")])
-    found["commas of a text beside"] = read("t;x;y;note\n" + "".join(f"{';'.join(row)};one, two\n" for row in commas), WHOLE)
+    found["comma with exponents"] = read(
+        "t x y\n0 3,0E-01 4,0e-1\n5,0E-01 2,5E-1 +1,25E+00\n", [("0", "0.3", "0.4"), ("0.5", "0.25", "1.25")]
+    )
+    found["commas of a text beside"] = read(
+        "t;x;y;note\n" + "".join(f"{';'.join(row)};one, two\n" for row in commas), WHOLE
+    )
     found["only whole numbers"] = read("t;x;y\n0;3;4\n1;2;1\n", [("0", "3", "4"), ("1", "2", "1")])
     # units
     found["units of the screen"] = refused(table("t,x,y\ns,px,px", HALVES), "px")
@@ -233,12 +265,37 @@ def of_my_own() -> dict[str, Spelling]:
     # clocks
     found["clock of two numbers"] = refused("time,x,y\n00:00,0.3,0.4\n00:01,0.2,0.1\n", "minutes and seconds")
     found["clock of minutes"] = read(table("time,x,y", [(f"00:0{float(t):.1f}", x, y) for t, x, y in HALVES]))
-    found["clock of frames"] = refused(table("time,x,y", [(f"00:00:0{i}:12", *row[1:]) for i, row in enumerate(HALVES)]), "number")
-    found["clock of twelve hours"] = refused(table("time,x,y", [(f"12:00:0{i} PM", *row[1:]) for i, row in enumerate(HALVES)]), "hours:minutes:seconds")
-    found["date of days first"] = refused(table("time,x,y", [(f"03/01/2026 12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]), "hours:minutes:seconds")
-    found["date of no calendar"] = refused(table("time,x,y", [(f"2026-02-30T12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]), "calendar")
-    found["date and zone"] = read(table("time,x,y", [(f"2026-03-01T00:59:{59 + float(t):04.1f}+01:00" if float(t) < 1 else f"2026-03-01T01:00:{float(t) - 1:04.1f}+01:00", x, y) for t, x, y in HALVES]))
-    found["date and blank"] = read(table("time;x;y", [(f"2026-03-01 12:00:0{t}", x, y) for t, x, y in HALVES], ";", comma))
+    found["clock of frames"] = refused(
+        table("time,x,y", [(f"00:00:0{i}:12", *row[1:]) for i, row in enumerate(HALVES)]), "number"
+    )
+    found["clock of twelve hours"] = refused(
+        table("time,x,y", [(f"12:00:0{i} PM", *row[1:]) for i, row in enumerate(HALVES)]), "hours:minutes:seconds"
+    )
+    found["date of days first"] = refused(
+        table("time,x,y", [(f"03/01/2026 12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]),
+        "hours:minutes:seconds",
+    )
+    found["date of no calendar"] = refused(
+        table("time,x,y", [(f"2026-02-30T12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]), "calendar"
+    )
+    found["date and zone"] = read(
+        table(
+            "time,x,y",
+            [
+                (
+                    f"2026-03-01T00:59:{59 + float(t):04.1f}+01:00"
+                    if float(t) < 1
+                    else f"2026-03-01T01:00:{float(t) - 1:04.1f}+01:00",
+                    x,
+                    y,
+                )
+                for t, x, y in HALVES
+            ],
+        )
+    )
+    found["date and blank"] = read(
+        table("time;x;y", [(f"2026-03-01 12:00:0{t}", x, y) for t, x, y in HALVES], ";", comma)
+    )
     found["time of day"] = read(table("time,x,y", [(f"12:34:5{float(t):.1f}", x, y) for t, x, y in HALVES]))
     found["clock and number"] = refused("time,x,y\n00:00:00,0.3,0.4\n1,0.2,0.1\n", "first row")
     found["number and clock"] = refused("time,x,y\n0,0.3,0.4\n00:00:01,0.2,0.1\n", "number")
@@ -246,7 +303,9 @@ def of_my_own() -> dict[str, Spelling]:
     found["clock that started before"] = read(table("t,x,y", late), late)
     # rows without numbers
     found["failed at the end"] = refused(table("t,x,y", [*HALVES, ("3", "nan", "nan")]), "run failed")
-    found["infinite in the middle"] = refused(table("t,x,y", [HALVES[0], ("0.2", "inf", "0"), *HALVES[1:]]), "run failed")
+    found["infinite in the middle"] = refused(
+        table("t,x,y", [HALVES[0], ("0.2", "inf", "0"), *HALVES[1:]]), "run failed"
+    )
     found["nothing but lost frames"] = refused("t,x,y\n0,,\n1,,\n2,,\n", "in any row")
     found["lost at first and at last"] = read(table("t,x,y", [("0", "", ""), *late, ("9", "", "")]), late)
     found["no time"] = refused(table("t,x,y", [*HALVES, ("", "0.1", "0.2")]), "t")
@@ -254,12 +313,21 @@ def of_my_own() -> dict[str, Spelling]:
     found["cut off"] = refused(table("t,x,y", HALVES) + "2.5,0.1", "cut off")
     found["one field more"] = refused(table("t;x;y", HALVES, ";") + "2.5;0.1;0.2;0.3\n", "4 fields")
     found["header again"] = refused(table("t,x,y", HALVES) + table("t,x,y", HALVES), "number")
-    found["ends that differ"] = read("t,x,y\n" + "".join(",".join(row) + "," * (i % 3) + "\n" for i, row in enumerate(HALVES)))
+    found["ends that differ"] = read(
+        "t,x,y\n" + "".join(",".join(row) + "," * (i % 3) + "\n" for i, row in enumerate(HALVES))
+    )
     # numbers
-    for name, number in (("minus of Unicode", "−0.3"), ("underscore", "1_0"), ("hexadecimal", "0x1.8p-1"), ("text", "o.3")):
+    for name, number in (
+        ("minus of Unicode", "−0.3"),
+        ("underscore", "1_0"),
+        ("hexadecimal", "0x1.8p-1"),
+        ("text", "o.3"),
+    ):
         found[name] = refused(f"t,x,y\n0,0.3,0.4\n1,{number},0.1\n", "number")
     # names
-    found["two runs"] = refused(table("Time (s),x (m) Run #1,x (m) Run #2,y (m) Run #1", [(t, x, x, y) for t, x, y in HALVES]), "x (m) Run #2")
+    found["two runs"] = refused(
+        table("Time (s),x (m) Run #1,x (m) Run #2,y (m) Run #1", [(t, x, x, y) for t, x, y in HALVES]), "x (m) Run #2"
+    )
     found["row names"] = refused("t x y\n1 0 0.3 0.4\n2 1 0.2 0.1\n", "4 fields")
     found["pixels"] = refused(table("t,x_px,y_px", HALVES), "no x")
     found["axes of a map"] = read(table("t,x_north,y_east", [(t, y, x) for t, x, y in HALVES]))
@@ -271,7 +339,11 @@ def of_my_own() -> dict[str, Spelling]:
     found["Markdown"] = read("| t | x | y |\n|---|---|---|\n" + "".join(f"| {' | '.join(row)} |\n" for row in HALVES))
     found["carriage returns"] = refused(table("t,x,y", HALVES, end="\r"), "CR")
     found["UTF-16"] = refused(table("t,x,y", HALVES).encode("utf-16"), "text")
-    found["columns in line"] = read("".join(f"{word:>8}" for word in NAMES) + "\n" + "".join("".join(f"{n:>24}" for n in row) + "\n" for row in HALVES))
+    found["columns in line"] = read(
+        "".join(f"{word:>8}" for word in NAMES)
+        + "\n"
+        + "".join("".join(f"{n:>24}" for n in row) + "\n" for row in HALVES)
+    )
     found["comments and gaps"] = read("Foucault pendulum, run 1\n\n" + table("#t,x,y", HALVES, end="\n# and so on\n\n"))
     found["units in brackets, blanks"] = read(table("t (s) x (cm) y (cm)", HALVES, " "), factors=(1, CM, CM))
     found["names by commas, rows by tabs"] = read(table("t,x,y", HALVES, "\t"))
@@ -284,7 +356,16 @@ def _plain(number: str) -> str:
 
 HEADERS = {  # names of columns, by the unit in which their numbers then are
     "t": {"t": 1, "time": 1, "Time (s)": 1, "t_ms": MS, "t (min)": 60, "Latest: Time (s)": 1, "elapsed time": 1},
-    "x": {"x": 1, "x_east_m": 1, "pos_x_cm": CM, "east": 1, "x (mm)": MM, "West": -1, "Position, X (m)": 1, "x [east]": 1},
+    "x": {
+        "x": 1,
+        "x_east_m": 1,
+        "pos_x_cm": CM,
+        "east": 1,
+        "x (mm)": MM,
+        "West": -1,
+        "Position, X (m)": 1,
+        "x [east]": 1,
+    },
     "y": {"y": 1, "y_north_m": 1, "y_pos_cm": CM, "North (cm)": CM, "y/m": 1, "south_mm": -MM, "Y (m) Run #1": 1},
 }
 UNIT_LINES = {"t": {"s": 1, "ms": MS, "(min)": 60, "": 1}, "x": {"m": 1, "cm": CM, "[mm]": MM, "": 1}}
@@ -309,7 +390,9 @@ def drawn(random: Random) -> Spelling:
     names = {name: random.choice([*HEADERS[name]]) if random.random() < 0.5 else name for name in NAMES}
     factors: dict[str, Fraction | int] = {name: HEADERS[name][names[name]] for name in NAMES}
     words = [names.get(name, name) for name in order]
-    lines = [f"# {line}" for line in random.sample(("of a program", "l = 67 m", "all in SI units"), random.choice((0, 0, 1)))]
+    lines = [
+        f"# {line}" for line in random.sample(("of a program", "l = 67 m", "all in SI units"), random.choice((0, 0, 1)))
+    ]
     quote = random.choice(("", "", "needed", "all"))
 
     def quoted(field: str) -> str:
@@ -329,7 +412,9 @@ def drawn(random: Random) -> Spelling:
         factors = dict.fromkeys(NAMES, 1)
     lost = random.choice(("", "nan", "NA")) if random.random() < 0.15 else None
     grouped = random.choice((",", ".", "'", " ")) if random.random() < 0.1 else ""
-    clock = random.choice(("", "", "", "", "h", "moment")) if factors["t"] == 1 and float(columns["t"][-1]) < 80000 else ""
+    clock = (
+        random.choice(("", "", "", "", "h", "moment")) if factors["t"] == 1 and float(columns["t"][-1]) < 80000 else ""
+    )
     if grouped == mark:
         grouped = ""
     for i in range(rows):

@@ -108,4 +108,8 @@ def test_what_is_drawn_is_read_as_written_or_refused_and_by_the_page_alike(size,
     if shutil.which("node") is None:
         return
     for spelling, columns, mine in zip(spellings, found, read_by_the_page(spellings), strict=True):
-        assert mine.get("columns") == (None if isinstance(columns, InputError) else columns), (spelling.text, mine, columns)
+        assert mine.get("columns") == (None if isinstance(columns, InputError) else columns), (
+            spelling.text,
+            mine,
+            columns,
+        )
