@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from reference import InputError
 from reference.errors import counted
@@ -128,9 +129,11 @@ class Candidate:
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
 
 
-def _lost_frames(columns: dict[str, Array]) -> Array:
-    """Return which rows hold NaN though a later row does not: no run recovers from NaN, but a camera may miss a frame."""
-    lost = np.isnan(np.column_stack([*columns.values()])).any(axis=1)
+def _lost_frames(columns: dict[str, Array]) -> npt.NDArray[np.bool_]:
+    """Return which rows hold NaN though a later row does not: a camera may miss a frame, but no run recovers."""
+    lost = np.zeros(len(next(iter(columns.values()))), dtype=bool)
+    for column in columns.values():
+        lost |= np.isnan(column)
     later = np.flatnonzero(~lost)
     lost[later[-1] if len(later) else 0 :] = False
     return lost

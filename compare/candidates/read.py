@@ -8,8 +8,8 @@
 - foucPend (Mathar, appendix B): no header; t x y z X Y Z φ λ speed separated by white space, of which the first
   four are read; `# P n t f` names a transit.
 
-Of a text that can be read in two ways, nothing is read: an error says what to write. The number of bytes and rows and the
-length of a line are limited. Errors name the line.
+Of a text that can be read in two ways, nothing is read: an error says what to write. The number of bytes and rows and
+the length of a line are limited. Errors name the line.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ from typing import IO
 import numpy as np
 
 from reference import InputError
-from reference.errors import checked_path, counted, plain as printable
+from reference.errors import checked_path, counted
+from reference.errors import plain as printable
 from reference.numbers.precision import Array
 from reference.scenes.scene import MAX_ROWS
 from reference.system.documents import open_at_once
@@ -255,10 +256,14 @@ class ColumnReader:
         self.conventions = [*reading.layout.conventions]
         indices, separator = [*places.values()], reading.separator
         try:
-            if not self._is_plain(reading):
+            mark = self._sure_mark(reading)
+            if mark is None:
                 raise ValueError
-            plain_rows = (self._counted(reading, i) for i in range(len(self.rows)))
+            plain_rows = (self._counted(reading, i, mark) for i in range(len(self.rows)))
             table = np.loadtxt(plain_rows, delimiter=separator or None, usecols=indices, comments=None, ndmin=2)
+            if mark == ",":
+                self.conventions.append(DECIMAL_COMMA)
+                self.rows = [row.replace(",", ".") for row in self.rows]
         except ValueError:
             self._spell_plainly(reading)
             indices, separator = [*range(len(indices))], ""
@@ -356,16 +361,18 @@ class ColumnReader:
                     raise InputError(f"{self.name}: line {line}", got[:80], expected, advice)
         return (possible or self.readings)[0]
 
-    def _is_plain(self, reading: Reading) -> bool:
-        """Return whether the rows hold no quotes and no commas but separators, and points that are decimal."""
-        separator = reading.separator
-        if any('"' in row for row in self.rows) or (separator != "," and any("," in row for row in self.rows)):
-            return False
+    def _sure_mark(self, reading: Reading) -> str | None:
+        """Return the decimal mark of all numbers if a look at the rows shows it; None if each has to be looked at."""
+        marks = [mark for mark in ',."' if mark != reading.separator and any(mark in row for row in self.rows)]
+        if len(marks) != 1 or marks == ['"']:
+            return None
+        mark = marks[0]
         some = [number for row in self.rows[:SAMPLE] for number in reading.fields(row)]
-        return any("." in number and not GROUPED.fullmatch(number) for number in some)
+        proven = any(mark in number and not GROUPED.fullmatch(number) for number in some)
+        return mark if proven else None
 
-    def _counted(self, reading: Reading, i: int) -> str:
-        """Return a row.
+    def _counted(self, reading: Reading, i: int, mark: str) -> str:
+        """Return a row, with points for commas if the decimal mark is a comma.
 
         Raises:
             InputError: it has more or fewer fields than there are columns.
@@ -374,7 +381,7 @@ class ColumnReader:
         count = row.count(separator) + 1 if separator else len(row.split())
         if count != reading.width and not reading.counts(row):
             self._refuse_count(reading, i)
-        return row
+        return row.replace(",", ".") if mark == "," else row
 
     def _refuse_count(self, reading: Reading, i: int) -> None:
         count = len(without_end(split(self.rows[i], reading.separator)))
@@ -393,7 +400,8 @@ class ColumnReader:
             InputError: a row or a number cannot be read, or in two ways.
         """
         names = [*reading.layout.places]
-        kept, lines, lost = [], array("l"), []
+        columns: list[list[str]] = [[] for _ in names]
+        lines, lost = array("l"), []
         for i, row in enumerate(self.rows):
             if not reading.counts(row):
                 self._refuse_count(reading, i)
@@ -405,16 +413,16 @@ class ColumnReader:
             for name, field in zip(names, fields, strict=True):
                 if not (is_number(field) or (name == "t" and is_clock(field))):
                     raise self._no_number(self.lines[i], name, field)
-            kept.append(fields)
+            for column, field in zip(columns, fields, strict=True):
+                column.append(field)
             lines.append(self.lines[i])
-        if not kept:
+        if not lines:
             raise InputError(self.name, f"no number of {' or '.join(names[1:])} in any row", "rows of numbers")
         if lost:
             self.notes.append(
                 f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}"
             )
         self.lines = lines
-        columns: list[Sequence[str]] = [*zip(*kept, strict=True)]
         written = columns
         if is_clock(columns[0][0]):
             written = columns[1:]
@@ -435,7 +443,7 @@ class ColumnReader:
             advice = HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
         return InputError(f"{self.name}: line {line}: {name}", field[:40], "a number", advice)
 
-    def _clock(self, texts: Sequence[str], reading: Reading) -> Sequence[str]:
+    def _clock(self, texts: Sequence[str], reading: Reading) -> list[str]:
         """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
 
         Raises:

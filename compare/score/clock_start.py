@@ -1,11 +1,12 @@
 """Clocks that did not start at the release.
 
-Rows are counted from the first of them, if that is the release. Of passages the differences are compared: what the clock
-showed at the release is fitted, as an interval.
+Rows are counted from the first of them, if that is the release. Of passages the differences are compared: what the
+clock showed at the release is fitted, as an interval.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -31,8 +32,8 @@ def counted_from_release(
 ) -> tuple[Candidate, Array | None]:
     """Return a candidate and its transits with times since the release.
 
-    No row is changed whose times may be since the release already. Times from beyond the scene's end on, or of a clock's
-    text, are counted from the first row: this is the release if it has its position.
+    No row is changed whose times may be since the release already. Times from beyond the scene's end on, or of a
+    clock's text, are counted from the first row: this is the release if it has its position.
 
     Args:
         candidate: rows of positions.
@@ -51,8 +52,8 @@ def counted_from_release(
     if clock_s is None:
         return candidate, transits
     release = [float(place) for place in Start.of(scene.exact, DOUBLE_BITS).position[:2]]
-    allowed_m = TOLERANCE * float(np.hypot(*release)) if tolerance is None else tolerance
-    distance_m = float(np.hypot(candidate.columns["x"][0] - release[0], candidate.columns["y"][0] - release[1]))
+    allowed_m = TOLERANCE * math.hypot(*release) if tolerance is None else tolerance
+    distance_m = math.dist((candidate.columns["x"][0], candidate.columns["y"][0]), release)
     if distance_m > allowed_m:
         got = f"{shown(clock_s)} in the first row, {distance_m:.3g} m off the release"
         raise InputError(f"{candidate.name}: t", got, "times since the release", SUBTRACT)

@@ -200,7 +200,7 @@ def _clock_of(candidate: Candidate) -> str:
 
 
 def _starts(times: Sequence[Fraction], intervals: Intervals) -> list[tuple[Fraction, Fraction]]:
-    """Return what a clock may have shown at the release, if every time lies in an interval by it, none in the same one."""
+    """Return what a clock may have shown at the release, if each time lies in an interval of its own by it."""
     possible = clock_starts(times, [ends for ends, _ in intervals])
     middles = [(low + high) / 2 for low, high in possible]
     fits = [not any(_zeros([t - middle for t in times], intervals, TRANSIT)) for middle in middles]

@@ -19,9 +19,8 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ..truth import DIGITS, Report, golden_of, truth_at
-from .clock_start import SUBTRACT, Ends, clock_starts, starts_in_words
+from .clock_start import SUBTRACT, TOLERANCE, Ends, clock_starts, starts_in_words
 from .errors import entry, swing_rate
-from .judge import TOLERANCE
 from .transit_matching import TransitErrors, transit_errors
 
 
@@ -141,7 +140,7 @@ def score_passages(
 
 
 def _starts(times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float) -> Iterator[Ends]:
-    """Yield what the clock may have shown at the release, in s, if every passage agrees by it, none with the same one."""
+    """Yield what the clock may have shown at the release, in s, if every passage agrees by it."""
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
     intervals = []
     for time, slope in zip(truth["t"], np.abs(slopes), strict=True):

@@ -459,7 +459,8 @@ def _long_times(random: Random, rows: int) -> list[str]:
 
 def _clock_text(number: str, kind: str) -> str:
     seconds = Fraction(number)
-    text = f"{int(seconds) // 3600:02d}:{int(seconds) // 60 % 60:02d}:{int(seconds) % 60:02d}.{number.partition('.')[2] or 0}"
+    whole = int(seconds)
+    text = f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}.{number.partition('.')[2] or 0}"
     return text if kind == "h" else f"2026-03-01T{text}Z"
 
 

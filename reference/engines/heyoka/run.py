@@ -93,8 +93,8 @@ class EarlyZero(NamedTuple):
 def early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
     """Return the zero of xdot near a release whose vx is not zero but less than a run's rounding; None if it is more.
 
-    Released with vx = 1e-30 m/s, the bob turns back after some 1e-30 s: the zero of xdot's tangent, whose relative error
-    is below the run's epsilon, as vx is below that of the other speeds.
+    Released with vx = 1e-30 m/s, the bob turns back after some 1e-30 s: the zero of xdot's tangent, whose relative
+    error is below the run's epsilon, as vx is below that of the other speeds.
     """
     vx, *others = start.v
     scale = max(start.rate, start.fastest_rate, *(float(abs(speed)) for speed in others))

@@ -1,6 +1,7 @@
 """The cases 01 to 16 and 41 to 44 of the audit: files as people write them, from the file to the verdict.
 
-43 (a tiny push) is tests/reference/engines/test_transits.py, 46 (a byte order mark) tests/reference/scenes/test_scene.py.
+Case 43 (a tiny push) is in tests/reference/engines/test_transits.py, case 46 (a byte order mark) in
+tests/reference/scenes/test_scene.py.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ def files(golden):
     def with_t(spelled):
         return [(spelled(float(t)), x, y) for t, x, y in golden]
 
+    fortran = [(t, f"{float(x):.17e}".replace("e", "d"), y) for t, x, y in golden]
     minutes = with_t(lambda t: f"00:{t / 60:02.0f}:00.000")
     moments = with_t(lambda t: f"2026-03-01T12:{t / 60:02.0f}:00.000Z")
     since_1970 = with_t(lambda t: f"{1760000000 + t:.3f}")
@@ -40,7 +42,7 @@ def files(golden):
     return {
         "01": (table("t;x;y", WHOLE, ";", comma), MOVED),
         "02 tabs": (table("t\tx\ty", WHOLE, "\t", comma), MOVED),
-        "04": (table("t x y", [golden[0], *((t, x.replace("e", "d") + "d0", y) for t, x, y in golden[1:])], " "), T_END),
+        "04": (table("t x y", [golden[0], *fortran[1:]], " "), T_END),
         "05": (table("t,x,y\ns,m,m", golden), T_END),
         "05 b": (table("t,x,y\n(s),(m),(m)", WHOLE), MOVED),
         "06": (table("t,x,y\ndouble,double,double", golden), T_END),

@@ -182,5 +182,5 @@ def test_rows_are_read_as_spreadsheets_and_data_frames_write_them(tmp_path, text
 def test_a_comma_before_three_digits_is_not_guessed_at(tmp_path):
     path = tmp_path / "rows.csv"
     path.write_text("site.latitude;site.altitude\n48,85;1,250\n")
-    with pytest.raises(InputError, match="got '1,250', expected a point.*thousands"):
+    with pytest.raises(InputError, match=r"got '1,250', expected a point.*thousands"):
         listed(path)
