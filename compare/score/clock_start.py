@@ -14,7 +14,6 @@ from fractions import Fraction
 import numpy as np
 
 from reference import InputError, Scene
-from reference.dataset.ranges import ends
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, Array
 
@@ -23,6 +22,7 @@ from ..candidates.clock import shown
 
 Ends = tuple[Fraction, Fraction]
 
+MOST_PLACES = 9  # of a time in s
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 SUBTRACT = "Subtract what the clock showed at the release."
 
@@ -96,7 +96,14 @@ def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[E
 
 def starts_in_words(starts: Iterable[Ends]) -> str:
     """Return what a clock may have shown at the release, each end rounded outward."""
-    return ", or ".join("{} to {} s".format(*ends(low, high)) for low, high in starts)
+    return ", or ".join(f"{_outward(low, high)} s" for low, high in starts)
+
+
+def _outward(low: Fraction, high: Fraction) -> str:
+    """Return the ends of an interval with two digits of its width, each rounded away from it."""
+    places = MOST_PLACES if high == low else min(MOST_PLACES, max(0, 1 - math.floor(math.log10(high - low))))
+    unit = Fraction(1, 10**places)
+    return f"{float(math.floor(low / unit) * unit):.{places}f} to {float(math.ceil(high / unit) * unit):.{places}f}"
 
 
 def _merged(intervals: Iterable[Ends]) -> list[Ends]:
