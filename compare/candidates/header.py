@@ -112,7 +112,7 @@ class Header:
                 separated = any(
                     without_end(split(line.text, mark)) == way for mark in SEPARATORS if mark in line.text and mark
                 )
-                same = named == [*columns[: len(named)]] and all(meant.factor == 1 for meant in meanings)
+                same = named == [*columns] and all(meant.factor == 1 for meant in meanings)
                 if separated or not same:
                     raise self._unequal(number, count, line, len(way), "")
 

@@ -329,6 +329,9 @@ def of_my_own() -> dict[str, Spelling]:
         table("Time (s),x (m) Run #1,x (m) Run #2,y (m) Run #1", [(t, x, x, y) for t, x, y in HALVES]), "x (m) Run #2"
     )
     found["row names"] = refused("t x y\n1 0 0.3 0.4\n2 1 0.2 0.1\n", "4 fields")
+    found["words of a comment for four columns"] = refused(
+        "# Latest: Time (s) x y frame\n0 0.3 0.4 1\n1 0.2 0.1 2\n", "4 fields"
+    )
     found["pixels"] = refused(table("t,x_px,y_px", HALVES), "no x")
     found["axes of a map"] = read(table("t,x_north,y_east", [(t, y, x) for t, x, y in HALVES]))
     found["west and south"] = read(table("t,x_west_cm,y_south_cm", HALVES), factors=(1, -CM, -CM))

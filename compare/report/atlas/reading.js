@@ -328,7 +328,7 @@ function refuseOtherComment(lines, names, count, needed, vocabulary) {
       const meanings = way.map((word) => meaning(word, vocabulary)).filter(Boolean);
       const named = meanings.map(({ column }) => column);
       if (!needed.every((name) => named.includes(name)) || 2 * named.length < way.length) continue;
-      const same = named.join() === names.slice(0, named.length).join() && meanings.every(({ factor }) => factor && factor[0] === factor[1]);
+      const same = named.join() === names.join() && meanings.every(({ factor }) => factor && factor[0] === factor[1]);
       if (same && !separated.has(way.join("\n"))) continue;
       throw new Unreadable(`The first row has ${count} fields, and the header in line ${line.number} has ${way.length}.`);
     }

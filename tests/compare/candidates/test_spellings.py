@@ -93,7 +93,11 @@ def is_what_was_written(found, spelling):
     written = spelling.columns
     times = [[t - start for t in written["t"]] for start in (0, written["t"][0])]
     near = [found["t"] == pytest.approx(of, rel=1e-15, abs=1e-12) for of in times]
-    return any(near) and all(found[name] == pytest.approx(written[name], rel=4e-16, abs=0) for name in "xy")
+    return (
+        found.keys() == written.keys()
+        and any(near)
+        and all(found[name] == pytest.approx(written[name], rel=4e-16, abs=0) for name in "xy")
+    )
 
 
 def test_what_is_drawn_is_read_as_written_or_refused_and_by_the_page_alike(size, tally, tmp_path):
