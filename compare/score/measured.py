@@ -132,14 +132,16 @@ def measured(
     zeros = [] if transits is None else sorted(_decimal(t) for t in transits)
     kept, seen = [t for t in times if t <= end], [t for t in zeros if 0 < t <= end]
     name = name if candidate is None else candidate.name
-    if candidate is not None and (candidate.clock_s is not None or (not kept and _span(times) <= end)):
+    if candidate is not None and (candidate.clock_s is not None or (not kept and _fit(times, end))):
         raise InputError(f"{name}: t", f"{_clock_of(candidate)} in the first row", "times since the release", SUBTRACT)
-    other_clock = candidate is None and _span(zeros) <= end
+    other_clock = candidate is None and _fit(zeros, end)
     if not kept and not seen and not other_clock:
         raise InputError(name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end.")
-    if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or (kept and not seen))):
-        ranges = _proved(ranges, kept, seen, section, report)
-    if (seen or not kept) and not _intervals(ranges, section):
+    wanted = bool(seen or not kept)  # transits or passages
+    if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or not wanted)):
+        last = max([*kept, *seen]) if kept or seen else zeros[-1] - zeros[0]
+        ranges = _proved(ranges, kept, last, section, wanted, report)
+    if wanted and not _intervals(ranges, section):
         none = f"none: {section or 'xdot'} has no single zeros in this scene"
         raise InputError(name, "transits", none, "Give positions instead.")
     word = section or TRANSIT
@@ -147,12 +149,11 @@ def measured(
     off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
     off += _zeros(decided, _intervals(ranges, section), word)
     starts: list[tuple[Fraction, Fraction]] = []
-    if other_clock and (off or not decided):
-        whole = ranges if ranges.times[-1] >= end else _proved(ranges, [], [end], section, report)
-        starts = _starts(zeros, _intervals(whole, section))
+    if other_clock and (off or not seen):
+        starts = _starts(zeros, _intervals(ranges, section))
     if starts:
-        ranges, off, seen, decided = whole, [], zeros, zeros
-    if not seen:
+        off, seen, decided = [], zeros, zeros
+    if not seen and not kept:
         span = f"times above 0, up to {float(end):g} s"
         raise InputError(f"{name}: t", f"{float(zeros[0]):.10g} s first", span, SUBTRACT)
     if seen and not decided and not kept:
@@ -175,24 +176,21 @@ def measured(
 
 
 def _proved(
-    ranges: Ranges, kept: Sequence[Fraction], seen: Sequence[Fraction], section: str | None, report: Any
+    ranges: Ranges, kept: Sequence[Fraction], last: Fraction, section: str | None, wanted: bool, report: Any
 ) -> Ranges:
-    """Return a proof at the times of rows, and of transits or passages a swing beyond the last that was seen."""
-    end, inputs, last = (
-        ranges.scene.exact.t_end,
-        ranges.scene.exact,
-        max([*kept, *seen], default=ranges.scene.exact.t_end),
-    )
+    """Return a proof at the times of rows, and if they are wanted of transits or passages, a swing beyond the last."""
+    end, inputs = ranges.scene.exact.t_end, ranges.scene.exact
     # a swing beyond the last one, so that a transit is not cut off
     swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
-    grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if seen or not kept or not last else [])})
-    sought = {"run.transits": str(bool((seen or not kept) and not section)).lower(), "run.sections": section or ""}
+    grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if wanted or not last else [])})
+    sought = {"run.transits": str(wanted and not section).lower(), "run.sections": section or ""}
     box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
     return solve_ranges(ranges.scene.with_values(sought), box, report=report, times=grid)
 
 
-def _span(times: Sequence[Fraction]) -> Fraction:
-    return times[-1] - times[0] if times else Fraction(0)
+def _fit(times: Sequence[Fraction], end: Fraction) -> bool:
+    """Return whether times, more than one, may be by a clock that did not start at the release."""
+    return len(times) > 1 and times[-1] - times[0] <= end
 
 
 def _clock_of(candidate: Candidate) -> str:

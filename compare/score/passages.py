@@ -21,6 +21,7 @@ from reference.numbers.precision import DOUBLE_BITS, Array
 from ..truth import DIGITS, Report, golden_of, truth_at
 from .clock_start import SUBTRACT, TOLERANCE, Ends, clock_starts, starts_in_words
 from .errors import entry, swing_rate
+from .measured import SWING
 from .transit_matching import TransitErrors, transit_errors
 
 
@@ -115,7 +116,8 @@ def score_passages(
     scene = scene.with_values({"run.sections": section, "run.transits": "false"})
     end = float(scene.exact.t_end)
     judged = times[(times > 0) & (times <= end)]
-    golden = golden_of(scene, DIGITS, announce, report, float(judged[-1]) if len(judged) else end)
+    until = float(judged[-1]) if len(judged) else min(end, float(np.ptp(times)) + _swing_s(scene))
+    golden = golden_of(scene, DIGITS, announce, report, until)
     truth = golden.sections[section]
     speed = float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
     away = _distances(section, scene, swing_rate(scene, speed))
@@ -135,8 +137,14 @@ def score_passages(
     score = PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
     if score.verdict == "agrees":
         return score
-    golden = golden_of(scene, DIGITS, announce, report, end)
+    golden = golden_of(scene, DIGITS, announce, report, min(end, until + _swing_s(scene)))
     return replace(score, starts=tuple(_starts(times, golden.sections[section], away, score.allowed_m)))
+
+
+def _swing_s(scene: Scene) -> float:
+    """Return a period in s, and some: before it, the first passage by a stopwatch comes."""
+    inputs = scene.exact
+    return SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5 if inputs.gravity else 0.0
 
 
 def _starts(times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float) -> Iterator[Ends]:
