@@ -151,7 +151,8 @@ def measured(
     starts: list[tuple[Fraction, Fraction]] = []
     if other_clock and (off or not seen):
         starts = _starts(zeros, _intervals(ranges, section))
-    if starts:
+    measured_by_gate = bool(starts and section)  # a program prints transits, by a clock of its own from the release on
+    if measured_by_gate:
         off, seen, decided = [], zeros, zeros
     if not seen and not kept:
         span = f"times above 0, up to {float(end):g} s"
@@ -163,7 +164,9 @@ def measured(
         raise InputError(f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice)
     farthest = {number.column: number.by for number in sorted(off, key=lambda number: number.by)}
     notes = list(candidate.notes if candidate else ())
-    late = 0 if starts else sum(t > end for t in [*times, *zeros])
+    if starts and not measured_by_gate:
+        notes.append(f"all transits are inside by a clock that showed {starts_in_words(starts)} at the release")
+    late = 0 if measured_by_gate else sum(t > end for t in [*times, *zeros])
     if late:
         notes.append(f"after {float(end):g} s {counted(late, 'time')} left out")
     if open_ := len(seen) - len(decided):

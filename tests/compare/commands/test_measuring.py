@@ -75,6 +75,7 @@ def test_transits_are_held_against_their_intervals_alone_or_beside_rows(score, f
     status, told = score("paris", "--transits", zeros, *WORDS)
     assert status == 1
     assert "of 5 transits, 5 numbers outside" in told
+    assert f"all transits are inside by a clock that showed {'-' * (t < 0)}0.0" in told
     assert score("paris", rows, "--transits", zeros, *WORDS)[0] == 1
     assert score("paris", rows, *WORDS)[0] == 0
 
