@@ -76,7 +76,7 @@ def since(clock_s: float, times: Array) -> Array:
 
 
 def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[Ends]:
-    """Return what a clock may have shown at the release, as intervals in s: each time then lies in some interval.
+    """Return what a clock may have shown at the release, as intervals in s, the nearest to 0 first: each time then lies in some interval.
 
     Two times or more are needed: one would fit at any.
 
@@ -91,7 +91,7 @@ def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[E
     for time in times[1:]:
         shifted = [(time - high, time - low) for low, high in reversed(true)]
         possible = [*_common(possible, shifted)]
-    return possible
+    return sorted(possible, key=lambda start: abs(start[0] + start[1]))
 
 
 def starts_in_words(starts: Iterable[Ends]) -> str:
