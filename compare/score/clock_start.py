@@ -76,9 +76,9 @@ def since(clock_s: float, times: Array) -> Array:
 
 
 def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[Ends]:
-    """Return what a clock may have shown at the release, as intervals in s, the nearest to 0 first: each time then lies in some interval.
+    """Return what a clock may have shown at the release, as intervals in s, the nearest to 0 first.
 
-    Two times or more are needed: one would fit at any.
+    By such a clock each time lies in some interval. Two times or more are needed: one would fit at any.
 
     Args:
         times: of passages, by the clock, in s.

@@ -235,7 +235,8 @@ def _check_times(candidate: Candidate, scene: Scene) -> None:
     Raises:
         InputError: the last time is more than a grid step beyond the scene's end.
     """
-    first, last, end = float(candidate.t[0]), float(candidate.t[-1]), float(scene.exact.t_end)
+    last, end = float(candidate.t[-1]), float(scene.exact.t_end)
+    first = float(candidate.t[0]) if len(candidate.t) > 1 else 0.0  # one row alone says nothing of a clock's start
     if last <= end + float(scene.exact.grid_step):
         return
     span = last - first

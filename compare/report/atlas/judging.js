@@ -74,9 +74,10 @@ function judgedRows(columns, truth) {
   const { t } = columns;
   const last = t[t.length - 1];
   if (last > end + step) {
-    const span = last - t[0];
+    const first = t.length > 1 ? t[0] : 0; // one row alone says nothing of a clock's start
+    const span = last - first;
     const unit = words.FINER.find((finer) => span * ratio(words.TIMES[finer]) <= end * (1 + words.SAME) && span > words.FAR * end);
-    const clock = t[0] > 0 && span <= end ? ` Did the clock start before the release? ${words.SUBTRACT}` : "";
+    const clock = first > 0 && span <= end ? ` Did the clock start before the release? ${words.SUBTRACT}` : "";
     const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : `Leave later rows out.${clock}`;
     throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
   }
