@@ -414,3 +414,28 @@ def test_an_extra_transit_is_excused_by_xdot_as_score_does(at_any_time, tmp_path
         score = judge(None, scene, transits=read_transits(path), explain=False)
         assert mine["verdict"] == score.verdict == ("agrees" if name == "two_within" else "disagrees"), name
         assert mine["transits"]["extra"] == score.transits.extra, name
+
+
+def test_clocks_and_ends_of_runs_are_taken_as_score_takes_them(golden, tmp_path):
+    """A clock that began in 1970 is counted from the release, if it is there; an event at the end of a run is extra."""
+    t, x, y = (golden.grid[name][:6] for name in ("t", "x", "y"))
+    zeros = golden.transits["t"][golden.transits["t"] < t[-1]]
+    since_1970 = csv("t,x,y", t + 1760000000.0, x, y)
+    late = csv("t,x,y", t[1:] + 1760000000.0, x[1:], y[1:])
+    rows, ended = csv("t,x,y", t, x, y), csv("t", np.append(zeros, t[-1]))
+    asked = [(since_1970, None, None), (late, None, None), (rows, ended, None), (rows, csv("t", zeros), None)]
+    counted, refused, extra, right = run(golden, asked)["told"]
+    path, transits = tmp_path / "mine.csv", tmp_path / "zeros.csv"
+    path.write_text(since_1970)
+    score = judge(path, "paris", explain=False)
+    assert counted["verdict"] == score.verdict == "agrees"
+    assert [f"Reading: {one.text}." for one in score.candidate.conventions] == counted["notes"]
+    path.write_text(late)
+    with pytest.raises(InputError, match="Subtract what the clock showed at the release"):
+        judge(path, "paris", explain=False)
+    assert "Subtract what the clock showed at the release" in refused["refused"]
+    path.write_text(rows)
+    transits.write_text(ended)
+    score = judge(path, "paris", transits=read_transits(transits), explain=False)
+    assert extra["transits"]["extra"] == score.transits.extra == [t[-1]]
+    assert extra["verdict"] == score.verdict == "disagrees" and right["verdict"] == "agrees"
