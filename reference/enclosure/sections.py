@@ -52,18 +52,31 @@ class Form(Slope):
     """
 
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
-        (piece, (eta, u, bend)), h = covered, covered.piece.k.h
-        # a, b, d as integers over 2^bits, which are off by at most `miss` in all
-        factors, miss = fixed([*times(h, a), *b, h * d], piece.step.bits)
-        terms = zip(factors, [*piece.p, *piece.v, fmpz_poly([-piece.unit])], strict=True)
-        self.covered, self.piece, self.centre, self.unit = covered, piece, ball(piece.step.centre), piece.unit**2
-        self.lost, x, y = miss * max(map(len, piece.p)) * (piece.sizes.p + piece.sizes.k), h * size(a), size(b)
+        piece = covered.piece
+        eta, u, bend = covered.tube
+        h, bits = piece.k.h, piece.step.bits
+        # integers over 2^bits stand for h a, b and h d; by how much they miss these, the radii of the balls included
+        a_whole, a_miss = fixed(times(h, a), bits)
+        b_whole, b_miss = fixed(b, bits)
+        d_whole, d_miss = fixed([h * d], bits)
+        self.covered, self.piece = covered, piece
+        self.centre, self.unit = ball(piece.step.centre), piece.unit**2
         self.slow, self.flat = slow, False
-        self.hold(arb_poly(sum((n * g for n, g in terms if n), fmpz_poly())), x * eta + y * u, x * u + y * bend)
+
+        # Lemma 13.1: |p| <= P, |p'| <= K, |p''| <= O K
+        position, speed = piece.sizes.p, piece.sizes.k
+        bending = max(map(len, piece.p)) * speed
+        self.lost = a_miss * position + b_miss * speed + d_miss, a_miss * speed + b_miss * bending
+
+        terms = zip([*a_whole, *b_whole, *d_whole], [*piece.p, *piece.v, fmpz_poly([-piece.unit])], strict=True)
+        f = arb_poly(sum((n * g for n, g in terms if n), fmpz_poly()))
+        a_size, b_size = h * size(a), size(b)
+        self.hold(f, a_size * eta + b_size * u, a_size * u + b_size * bend)
 
     def hold(self, f: Any, *offs: arb) -> None:
         """Take f, and what it and f' miss; both in few bits and orders as well, which are enough for most signs."""
-        self.forms = [(g, arb(0, upper(off + self.lost))) for g, off in zip((f, f.derivative()), offs, strict=True)]
+        both = zip((f, f.derivative()), offs, self.lost, strict=True)
+        self.forms = [(g, arb(0, upper(off + lost))) for g, off, lost in both]
         with ctx.workprec(SHORT):
             self.short = [cut(g * (1 / arb(self.unit)), SHORT // 2) + off for g, off in self.forms]
 
