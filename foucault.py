@@ -139,12 +139,13 @@ def _run() -> tuple[str | int | None, str, bool] | None:
     except SystemExit as end:
         unread = isinstance(end.__context__, BrokenPipeError)
         status = UNREAD if unread else end.code
-        return status, STOPPED if status == INTERRUPTED else "", bool(signals)
+        stopped = signals or status == INTERRUPTED
+        return status, STOPPED if stopped else "", bool(signals)
     except Stopped as stopped:
         return stopped.exit_status, str(stopped), bool(signals)
     except Exception as error:
         if signals:  # what followed from the interruption is no mistake of the user's
-            return 128 + signals[0], "", True
+            return 128 + signals[0], STOPPED, True
         if isinstance(error, FoucaultError):
             return error.exit_status, str(error), False
         if not isinstance(error, OSError):

@@ -285,7 +285,7 @@ INPUTS = [
     Case("a negative drag", value("scene", "pendulum", "drag", to="-1e-60"), 2, "drag must be at least 0"),
     Case("no drag", without_input, 2, "has no scene.pendulum.drag"),
     Case("a flattening of 1", value("scene", "site", "inverse_flattening", to="1"), 2, "must be above 1"),
-    Case("a cord that is too short", replaced(MANIFEST, X, '"x": "2"'), 1, "no size that a double holds"),
+    Case("a cord that is too short", replaced(MANIFEST, X, '"x": "2"'), 1, "not proved"),
     Case("too much gravity", value("scene", "site", "gravity", to="1e499"), 1, "not proved"),
     Case("too many steps", value("scene", "pendulum", "drag", to="1e40"), 1, "more than 1e+07 steps", AT_REST),
     Case("two kinds of release", replaced(MANIFEST, X, f'{X}, "angle": "30", "azimuth": "0"'), 1, "WRONG"),

@@ -42,11 +42,16 @@ def test_a_traceback_writes_control_characters_out(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("raised", "status"), [("KeyboardInterrupt", 130), ("SystemExit(5)", 5), ("BrokenPipeError(32, 'gone')", 141)]
+    ("raised", "status", "said"),
+    [
+        ("KeyboardInterrupt", 130, "foucault: stopped\n"),
+        ("SystemExit(5)", 5, ""),
+        ("BrokenPipeError(32, 'gone')", 141, ""),
+    ],
 )
-def test_an_end_that_was_asked_for_is_no_fault(tmp_path, raised, status):
+def test_an_end_that_was_asked_for_is_no_fault(tmp_path, raised, status, said):
     done = with_broken("heyoka", raised, tmp_path, "show", "paris", "--json")
-    assert (done.returncode, done.stdout, done.stderr) == (status, "", "")
+    assert (done.returncode, done.stdout, done.stderr) == (status, "", said)
 
 
 @pytest.mark.parametrize(("scene", "status"), [("paris", 70), ("atlantis", 2)])

@@ -112,7 +112,10 @@ class Header:
                 separated = any(
                     without_end(split(line.text, mark)) == way for mark in SEPARATORS if mark in line.text and mark
                 )
-                same = named == [*columns] and all(meant.factor == 1 for meant in meanings)
+                taken = meanings[: len(columns)]
+                same = [meant.column for meant in taken] == [*columns] and all(meant.factor == 1 for meant in taken)
+                labelled = way[0].endswith(":")  # as "columns: t x y …", with further columns behind
+                same = same and (len(named) == len(columns) or (labelled and len(way) == count + 1))
                 if separated or not same:
                     raise self._unequal(number, count, line, len(way), "")
 

@@ -1322,6 +1322,7 @@ static void check_grid_row(const fmpq_t t, long row) {
     motion(here, s, bits);
     for (int i = 0; i < 6; i++) {
         arb_mul(s, here + (i < 3 ? R + i : V + i - 3), length, bits + 64);
+        check_places(grid, row, i + 1);
         if (row == 0 && is_tie(head(grid, i + 1), cell(grid, row, i + 1)))
             fmpq_set_si(most_off, 500001, 1000000);
         prove(grid, row, i + 1, s, bound_for(grid, row, i + 1));

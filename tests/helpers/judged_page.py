@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from collections import Counter
 from collections.abc import Iterator
 
+import wild_programs as programs
 from places import ROOT
 
 from compare.score.explanation.case import AS_IF
@@ -15,7 +15,7 @@ from compare.score.judge import judge
 from compare.score.verdict import Score
 from reference import load_scene
 
-PAGE, TEST = ROOT / "docs/judged.md", ROOT / "tests/compare/score/test_wild.py"
+PAGE = ROOT / "docs/judged.md"
 LANGUAGES = {
     "C": ("w15",),
     "C++": ("w01", "w11", "w21", "w26"),
@@ -70,16 +70,7 @@ writes this page from the trajectories in `tests/compare/score/`; a test holds i
 """
 
 
-def wild():  # type: ignore[no-untyped-def]
-    """Return the module that has the settings of the programs, and what reading them found."""
-    spec = importlib.util.spec_from_file_location("wild_programs", TEST)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def row(name: str, programs) -> str:  # type: ignore[no-untyped-def]
+def row(name: str) -> str:
     """Return the row of a program."""
     scene = load_scene("paris", programs.SETTINGS[name])
     score = judge(programs.FOLDER / f"{name}.csv", scene)
@@ -103,7 +94,7 @@ def digits(error_m: float, score: Score) -> float:
     return max(0.0, -math.log10(error_m / score.errors.amplitude_m)) if error_m > 0 else MOST_DIGITS
 
 
-def head(programs) -> str:  # type: ignore[no-untyped-def]
+def head() -> str:
     """Return what stands above the rows."""
     common = Counter(word for words in programs.TRUE.values() for word in words)
     linear = sum(common[word] for word in LINEAR)
@@ -118,10 +109,9 @@ def head(programs) -> str:  # type: ignore[no-untyped-def]
 
 def lines() -> Iterator[str]:
     """Yield the page: its head, and a row for each program."""
-    programs = wild()
-    yield head(programs).rstrip("\n")
+    yield head().rstrip("\n")
     for name in programs.SETTINGS:
-        yield row(name, programs)
+        yield row(name)
 
 
 if __name__ == "__main__":

@@ -115,9 +115,6 @@ UNTOLD = {
     "w10": {"sidereal_day", "linear_g"}, "w23": {"linear_g"},
     "w19": {"integrator_loose"},  # three tolerances, of no phase and no amplitude that drift
     "w21": {"slip"},  # of 3e-4 m/s², where the rows, 26 to a swing, tell accelerations to 2e-3 m/s²
-    # odeint turns the plane as well: 7.26e-5 leaves less than the true 7.27e-5; the right axes leave 23 of 51
-    # tolerances, where a third would tell them from a step's error
-    "w22": {"frame_x_south", "rounded_rate"},
 }  # fmt: skip
 
 
