@@ -3,33 +3,32 @@
     python tests/mutants.py --count 60 --seed 1                  # as many from each file of `TESTS` as far as possible
     python tests/mutants.py --module checks/tables --count 20    # from the files whose path contains that
 
-The tests run without any change first. What ends a run in an error, or takes five times as long, was noticed. Mutants
-that no test could tell from the source are left out: `equivalent_mutants.toml` names them, each with a reason.
+The changes are those of `helpers/mutations.py`. The tests run without any change first. What ends a run in an error, or
+takes five times as long, was noticed. Mutants that no test could tell from the source are left out:
+`equivalent_mutants.toml` names them, each with a reason.
 """
 
 from __future__ import annotations
 
 import argparse
-import ast
-import copy
 import os
-import random
 import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-import tomllib
 from collections import Counter
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from itertools import islice
 from pathlib import Path
 from queue import Queue
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-ROOT, WORKERS = Path(__file__).parent.parent, 2
-EQUIVALENTS = Path(__file__).parent / "equivalent_mutants.toml"
+sys.path.insert(0, str(Path(__file__).parent / "helpers"))
+
+from mutations import Mutation, drawn, equivalents, mutations_of, stale
+
+ROOT = Path(__file__).parent.parent
+WORKERS = 2
 SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds, and times what they take without it
 DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
@@ -56,131 +55,35 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
 }
 SLOW = "ships few_digits killed two_processes script same_command ten_times picture collinear 1000000 recomputing "
 SLOW += "large_angles loses_every thirty_digits effective_gravity every_transit"
-SWAPPED: dict[type, type] = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq}
-SWAPPED |= {ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}
-SWAPPED |= {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.And: ast.Or, ast.Or: ast.And}
 
 
 class Mutant(NamedTuple):
-    file: str
-    number: int
-    line: str
-    change: str  # before -> after
-    index: int  # among those of its file
+    mutation: Mutation
     tests: str
 
-    def __str__(self) -> str:
-        return f"{self.file}:{self.number}: {self.line}   [{self.change}]"
 
-    @property
-    def key(self) -> tuple[str, str, str]:
-        """What an entry of the table of equivalents names; the number of a line may change."""
-        return self.file, self.line, self.change
-
-    @property
-    def source(self) -> str:
-        """The whole file with the change, written out when asked for: that takes far longer than the change."""
-        tree = ast.parse((ROOT / self.file).read_text())
-        next(islice(changes(tree), self.index, None))
-        return ast.unparse(tree)
-
-
-def others(node: Any) -> Iterator[Any]:
-    """Yield what may stand in a node's place."""
-    match node:
-        case ast.Compare():
-            for i, one in enumerate(node.ops):
-                yield _with(node, ops=[*node.ops[:i], SWAPPED[type(one)](), *node.ops[i + 1 :]])
-        case ast.BinOp() | ast.BoolOp() | ast.AugAssign() if type(node.op) in SWAPPED:
-            yield _with(node, op=SWAPPED[type(node.op)]())
-        case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
-            yield from (ast.Constant(node.value * factor or factor) for factor in (2, 100))
-        case ast.UnaryOp(op=ast.Not()):
-            yield node.operand
-        case ast.If() | ast.IfExp() if not isinstance(node.test, ast.UnaryOp):
-            yield _with(node, test=ast.UnaryOp(ast.Not(), node.test))
-        case ast.Return() | ast.Expr(value=ast.Yield() | ast.YieldFrom()):
-            yield ast.Pass()
-        case ast.Call(func=ast.Name(id="min" | "max" as name)):
-            yield _with(node, func=ast.Name("max" if name == "min" else "min"))
-
-
-def _with(node: Any, **fields: Any) -> Any:
-    changed = copy.copy(node)
-    vars(changed).update(fields)
-    return changed
-
-
-def places(node: Any) -> Iterator[tuple[Any, str, int | None]]:
-    """Yield where another node may be put, as parent, field and index; not in annotations and texts for people."""
-    spared = isinstance(node, ast.JoinedStr) or getattr(node, "name", "") in ("__repr__", "__str__")
-    spared = spared or "TYPE_CHECKING" in ast.unparse(getattr(node, "test", ast.Pass()))
-    for field, value in () if spared else ast.iter_fields(node):
-        for i, child in enumerate(value if isinstance(value, list) else [value]):
-            if isinstance(child, ast.AST) and field not in ("annotation", "returns"):
-                yield node, field, i if isinstance(value, list) else None
-                yield from places(child)
-
-
-def changes(tree: ast.Module) -> Iterator[tuple[Any, Any]]:
-    """Yield each node that may be changed and what stands in its place, which it does until the next is asked for."""
-    for parent, field, i in places(tree):
-        old = getattr(parent, field)
-        node = old if i is None else old[i]
-        for new in others(node):
-            setattr(parent, field, new if i is None else [*old[:i], new, *old[i + 1 :]])
-            yield node, new
-            setattr(parent, field, old)
-
-
-def mutants(file: str, tests: str) -> Iterator[Mutant]:
-    """Yield every mutant of a file."""
-    source = (ROOT / file).read_text()
-    lines = source.splitlines()
-    for index, (node, new) in enumerate(changes(ast.parse(source))):
-        before, after = (ast.unparse(part).partition("\n")[0] for part in (node, new))
-        yield Mutant(file, node.lineno, lines[node.lineno - 1].strip(), f"{before} -> {after}", index, tests)
-
-
-def every_mutant() -> Iterator[list[Mutant]]:
-    """Yield all mutants of each file of `TESTS`."""
+def tested_files() -> dict[str, str]:
+    """Return the files of `TESTS`, each with its tests."""
+    found = {}
     for files, tests in TESTS.items():
         folder, _, names = files.partition(": ")
-        for name in names.split():
-            yield list(mutants(f"{folder}/{name}.py", tests))
+        found |= {f"{folder}/{name}.py": tests for name in names.split()}
+    return found
 
 
-def equivalents() -> list[dict[str, str]]:
-    """Return the entries of the table of equivalents."""
-    return list(tomllib.loads(EQUIVALENTS.read_text())["mutant"])
-
-
-def stale(entries: list[dict[str, str]], files: list[list[Mutant]]) -> Iterator[str]:
-    """Yield what is wrong with the table: each entry has a reason, and is exactly one mutant of today's source."""
-    found = Counter(mutant.key for every in files for mutant in every)
-    for entry in entries:
-        key = entry["file"], entry["line"], entry["change"]
-        if found[key] != 1:
-            yield f"{EQUIVALENTS.name}: {found[key]} mutants of today's source are {': '.join(key[:2])}   [{key[2]}]"
-        if not entry["why"].strip():
-            yield f"{EQUIVALENTS.name}: no reason for {': '.join(key[:2])}   [{key[2]}]"
-        found[key] = min(found[key], 0)  # an entry that stands there twice
-
-
-def drawn(count: int, seed: int, module: str) -> tuple[list[Mutant], int]:
+def chosen_mutants(count: int, seed: int, module: str) -> tuple[list[Mutant], int]:
     """Draw mutants, as many from each file as far as possible; return also how many equivalents were left out."""
-    draw, found, left_out = random.Random(seed), [], 0
-    entries, files = equivalents(), list(every_mutant())
-    if problems := list(stale(entries, files)):
-        raise SystemExit("\n".join(problems))
-    known = {(entry["file"], entry["line"], entry["change"]) for entry in entries}
-    for every in files:
-        telling = [mutant for mutant in every if mutant.key not in known]
-        draw.shuffle(telling)
-        chosen = [(i, draw.random(), mutant) for i, mutant in enumerate(telling) if module in mutant.file]
-        left_out += len(every) - len(telling) if chosen else 0
-        found += chosen
-    return [mutant for _, _, mutant in sorted(found)[:count]], left_out
+    ranked = list[tuple[int, Mutant]]()
+    left_out = 0
+    for file, tests in tested_files().items():
+        if module not in file:
+            continue
+        every = mutations_of(file)
+        telling = [mutation for mutation in every if str(mutation) not in equivalents()]
+        left_out += len(every) - len(telling)
+        ranked += [(rank, Mutant(mutation, tests)) for rank, mutation in enumerate(drawn(telling, seed))]
+    ranked.sort(key=lambda pair: pair[0])
+    return [mutant for _, mutant in ranked[:count]], left_out
 
 
 def status_of(tests: str, folder: Path, most: int, output: int | None = subprocess.DEVNULL) -> int:
@@ -203,9 +106,9 @@ def cpu_of(tests: str, folder: Path) -> int:
 
 def outcome(folder: Path, mutant: Mutant, most: int) -> str:
     """Return killed, survived or timeout for a mutant in a copy of the project."""
-    file = folder / mutant.file
+    file = folder / mutant.mutation.file
     good = file.read_bytes()
-    file.write_text(mutant.source)
+    file.write_text(mutant.mutation.source())
     status = status_of(mutant.tests, folder, most)
     file.write_bytes(good)
     return "survived" if status == 0 else "killed" if 0 < status < 128 else "timeout"
@@ -217,7 +120,9 @@ def main() -> None:
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--module", default="", help="part of the paths to choose")
     chosen = options.parse_args()
-    every, left_out = drawn(chosen.count, chosen.seed, chosen.module)
+    if problems := stale():
+        raise SystemExit("\n".join(problems))
+    every, left_out = chosen_mutants(chosen.count, chosen.seed, chosen.module)
     copies, found = Queue[Path](), Counter[tuple[str, str]]()
 
     def run(mutant: Mutant) -> str:
@@ -227,7 +132,7 @@ def main() -> None:
         finally:
             copies.put(folder)
         if what != "killed":
-            print(f"{what:9} {mutant}", flush=True)
+            print(f"{what:9} {mutant.mutation}", flush=True)
         return what
 
     with tempfile.TemporaryDirectory() as place, ThreadPoolExecutor(WORKERS) as pool:
@@ -235,7 +140,7 @@ def main() -> None:
             copies.put(Path(shutil.copytree(ROOT, f"{place}/{i}", ignore=shutil.ignore_patterns(".*"))))
         cpu_s = {tests: cpu_of(tests, Path(place, "0")) for tests in dict.fromkeys(mutant.tests for mutant in every)}
         for mutant, what in zip(every, pool.map(run, every), strict=True):
-            found[mutant.file, what] += 1
+            found[mutant.mutation.file, what] += 1
     for file in sorted({file for file, _ in found}):
         print(f"{file:45}", *(f"{found[file, what]:3} {what}" for what in ("killed", "timeout", "survived")))
     survived = sum(found[file, what] for file, what in found if what == "survived")
