@@ -2,19 +2,22 @@
 
 from fractions import Fraction
 from random import Random
+from types import SimpleNamespace
 
 import derivative_truths
 import numpy as np
+import pytest
 from boxes import SECTIONS, drawn, outside, truth, widened
 from derivative_truths import cross
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
-from flint import arb
+from flint import arb, fmpq
 
 import reference.enclosure.derivatives
 from reference.enclosure.approximant import pair
 from reference.enclosure.bound import Piece, SceneBalls
 from reference.enclosure.prove import until
+from reference.enclosure.shapes import Sizes
 from reference.numbers.taylor_step import EARTH, TaylorStep
 
 BITS, UNIT = 96, 1 << 96
@@ -42,6 +45,47 @@ def defects_hold(module):
         d2, jump, actual, jumped = made_up(module, a, b, omega, off, drag, more, rng)
         assert actual <= d2 * SLACK, (kind, actual, d2)
         assert jumped <= jump * SLACK, (kind, jumped, jump)
+
+
+def growth_holds(module):
+    """Lemma 11.4 at made-up numbers: a radius is at least what its own rate makes of it, or it is refused."""
+    rng, accepted = np.random.default_rng(4), 0
+    for _ in range(400):
+        eta, jump, d1, d2, tau, speed, c, drag, omega, below, above = rng.uniform(size=11) * rng.choice([0, 1], size=11)
+        w, span, p, rate = rng.uniform(0.1, 2, size=4) * (1, 0.2, 1, rng.choice([0, 1]))
+        eta += 0.1
+        names = ["w", "speed", "c_size", "drag_size", "omega_size", "below", "above"]
+        sizes = map(arb, map(float, (w, speed, c, drag, omega, below, above - 0.5)))
+        k = SimpleNamespace(**dict(zip(names, sizes, strict=True)))
+        d = Sizes(*(arb(float(x)) for x in (d1, d2, p, rate, tau, 0)))
+        piece = SimpleNamespace(k=k, step=SimpleNamespace(low=Fraction(0), high=Fraction(span)))
+        start = eta + jump + span * ((c + rate**2) * tau / (2 * w) + d2 / w + d1)
+        least = start
+        for _ in range(200):
+            curved = max(below, above - 0.5 + (speed + (w + rate) * least) ** 2)
+            growth = curved + (c + rate**2) * least + drag * omega * p
+            least = min(start * np.exp(min(span * growth / (2 * w), 50)), 1e9)
+        bound = SimpleNamespace(eta=arb(float(eta)))
+        try:
+            tube = module.BoxRadius.grown(bound, piece, d, arb(float(jump))).tube
+        except ArithmeticError:
+            continue
+        accepted += 1
+        assert least <= float(bound.eta) * SLACK, "the radius"
+        fastest = (w + rate) * least + (rate + omega) * least + d1
+        assert fastest <= float(tube.u) * SLACK, "what follows from it"
+    assert accepted > 100
+
+
+def parts_hold(module):
+    """Parts of a step cover it, from one time to another, and are short."""
+    for begin, end in ((0, 0), (0, Fraction(1, 3)), (Fraction(1, 5), 2), (-1, Fraction(1, 7)), (1, 3)):
+        piece = SimpleNamespace(step=SimpleNamespace(centre=Fraction(1), h=Fraction(2)))
+        parts = module.spread(piece, Fraction(begin), Fraction(end))
+        for k in range(101):
+            s = (begin + (end - begin) * Fraction(k, 100) - 1) / 2
+            assert any(part.contains(fmpq(s.numerator, s.denominator)) for part in parts)
+        assert all(part.rad() < 0.06 for part in parts)
 
 
 def unit(rng):
@@ -98,6 +142,7 @@ SHORT_RUNS = {  # close to equality: in small steps, and early
     "nearly upright": ({"length": "1", "angles": ("170", "30", "0", "0")}, {"angle": "1e-9"}, 2),
     "narrow": ({"rotation_rate": "0.001", "latitude": "20", "altitude": "1000"}, {"length": "1e-9"}, 9),
     "narrow, effective": ({"rotation_rate": "0.001", "gravity_is": "effective"}, {"length": "1e-9"}, 9),
+    "wide": derivative_truths.WIDE,
     "all of it": (
         {"rotation_rate": "0.001", "y": "0", "x": "3"},
         {"length": "0.5", "gravity": "0.05", "latitude": "0.1", "x": "0.001", "vx": "0.001"},
@@ -105,7 +150,7 @@ SHORT_RUNS = {  # close to equality: in small steps, and early
     ),
 }
 # these find every fault that is tried in every run and that made-up polynomials do not; test_box.py follows more boxes
-IN_EVERY_RUN = ("gravity", "rate", "drag", "nearly upright", "narrow")
+IN_EVERY_RUN = ("wide", "gravity", "rate", "drag", "nearly upright", "narrow")
 TRUTHS = {}
 
 
@@ -117,8 +162,12 @@ def runs_hold(module, names=SHORT_RUNS):
         times = [Fraction(end * k, 40) for k in range(41)]
         windows = module.Windows(box, BITS + 64, times, True, SECTIONS)
         chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), BITS, 24).chain(Fraction(1, 16)))
+        covered = []
+        windows.course.followers.append(SimpleNamespace(advance=covered.append))
         for step in until(chain, windows.course.times[-1]):
             windows.course.advance(step)
+        with pytest.raises(ArithmeticError, match="course alone"):
+            windows.advance(covered[-1])
         proved = windows.finish()
         assert "narrow" not in name or float(windows.course.bound.eta) < 1e-10
         if name not in TRUTHS:
@@ -130,10 +179,12 @@ def runs_hold(module, names=SHORT_RUNS):
 
 def chain_rule_holds(module, names=derivative_truths.RUNS):
     """What derivatives are made of, by derivatives as they are."""
-    derivative_truths.runs_hold(reference.enclosure.derivatives, names, ("box",), module.Windows)
+    derivative_truths.runs_hold(reference.enclosure.derivatives, names, ("box", "point"), module.Windows)
 
 
 def all_hold(module, long):
     defects_hold(module)
+    growth_holds(module)
+    parts_hold(module)
     runs_hold(module, SHORT_RUNS if long else IN_EVERY_RUN)
     chain_rule_holds(module, derivative_truths.RUNS if long else derivative_truths.IN_EVERY_RUN)

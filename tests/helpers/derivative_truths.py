@@ -15,7 +15,7 @@ from reference.enclosure.approximant import pair
 from reference.enclosure.bound import SceneBalls
 from reference.enclosure.box import Windows
 from reference.enclosure.prove import until
-from reference.enclosure.shapes import Box, Covered, Sizes, Tube
+from reference.enclosure.shapes import Box, Covered, Interval, Sizes, Tube
 from reference.enclosure.tangents import TangentSource, scales_of
 from reference.numbers.columns import GRID
 
@@ -127,6 +127,8 @@ def sources_hold(module):
             assert float(rate) >= least - 1e-9
 
 
+# output times that are spread over several steps
+WIDE = ({"rotation_rate": "0", "x": "0.01", "y": "0.003"}, {"length": "5"}, 20)
 RUNS = {  # close to equality, or far from it with derivatives that are exact
     "lean": ({"rotation_rate": "0.001", "x": "0", "y": "0"}, {"latitude": "0.01", "altitude": "1000"}, 9),
     "release": ({"x": "1", "y": "2", "vx": "0.1"}, {"x": "0.001", "vy": "0.001"}, 9),
@@ -140,10 +142,11 @@ RUNS = {  # close to equality, or far from it with derivatives that are exact
     "late": ({"rotation_rate": "0", "x": "0.01", "y": "0.003"}, {"length": "1.5"}, 800),
     # a transit soon after the release, which differs much within the box
     "soon": ({"x": "1", "y": "0.1", "vx": "0.02"}, {"x": "0.3", "vx": "1e-6", "length": "0.001"}, 36),
+    "wide": WIDE,
     "tiny": ({"x": "0.3", "y": "0.4"}, {"x": "1e-25"}, 9),
 }
-IN_EVERY_RUN = ("angles", "damped")  # test_derivatives.py follows more boxes
-KINDS = ("box", "point", "poor", "poor box", "coarse")
+IN_EVERY_RUN = ("angles", "damped", "wide")  # test_derivatives.py follows more boxes
+KINDS = ("box", "point", "poor", "poor box", "jumping", "coarse")
 COARSE = 40  # bits of steps that are farther from the motion than the box is wide
 TRUTHS = {}
 
@@ -156,6 +159,18 @@ class Poor:
 
     def propose(self, step):
         return self.nothing
+
+
+class Jumping:
+    """Proposals that do not join: every other one is larger by a thousandth."""
+
+    def __init__(self, balls, ways):
+        self.source, self.larger = TangentSource(balls, ways), False
+
+    def propose(self, step):
+        self.larger = not self.larger
+        factor = 1001 if self.larger else 1000
+        return [([[c * factor // 1000 for c in row] for row in rows], bits) for rows, bits in self.source.propose(step)]
 
 
 ROUNDED = Fraction(1, 10**24)  # a difference of two runs with forty digits, over 2e-12
@@ -195,7 +210,7 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
         times = [Fraction(end * k, 12) for k in range(13)]
         runs, slopes = known(name, box, times)
         for kind in kinds:
-            whole, poor = kind not in ("point", "poor"), kind.startswith("poor")
+            whole, poor = kind not in ("point", "poor", "jumping"), kind.startswith("poor")
             if (not whole and name == "late") or (kind == "coarse" and name != "tiny"):
                 continue
             halves = {key: half for key, half in inputs_of(box).items() if key in slopes and (half or not whole)}
@@ -206,10 +221,14 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             windows = windows_of(here, BITS + 64, times[:rows], True, SECTIONS)
             follower = module.Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             ways = follower.bound.ways
-            source = Poor(ways) if poor else TangentSource(windows.balls, ways)
+            source = Poor(ways) if poor else (Jumping if kind == "jumping" else TangentSource)(windows.balls, ways)
             chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), bits, 24).chain(Fraction(1, 16)))
+            covered = []
+            windows.course.followers.append(SimpleNamespace(advance=covered.append))
             for step in until(chain, windows.course.times[-1]):
                 windows.course.advance(step, source.propose(step))
+            with pytest.raises(ArithmeticError, match="course alone"):
+                follower.advance(covered[-1])
             found = follower.finish()
             for run in runs[rows] if whole else ():
                 assert outside(found.proved, run) == [], (name, kind)
@@ -259,7 +278,43 @@ def widths_hold(module):
         assert refused, widths
 
 
+def intervals_hold(module):
+    """What follows for all inputs is near the scene's own number, and in the wide interval."""
+    ways, ends = [SimpleNamespace(half=arb(0.5), scale=arb(4)), SimpleNamespace(half=arb(0.25), scale=arb(2))], (1, 2)
+    own, derivatives = Interval(*map(Fraction, ends)), [arb(2), arb(-3)]
+    for wide, found in (((-90, 90), (-4.5, 7.5)), ((0, 90), (0, 7.5)), ((-90, 3), (-4.5, 3))):
+        got = module.within(Interval(*map(Fraction, wide)), own, ways, derivatives)
+        assert (got.low, got.high) == found
+    wide = Interval(Fraction(-90), Fraction(90))
+    assert module.within(wide, own, ways, [arb(2), arb("nan")]) == wide
+    with pytest.raises(ArithmeticError, match="contradict"):
+        module.within(Interval(Fraction(8), Fraction(9)), own, ways, derivatives)
+
+
+def own_zeros_hold(module):
+    """The scene's own zero is one that is alone in the interval, and single."""
+
+    def zero(low, high, parity="one"):
+        return SimpleNamespace(t=Interval(Fraction(low), Fraction(high)), parity=parity)
+
+    own = [zero(0, 1), zero(2, 3), zero(4, 5, "odd"), zero(6, 7), zero(8, 9)]
+    watched = SimpleNamespace(own=SimpleNamespace(found=own))
+    for low, high, n in (
+        (1.5, 3.5, 1),
+        (2.5, 3.5, 1),
+        (1.5, 2.5, 1),
+        (2.25, 2.75, 1),
+        (3.5, 5.5, None),
+        (1.5, 7, None),
+    ):
+        assert module.Watched.centre(watched, zero(low, high)) is (None if n is None else own[n])
+    for low, high in ((3.25, 3.75), (5.5, 9), (0, 2), (9.5, 10)):
+        assert module.Watched.centre(watched, zero(low, high)) is None
+
+
 def all_hold(module, long):
+    intervals_hold(module)
+    own_zeros_hold(module)
     widths_hold(module)
     radius_holds(module)
     residuals_hold(module)

@@ -59,8 +59,10 @@ def drop_factor(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
     match node:
         case ast.BinOp(left, ast.Mult() | ast.Div() | ast.FloorDiv() | ast.Pow(), right):
             yield _text(right), left
-            if not isinstance(node.op, ast.Pow) and not _is_product(left):
+            if isinstance(node.op, ast.Mult) and not _is_product(left):
                 yield _text(left), right
+            elif isinstance(node.op, ast.Div) and not _is_product(left):
+                yield _text(left), right if _text(left) == "1" else _with(node, left=ast.Constant(1))
         case ast.Call(ast.Name(name), [factor, vector]) if name in PRODUCTS:
             yield _text(factor), vector
 
@@ -70,7 +72,7 @@ def flip_sign(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
     match node:
         case ast.BinOp(op=ast.Add() | ast.Sub()):
             yield _text(node.right), _with(node, op=ast.Sub() if isinstance(node.op, ast.Add) else ast.Add())
-        case ast.UnaryOp(ast.USub(), operand) if not _is_product(parent):
+        case ast.UnaryOp(ast.USub(), operand) if not (isinstance(parent, ast.Call) and _is_product(parent)):
             yield _text(node), operand
         case ast.Constant(1) if isinstance(parent, ast.Call) and node.value is not True:
             yield _text(parent), ast.UnaryOp(ast.USub(), node)
@@ -96,6 +98,10 @@ def drop_alternative(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacem
         case ast.Call(ast.Attribute(value, name), [argument], []) if name in LATTICE:
             yield _text(argument), value
             yield _text(value), argument
+        case ast.Call(ast.Name("reduce"), [_, every]):
+            yield f"all but the first of {_text(every)}", ast.Subscript(every, ast.Constant(0), ast.Load())
+        case ast.Call(ast.Attribute(_, "get"), [_, default]):
+            yield _text(node), default
 
 
 def drop_element(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
@@ -113,7 +119,7 @@ def swap_neighbours(node: ast.AST, parent: ast.AST | None) -> Iterator[Replaceme
             return
         case ast.Call(_, [_, _] as every):
             field = "args"
-        case ast.Tuple(every, ast.Load()) | ast.List(every, ast.Load()) if len(every) < 5:
+        case ast.Tuple(every, ast.Load()) | ast.List(every, ast.Load()) if len(every) < 12:
             field = "elts"
         case _:
             return
@@ -200,11 +206,24 @@ def drop_statement(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacemen
             yield _text(node), ast.Pass()
 
 
+EXCHANGED = {  # by hand: something of the same kind is taken of another object
+    "ball(wide['rotation_rate'])": "self.own.omega[2] * self.pace",
+    "twin.length": "covered.piece.balls.length",
+    "twin.turned": "covered.piece.balls.turned",
+}
+
+
+def exchange_object(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
+    """Take what belongs to the scene, or to the box, in place of what belongs to a pendulum of the box."""
+    if isinstance(node, ast.Call | ast.Attribute) and (other := EXCHANGED.get(_text(node))):
+        yield f"{_text(node)} is {other}", ast.parse(other, mode="eval").body
+
+
 OPERATORS: dict[str, Operator] = {
     operator.__name__.replace("_", " "): operator
     for operator in (
         drop_term, drop_factor, flip_sign, drop_call, drop_alternative, drop_element, swap_neighbours, exchange_name,
-        next_index, opposite, boundary, drop_condition, always_or_never, change_number, drop_statement,
+        exchange_object, next_index, opposite, boundary, drop_condition, always_or_never, change_number, drop_statement,
     )
 }  # fmt: skip
 

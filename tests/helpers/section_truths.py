@@ -189,17 +189,19 @@ def on_sphere(angle, size=1.0):
 
 
 def apses_hold(module):
-    """Lemma 13.4 where polynomials miss r, r', r'' at s = 0 by e, f, g: one term of it at a time."""
+    """Lemma 13.4 where polynomials miss r, r', r'' at s = 0 by e, f, g: one term of it at a time, and two."""
     s, slow, tiny = Polynomial([0.0, 1.0]), 0.01, 1e-3
     down, tilted = (0.0, -3.0), (1.5, -2.0)
     cases = [  # b, the true angle, the polynomials
         (tilted, 0 * s, on_sphere(-tiny * s)),
         (down, slow * s, on_sphere(slow * s - tiny)),
-        (down, 0 * s, on_sphere(0 * s, 1 + tiny * s)),
+        (down, 0 * s, on_sphere(0 * s, 1 + tiny * (1 + s))),
         (tilted, 0 * s, on_sphere(-tiny * s**2)),
         (down, slow * s**2, on_sphere(slow * s**2 - tiny)),
+        (down, tiny * (1 + s), on_sphere(0 * s)),
+        (down, tiny * (1 + 3 * s / 2), on_sphere(tiny * s / 2)),
         (down, slow * s, on_sphere((slow - tiny) * s)),
-        (down, 0 * s, on_sphere(0 * s, 1 + tiny * s**2)),
+        (down, 0 * s, on_sphere(0 * s, 1 + tiny * (1 + s**2))),
     ]
     balls, unit = SceneBalls(scene(), BITS + 64), 1 << BITS
     for b, angle, made_up in cases:
@@ -240,17 +242,19 @@ def passages_hold(module, names=CASES):
         inputs = scene(t_end=str(end), **changes)
         balls = SceneBalls(inputs, BITS + 64)
         course = Course(balls, [Fraction(0), Fraction(end)], False, True)
-        sections = module.Sections(course, words)
+        both = [module.Sections(course, words, kind) for kind in (module.Form, module.Apsis)]
         for step in until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(end)):
             course.advance(step)
-        made = sections.finish(course.finish())
-        assert tuple(made.passages) == words
+        proved = course.finish()
         with mp.workprec(200):
             if name not in TRUTHS:
                 times = [Fraction(end * k, 100) for k in range(1, 101)]
                 TRUTHS[name] = [[mp.mpf(x.numerator) / x.denominator for x in row] for row in truth(inputs, times, 200)]
-            for word in words:
-                check(inputs, word, made.passages[word], TRUTHS[name], end, name)
+            for sections in both:
+                made = sections.finish(proved)
+                assert tuple(made.passages) == words
+                for word in words:
+                    check(inputs, word, made.passages[word], TRUTHS[name], end, name)
 
 
 def check(inputs, word, zeros, states, end, name):
@@ -352,7 +356,14 @@ def courses_hold(module):
     assert mine.finish(proved) in module.FINISHED
 
 
+def fast_rotation_is_refused(module):
+    """A gate goes through the rest position, so there has to be one."""
+    with pytest.raises(ArithmeticError, match="no rest position"):
+        module.form(SceneBalls(scene(rotation_rate="0.5", equatorial_radius="5"), BITS), "gate 30")
+
+
 def all_hold(module, long):
+    fast_rotation_is_refused(module)
     forms_hold(module)
     releases_hold(module)
     wide_forms_hold(module)
