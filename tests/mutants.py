@@ -36,7 +36,17 @@ NUMBERS, FUNCTION = "tests/reference/numbers/test_", f"{DATASET}function.py"
 VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
 TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
 PASSAGES = "tests/reference/engines/test_passages.py"
+ENCLOSURE = "tests/reference/enclosure/test_"
+FORMULAS = f"{ENCLOSURE}primitives.py {ENCLOSURE}identities.py {ENCLOSURE}formulas.py"
+HOLDS = f"{ENCLOSURE}mutations.py::test_the_module_as_it_is_passes_every_check"  # of that very module
 TESTS = {  # files by folder, and what tests them, the quick ones first
+    "reference/enclosure: sections": f"{HOLDS}[sections]",
+    "reference/enclosure: box": f"{HOLDS}[box]",
+    "reference/enclosure: derivatives": f"{HOLDS}[derivatives]",
+    "reference/enclosure: balls bound six_columns": FORMULAS,
+    "reference/enclosure: enclosed_transits": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
+    "reference/enclosure: function": f"{ENCLOSURE}function.py",
+    "reference/enclosure: printed printed_box": f"{ENCLOSURE}printed.py",
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
     "reference/dataset/checks: scene_check": f"{LIMITS} {TIGHT} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
     "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION} {SOLVER}sections.py",

@@ -354,21 +354,29 @@ def _is_spared(node: Any) -> bool:
 # ------------------------------------------------------------------------------------------------ choosing, loading
 
 
-def _entries() -> Iterator[tuple[str, str]]:
-    for entry in tomllib.loads(EQUIVALENTS.read_text(encoding="utf-8"))["equivalent"]:
-        for mutation in entry["mutations"]:
-            yield mutation, entry["why"]
+def _entries(*kinds: str) -> Iterator[tuple[str, str]]:
+    table = tomllib.loads(EQUIVALENTS.read_text(encoding="utf-8"))
+    for kind in kinds:
+        for entry in table[kind]:
+            for mutation in entry["mutations"]:
+                yield mutation, entry["why"]
 
 
 @cache
 def equivalents() -> dict[str, str]:
     """Return the mutations that no test could tell from the source, each with a reason."""
-    return dict(_entries())
+    return dict(_entries("equivalent"))
+
+
+@cache
+def unnoticed() -> dict[str, str]:
+    """Return the mutations of trusted code that its own checks do not notice, and what they lack."""
+    return dict(_entries("unnoticed"))
 
 
 def stale(entries: Iterable[tuple[str, str]] | None = None) -> list[str]:
-    """Return what is wrong with the table of equivalents: each has a reason, and is a mutation of today's source."""
-    named = list(_entries() if entries is None else entries)
+    """Return what is wrong with the tables: each entry has a reason, and is a mutation of today's source."""
+    named = list(_entries("equivalent", "unnoticed") if entries is None else entries)
     files = {mutation.partition(" ")[0] for mutation, _ in named}
     today = {str(mutation) for file in files if (ROOT / file).is_file() for mutation in mutations_of(file)}
     often = Counter(mutation for mutation, _ in named)

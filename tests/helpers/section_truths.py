@@ -64,7 +64,7 @@ FORMS = (
 
 
 def forms_hold(module):
-    """Lemmas 13.1 and 13.2 at a made-up motion that uses up one of the three bounds of its tube."""
+    """Lemmas 13.1 and 13.2 at a made-up motion that uses up one of the three bounds of its tube, none or all."""
     unit, made_up = 1 << BITS, ([1, 2, 3], [3, -1, 2], [-2, 4, 1], [0])
     rows = tuple([x * unit // 8 for x in row] for row in made_up)
     motions = {
@@ -75,8 +75,8 @@ def forms_hold(module):
         balls = SceneBalls(scene(rotation_rate="0", vx=speed), BITS + 64)
         piece = Piece(balls, TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH))
         axis = next(i for i in range(3) if a[i] or b[i])
-        for part in range(4):
-            sizes = [Fraction(i == part, 100) for i in range(3)]
+        for part in range(5):
+            sizes = [Fraction(part in (i, 4), 100) for i in range(3)]
             with ctx.workprec(BITS + 64):
                 numbers = [ball(Fraction(x)) for x in a], [ball(Fraction(x)) for x in b], ball(Fraction(d))
                 made = module.Form(Covered(piece, Tube(*map(ball, sizes))), *numbers)
@@ -195,13 +195,13 @@ def apses_hold(module):
     cases = [  # b, the true angle, the polynomials
         (tilted, 0 * s, on_sphere(-tiny * s)),
         (down, slow * s, on_sphere(slow * s - tiny)),
-        (down, 0 * s, on_sphere(0 * s, 1 + tiny * (1 + s))),
+        (down, 0 * s, on_sphere(0 * s, 1 + tiny * (3 + s))),
         (tilted, 0 * s, on_sphere(-tiny * s**2)),
         (down, slow * s**2, on_sphere(slow * s**2 - tiny)),
         (down, tiny * (1 + s), on_sphere(0 * s)),
         (down, tiny * (1 + 3 * s / 2), on_sphere(tiny * s / 2)),
         (down, slow * s, on_sphere((slow - tiny) * s)),
-        (down, 0 * s, on_sphere(0 * s, 1 + tiny * (1 + s**2))),
+        (down, 0 * s, on_sphere(0 * s, 1 + tiny * (3 + s**2))),
     ]
     balls, unit = SceneBalls(scene(), BITS + 64), 1 << BITS
     for b, angle, made_up in cases:
@@ -270,7 +270,9 @@ def check(inputs, word, zeros, states, end, name):
     for z, row in zip(ones, at, strict=True):
         state = [mp.mpf(x.numerator) / x.denominator for x in row]
         rates = [*state[3:], *acceleration(pars, state)]
-        late, half = -value(parts, state) / value((*parts[:2], 0), rates), (z.t.high - z.t.low) / 2
+        speed = value((*parts[:2], 0), rates)
+        late, half = -value(parts, state) / speed, (z.t.high - z.t.low) / 2
+        assert mp.sign(speed) == z.direction, (name, word, "direction")
         assert abs(late) <= mp.mpf(half.numerator) / half.denominator, (name, word, "time")
         assert half < Fraction(1, 10**25), (name, word, "useless")
         for x, rate, q in zip(state, rates, (z.x, z.y, z.z, z.vx, z.vy, z.vz), strict=True):
@@ -333,7 +335,7 @@ def courses_hold(module):
     inputs = scene(t_end="5")
     balls = SceneBalls(inputs, BITS + 64)
     steps = list(until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(5)))
-    courses = [Course(balls, [Fraction(0), Fraction(5)], False, True) for _ in range(3)]
+    courses = [Course(balls, [Fraction(0), Fraction(2), Fraction(5)], False, True) for _ in range(3)]
     mine, like, other = (module.Sections(course, ("highest",)) for course in courses)
     covered = []
     courses[0].followers.append(SimpleNamespace(advance=covered.append))
