@@ -13,11 +13,6 @@ def one_in(n: int, cases: Iterable[Any]) -> list[Any]:
     return [case if k % n == 0 else _long(case) for k, case in enumerate(cases)]
 
 
-def first(count: int, cases: Iterable[Any]) -> list[Any]:
-    """Return cases for `parametrize`, with the mark `long` on all but the first ones."""
-    return [case if k < count else _long(case) for k, case in enumerate(cases)]
-
-
 def _long(case: Any) -> Any:
     if isinstance(case, type(pytest.param())):
         return case._replace(marks=[*case.marks, pytest.mark.long])
