@@ -137,7 +137,7 @@ SHORT_RUNS = {  # close to equality: in small steps, and early
     "angle_rate": ({"angles": ("20", "30", "1", "2")}, {"angle_rate": "0.001"}, 1),
     "azimuth_rate": ({"angles": ("20", "30", "1", "2")}, {"azimuth_rate": "0.001"}, 1),
     "large": ({"angles": ("60", "30", "20", "2")}, {"angle": "0.3"}, 3),
-    "gravity and vx": ({"rotation_rate": "0", "x": "0", "y": "0", "vx": "1"}, {"gravity": "0.1"}, 9),
+    "gravity and v": ({"rotation_rate": "0", "x": "0", "y": "0", "vx": "1", "vy": "0.5"}, {"gravity": "0.1"}, 9),
     "gravity and y": ({"rotation_rate": "0", "x": "0", "y": "1", "vx": "0.1"}, {"gravity": "0.1"}, 9),
     "nearly upright": ({"length": "1", "angles": ("170", "30", "0", "0")}, {"angle": "1e-9"}, 2),
     "narrow": ({"rotation_rate": "0.001", "latitude": "20", "altitude": "1000"}, {"length": "1e-9"}, 9),
