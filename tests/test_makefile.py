@@ -23,7 +23,9 @@ def made(folder: Path, target: str, locale: str) -> subprocess.CompletedProcess[
     shutil.copy(ROOT / "Makefile", folder)
     for name in ("requirements.lock", "requirements-test.lock", "requirements-peers.lock", "pyproject.toml"):
         (folder / name).touch()
-    environment = {**os.environ, "LC_ALL": locale, "MAKEFLAGS": ""}
+    # the tests may themselves be run by make, which tells others of its kind so
+    environment = {name: value for name, value in os.environ.items() if "MAKE" not in name and name != "MFLAGS"}
+    environment["LC_ALL"] = locale
     command = ["make", target, f"PYTHON={PYTHON}"]
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
