@@ -220,7 +220,8 @@ def test_ctrl_c_prints_one_sentence_and_what_a_killed_sweep_left_is_removed(tmp_
     both_workers = 4  # with the command itself, and what multiprocessing starts to clear up
     status, err, group = interrupted(words, lambda group, _: members(group) >= both_workers, whole_group=True)
     *notices, line = err.decode().splitlines()
-    assert status == 130 and all(": about " in notice for notice in notices)  # how long it will take, on a slow machine
+    assert status == 130, err.decode()
+    assert all(": about " in notice for notice in notices)  # how long it will take, on a slow machine
     assert line == f"foucault: stopped; what is done is in {out}: `foucault sweep --out {out}` goes on"
     assert gone_within(group, PATIENCE_S)
     assert not any(of_dask("*/dask-scratch-space"))
