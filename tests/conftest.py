@@ -58,6 +58,13 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+@pytest.fixture(autouse=True)
+def interruptible() -> Generator[None]:
+    """Let Ctrl-C end again what a test starts: a command that ended in this process has it ignored."""
+    yield
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 @pytest.fixture
 def size(pytestconfig: pytest.Config) -> Callable[[Any, Any], Any]:
     """Choose how many cases a campaign tries: the first number in every test run, the second with --long."""
