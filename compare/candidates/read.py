@@ -8,8 +8,8 @@
 - foucPend (Mathar, appendix B): no header; t x y z X Y Z φ λ speed separated by white space, of which the first
   four are read; `# P n t f` names a transit.
 
-Of a text that can be read in two ways, nothing is read: an error says what to write. The number of bytes and rows and
-the length of a line are limited. Errors name the line.
+A text that can be read in two ways is refused, with what to write instead. The number of bytes and rows and the length
+of a line are limited. Errors name the line.
 """
 
 from __future__ import annotations
