@@ -41,7 +41,7 @@ LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
-TYPES: set[str] = set(vocabulary["types"])  # that may stand in a line below the header
+TYPES: set[str] = set(vocabulary["types"])  # words that a line of types below the header may hold
 PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
 SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
 NEEDED = ("t", "x", "y")  # columns of a trajectory, of which those of z and of velocities may be missing
@@ -254,7 +254,7 @@ def layout(
         needed: columns that must be among them: `NEEDED`, beside which others are read, or t alone.
         naming: what the user says of the columns, of which the units count here.
         where: the header's name in messages.
-        units: those of a line below or above the header, one for each column; empty where there is none.
+        units: those of a line below or above the header, one for each column, empty for a column without a unit.
 
     Raises:
         InputError: a column is missing or there twice, or its unit is not known.

@@ -212,7 +212,7 @@ class Reading:
         return len(fields) >= self.width and not any(fields[self.width :])
 
     def fits(self, row: str) -> bool:
-        """Return whether every field that is read is a number, or says that there is none."""
+        """Return whether every field that is read is a number, or a mark for a missing one."""
         time, *others = self.fields(row) or [""]
         readable = is_number(time) or is_clock(time) or is_missing(time)
         return self.counts(row) and readable and all(is_number(field) or is_missing(field) for field in others)
@@ -447,7 +447,7 @@ class ColumnReader:
         """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
 
         Raises:
-            InputError: a text is none of a clock, or a unit says that it is none.
+            InputError: a text is not a time of day, or its column has a unit that no time of day has.
         """
         if "t" in reading.layout.factors:
             raise InputError(f"{self.name}: t", texts[0], "a number, as its unit says", "Leave the unit out.")

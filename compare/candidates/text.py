@@ -146,5 +146,5 @@ def plain(number: str) -> str:
 
 
 def padded(fields: Sequence[str]) -> str | None:
-    """Return the first whole number with needless zeros in front; None if there is none."""
+    """Return the first whole number with leading zeros, or None."""
     return next((field for field in fields if PADDED.fullmatch(field)), None)

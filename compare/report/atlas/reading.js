@@ -560,7 +560,7 @@ function readColumns(text, needed, vocabulary, onComment = () => {}) {
       return;
     }
     above.push({ text: line, comment: false, number });
-    if (above.length > vocabulary.MOST) throw new Unreadable(`Line ${number} is no row of numbers, and none is before it.`);
+    if (above.length > vocabulary.MOST) throw new Unreadable(`Line ${number} is not a row of numbers, and no such row comes before it.`);
   });
   if (!rows.length) throw new Unreadable("There are no rows of numbers.");
   const reading = onlyReading(readings, rows, vocabulary);

@@ -226,9 +226,9 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
 
 
 def _may_be_a_clock(case: Case, program: Program) -> bool:
-    """Return whether a clock that is off makes of the scene's own g, length and rate what a program's make.
+    """Return whether a clock of another pace explains the rows as well, with the scene's own g, length and rate.
 
-    A clock too fast by k is a g of k⁻² and a rotation of k⁻¹ at once.
+    A clock that runs fast by a factor k makes g look smaller by k² and the rotation slower by k.
     """
     right = case.right
     pull = program.g / program.length
@@ -236,7 +236,7 @@ def _may_be_a_clock(case: Case, program: Program) -> bool:
         return False
     pace = math.sqrt(pull * right.length / right.g)
     clock = program.changed(g=right.g, length=right.length, rate=right.rate, pace=pace * program.pace)
-    return rms(case.left(clock)) <= RIVAL * max(rms(case.left(program)), case.resolution, case.floor)
+    return rms(case.left(clock)) <= RIVAL * max(rms(case.left(program)), case.floor)
 
 
 def clean_share(case: Case, kind: str) -> float:
