@@ -1,142 +1,159 @@
-"""The lines that people read, word by word, of a score that has them all and of one that has few."""
+"""What people read of a score: the numbers of its JSON document, in order, and nothing that it has not."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
-from types import SimpleNamespace as Made
+import json
+import re
+import shlex
 
 import numpy as np
 import pytest
+from small_scenes import make_scene
 
-from compare.candidates.candidate import Deviation
+from compare import APPROXIMATIONS, judge
 from compare.score.document import document
-from compare.score.errors import Worst
-from compare.score.explanation.case import Explanation, Model
-from compare.score.since import Since
-from compare.score.transit_matching import TransitErrors
-from compare.score.verdict import lines, percent
+from compare.score.verdict import percent
+from reference import load, load_scene, trajectory
 
-WIND = Explanation(causes=(Deviation("wind", "leaves out the wind", 0.25, "input"),), corrected_m=1e-9, allowed_m=5e-7)
-RUN = Made(id="paris", run=Made(t_end="86400"), inputs="binary64")
-ERRORS = Made(
-    max_m=2e-3, rms_m=1e-3, end_m=5e-4, growth_exponent=1.5, amplitude_m=0.5, digits=2.39794, scd=1.04, mescd=-0.04,
-    speed_m_s=0.2, bound_m=3e-30, t=np.array([0.0, 10.0, 3600.0]),
-)  # fmt: skip
-SHIFTED = TransitErrors(
-    errors_s=np.array([0.5, 0.0, -0.25]), conditioned_m=np.array([0.05, 0.0, -0.025]), missed=[1.0, 2.0, 3.0, 4.0],
-    extra=[5.0, 6.0, 7.0], at=np.array([8.0, 16.0, 24.0]), undecided=[42.0],
-)  # fmt: skip
+HEADER = "t (min),x,y,z,vx,vy,vz"
 
 
-def score(**changes):
-    most = {
-        "candidate": Made(name="mine.csv", positions=True, conventions=[Made(text="t is in ms")]),
-        "covered": 1 / 24, "covers": 0.0, "falls_short": False,
-        "verdict": "disagrees", "grade": "disagrees", "scene": RUN, "errors": ERRORS, "at_bound": False,
-        "tolerance_m": 5e-7, "allowed_m": 1e-3, "input_floor_m": 1e-12, "why_inputs": "as asked",
-        "worst": Made(component="y", t=10.0, expected=0.25, got=0.252, difference=0.002),
-        "worst_of_each": {"x": Made(difference=-0.001), "y": Made(difference=0.002), "vx": Made(difference=3e-5)},
-        "swing": Made(largest_turn=math.pi / 180, largest_delay=0.5), "drifts": {"h_m2_s2": 1e-9, "length_m": 2e-9},
-        "transits": SHIFTED, "timing": Made(runs=3, warm=True, cpu_s=1.5, wall_s=2.5),
-        "golden": Made(level="confirmed"), "explanation": WIND, "since": None, "notes": ("late",),
-        "experiments": None,
-    }  # fmt: skip
-    return Made(**most | changes)
+@pytest.fixture(scope="module")
+def golden():
+    return load("paris.binary64")
 
 
-def test_every_line_is_said():
-    assert (
-        "\n".join(lines(score()))
-        == """\
-mine.csv disagrees with paris (3 rows, t = 0 to 3600 of 86400 s: 4.16 %)
-  largest error       0.002 m  (tolerance 5e-07 m; 2e+09 times the input floor of 1e-12 m)
-  rms, at the end     0.001 m, 0.0005 m  (grows like t^1.50)
-  digits              2.4  (largest error over the amplitude 0.5 m)
-  scd, mescd at end   1.0, 0.0  (relative to the truth; to 0.5 m, 0.2 m/s + |truth|)
-  worst               y at t = 10 s  (expected 0.25, got 0.252)
-  worst of each       x 0.001 m, y 0.002 m, vx 3e-05 m/s
-  swing plane, phase  1 degrees, 0.5 s  (fitted)
-  drifts              h by 1e-09 m²/s², |r| - l by 2e-09 m
-  transits            3 matched (2 shifted), 4 missed, 3 extra  (largest error 0.5 s, weighted by |ax|: 0.05 m)
-    missed at         1.000000, 2.000000, 3.000000 … s
-    extra at          5.000000, 6.000000, 7.000000 s
-    undecided at      42.000000 s  (a motion within the tolerance may or may not have them)
-    shifted           8.000000 s by 0.5 s, 24.000000 s by -0.25 s
-  took                1.5 CPU s, 2.5 s  (median of 3 after a warm-up)
-  inputs read as      binary64  (as asked)
-  reference           confirmed  (within 3e-30 m at these times)
-It seems that your program leaves out the wind: 0.25 m
-With this put right, 1e-09 m are left.
-Reading: t is in ms.
-Note: late."""
+@pytest.fixture(scope="module")
+def told(tmp_path_factory, golden):
+    """The lines and the document of a program whose g is wrong, whose transits too, and which goes on after the end."""
+    from typer.testing import CliRunner
+
+    from foucault import commands
+
+    folder = tmp_path_factory.mktemp("told")
+    times = np.arange(0.0, 3901.0, 60.0)
+    rows = trajectory(load_scene("paris", ["site.gravity=9.8068", "inputs=binary64"]), times)
+    table = np.column_stack([times / 60, rows])
+    np.savetxt(folder / "rows.csv", table, delimiter=",", header=HEADER, comments="", fmt="%.17g")
+    right = golden.transits["t"][:430]
+    zeros = np.sort([*np.delete(right, [10, 20, 30, 40]), 100.0, 200.0])
+    np.savetxt(folder / "zeros.csv", zeros, header="t", comments="", fmt="%.17g")
+    words = ["score", "paris", "--run", f"cat {shlex.quote(str(folder / 'rows.csv'))}", "--repeats", "1"]
+    words += ["--transits", str(folder / "zeros.csv"), "--t-end", "3600", "--tolerance", "1e-5"]
+    text, data = (CliRunner().invoke(commands(), [*words, *more]) for more in ([], ["--json"]))
+    assert (text.exit_code, data.exit_code) == (1, 1)
+    return text.stdout.splitlines(), json.loads(data.stdout)
+
+
+def line_of(lines, label):
+    (found,) = [line.strip() for line in lines if line.strip().startswith(label)]
+    return found.removeprefix(label)
+
+
+def numbers(text):
+    return [float(word) for word in re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text)]
+
+
+def test_the_verdict_comes_first_then_the_errors_then_the_reasons(told):
+    lines, _ = told
+    order = [
+        "the program disagrees with paris", "largest error", "rms, at the end", "digits", "worst ", "worst of each",
+        "swing plane, phase", "drifts", "transits", "missed at", "extra at", "took", "inputs read as", "reference",
+        "It seems that your program", "Reading: ", "Note: ",
+    ]  # fmt: skip
+    places = [next(i for i, line in enumerate(lines) if line.strip().startswith(word)) for word in order]
+    assert places == sorted(places) and places[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("label", "keys"),
+    [
+        ("largest error", ["max_error_m", "tolerance_m", "error_over_floor", "input_floor_m"]),
+        ("rms, at the end", ["rms_error_m", "end_error_m"]),
+        ("digits", ["digits", "scale_m"]),
+        ("scd, mescd at end", ["scd", "mescd"]),
+        ("swing plane, phase", ["swing_plane_error_deg", "phase_error_s"]),
+    ],
+)
+def test_the_lines_have_the_numbers_of_the_document(told, label, keys):
+    lines, data = told
+    said = numbers(line_of(lines, label))
+    assert said[: len(keys)] == pytest.approx(
+        [data[key] for key in keys], rel=0.05, abs=0.05 * (label != "largest error")
     )
 
 
-def test_what_a_score_has_not_is_not_said():
-    few = Made(**vars(ERRORS) | {"growth_exponent": None, "scd": None, "t": np.array([60.0])})
-    shorter = score(
-        errors=few, at_bound=True, swing=Made(largest_turn=None, largest_delay=0.5), drifts={}, notes=(),
-        transits=TransitErrors(np.array([]), np.array([]), [], [], np.array([])), explanation=Explanation(),
-        timing=Made(runs=1, warm=False, cpu_s=1.5, wall_s=2.5),
+def test_the_lines_name_the_worst_number_as_the_document_does(told):
+    lines, data = told
+    worst = data["worst"]
+    said = line_of(lines, "worst  ")
+    assert said.strip().startswith(f"{worst['component']} at t = ")
+    assert numbers(said) == [worst["t"], worst["expected"], worst["got"]]
+    assert worst["got"] - worst["expected"] == pytest.approx(worst["difference"], rel=1e-9)
+    each = line_of(lines, "worst of each").split(", ")
+    assert [word.split()[0] for word in each] == list(data["worst_of_each"]) == ["x", "y", "z", "vx", "vy", "vz"]
+    assert [word.split()[-1] for word in each] == ["m"] * 3 + ["m/s"] * 3
+
+
+def test_the_lines_count_transits_as_the_document_does_and_name_three(told):
+    lines, data = told
+    transits = data["transits"]
+    counts = [transits["matched"], transits["missed"], transits["extra"]]
+    assert numbers(line_of(lines, "transits"))[:3] == counts == [426, 12, 2]
+    missed, extra = line_of(lines, "missed at"), line_of(lines, "extra at")
+    assert numbers(missed) == pytest.approx(transits["missed_at"][:3], abs=1e-6) and "…" in missed
+    assert numbers(extra) == pytest.approx(transits["extra_at"], abs=1e-6) and "…" not in extra
+
+
+def test_the_lines_and_the_document_tell_the_cause_the_reading_and_the_note(told):
+    lines, data = told
+    (cause,) = data["causes"]
+    assert cause["id"] == "site.gravity" and cause["value"] == pytest.approx(9.8068, rel=1e-9)
+    assert cause["text"].removeprefix("your program ") in "\n".join(lines)
+    left = line_of(lines, "With this put right, less than")
+    assert data["corrected"]["max_error_m"] < numbers(left)[0] < 1e-6 < data["max_error_m"]
+    assert [f"Reading: {one['text']}." for one in data["conventions"]] == [x for x in lines if x.startswith("Reading")]
+    assert [f"Note: {note}." for note in data["notes"]] == [x for x in lines if x.startswith("Note")]
+    assert "5 rows after t = 3600 s ignored" in data["notes"][0]
+    assert (data["rows"], data["covered_s"]) == (61, [0.0, 3600.0])
+    assert (data["timing"]["runs"], "median of 1 after a warm-up" in line_of(lines, "took")) == (1, True)
+
+
+def test_what_a_score_has_not_is_not_said(golden):
+    row = {"t": golden.t[1:2], "x": golden.x[1:2], "y": golden.y[1:2]}
+    right = judge(row, "paris")
+    lines, data = str(right).splitlines(), document(right)
+    absent = ("transits", "took", "swing plane", "drifts", "No mistake", "Reading", "Note")
+    assert not [line for line in lines if line.strip().startswith(absent)]
+    assert "grows like" not in line_of(lines, "rms, at the end")
+    unknown = (
+        "growth_exponent", "swing_plane_error_deg", "phase_error_s", "h_drift_m2_s2", "length_drift_m", "transits",
+        "model", "corrected", "slip", "diagnosis", "baseline",
     )  # fmt: skip
-    assert (
-        "\n".join(lines(shorter))
-        == """\
-mine.csv disagrees with paris (1 row, t = 60 to 60 of 86400 s: 4.16 %)
-  largest error       0.002 m  (at or below the reference's bound)
-  rms, at the end     0.001 m, 0.0005 m
-  digits              at least 2.4  (the reference's bound over the amplitude 0.5 m)
-  scd, mescd at end   none, 0.0  (relative to the truth; to 0.5 m, 0.2 m/s + |truth|)
-  worst               y at t = 10 s  (expected 0.25, got 0.252)
-  worst of each       x 0.001 m, y 0.002 m, vx 3e-05 m/s
-  transits            0 matched, 0 missed, 0 extra  (largest error 0 s, weighted by |ax|: 0 m)
-  took                1.5 CPU s, 2.5 s  (one run, no warm-up)
-  inputs read as      binary64  (as asked)
-  reference           confirmed  (within 3e-30 m at these times)
-No mistake known to foucault explains the error.
-Reading: t is in ms."""
-    )
-    none = list(lines(score(transits=None, timing=None, input_floor_m=0.0, explanation=None)))
-    assert not any(line.startswith(("  transits", "  took", "No mistake")) for line in none)
-    assert "tolerance 5e-07 m; the inputs are doubles as they stand" in none[1]
-    no_delay = list(lines(score(swing=Made(largest_turn=1.0, largest_delay=None))))
-    assert not any("swing plane" in line for line in no_delay)
+    assert [data[key] for key in unknown] == [None] * len(unknown)
+    assert (data["causes"], data["conventions"], "timing" in data) == ([], [], False)
+
+
+def test_inputs_that_are_doubles_have_no_floor_to_compare_with(tmp_path, monkeypatch):
+    monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
+    site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0", "inverse_flattening": "inf"}
+    scene = make_scene("exact", site=site, release={"x": "0.25", "y": "0.5"}, run={"t_end": "5", "grid_step": "5"})
+    third = np.ones(1, np.longdouble) / 3  # so that it is judged by a dataset
+    score = judge({"t": [5.0], "x": third, "y": third}, scene, explain=False)
+    assert document(score)["error_over_floor"] is None
+    assert "the inputs are doubles as they stand" in line_of(str(score).splitlines(), "largest error")
 
 
 def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
-    model = Explanation(causes=WIND.causes, model=Model("still", "still air", 1e-9, 0.25))
-    said = list(lines(score(explanation=model)))
-    assert "As that model it is exact to 1e-09 m; against the full Lagrangian it is 0.25 m off:" in said
-    assert not any(line.startswith("As that model") for line in lines(score()))
-
-
-def test_the_document_says_what_was_measured_and_null_what_was_not():
-    errors = Made(**vars(ERRORS) | {"mescd": 0.5})
-    measured = {
-        "errors": errors, "problem": {}, "transits": None,
-        "worst": Worst(10.0, "y", 0.25, 0.252, 0.002), "worst_of_each": {"x": Worst(0.0, "x", 1.0, 2.0, 1.0)},
-        "candidate": Made(name="mine.csv", conventions=[Made(id="ms", text="t is in ms")]),
-        "explanation": replace(WIND, model=Model("still", "still air", 1e-9, 0.25)),
-    }  # fmt: skip
-    found = document(score(**measured))
-    picked = ("rows", "covered_s", "error_over_floor", "swing_plane_error_deg", "phase_error_s", "h_drift_m2_s2")
-    assert [found[key] for key in picked] == [3, [0.0, 3600.0], 2e-3 / 1e-12, 1.0, 0.5, 1e-9]
-    assert (found["worst"]["component"], found["worst_of_each"]["x"]["got"]) == ("y", 2.0)
-    assert found["model"] == vars(Model("still", "still air", 1e-9, 0.25))
-    assert (found["corrected"], found["timing"]["runs"]) == ({"max_error_m": 1e-9}, 3)
-    (cause,) = found["causes"]
-    assert cause == {"id": "wind", "text": "your program leaves out the wind", "size_m": 0.25} | cause
-    assert found["conventions"] == [{"id": "ms", "text": "t is in ms"}]
-    none = document(
-        score(
-            **measured | {"explanation": Explanation(), "timing": None}, input_floor_m=0.0, drifts={},
-            swing=Made(largest_turn=None, largest_delay=None), since=Made(text="better", better=True),
-        )
-    )  # fmt: skip
-    unknown = (*picked[2:], "model", "corrected", "slip", "diagnosis", "transits", "length_drift_m")
-    assert [none[key] for key in unknown] == [None] * len(unknown)
-    assert (none["baseline"], none["causes"], "timing" in none) == ({"text": "better", "better": True}, [], False)
+    scene = load_scene("paris", ["run.t_end=600"])
+    t = np.linspace(0, 600, 61)
+    x, y, *_ = APPROXIMATIONS["linear_recentred"].trajectory(scene, t).T
+    score = judge({"t": t, "x": x, "y": y}, scene)
+    model = document(score)["model"]
+    said = numbers(line_of(str(score).splitlines(), "As that model"))
+    assert said == pytest.approx([model["exact_to_m"], model["costs_m"]], rel=0.05)
+    assert model["id"] == "linear_recentred" and model["exact_to_m"] < 1e-9
+    assert model["costs_m"] == pytest.approx(score.errors.max_m, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -145,20 +162,3 @@ def test_the_document_says_what_was_measured_and_null_what_was_not():
 )
 def test_a_share_is_rounded_down_to_three_digits_but_for_rounding_errors(share, said):
     assert percent(share) == said
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({}, "Since v1: no position changed, 1 → 2 m"),
-        ({"changes": ("g came", "h went")}, "Since v1: g came; h went: 1 → 2 m; that explains not all of it"),
-        ({"changes": ("g came",), "gains": ("0.5 m less",), "left_m": 0.25},
-         "Better since v1: g came: 1 → 2 m; that explains all but 0.25 m; 0.5 m less"),
-        ({"changes": ("g came",), "complete": True, "left_m": 0.0}, "Since v1: g came: 1 → 2 m; nothing else"),
-        ({"apart_m": 0.5, "worse": ("x grew", "y too")},
-         "Worse since v1: 1 → 2 m; what lies between them, 0.5 m, is no known mistake; x grew; y too"),
-    ],
-)  # fmt: skip
-def test_what_changed_since_a_baseline_is_said_in_a_line(changes, said):
-    assert Since(**{"name": "v1", "before_m": 1.0, "after_m": 2.0, "apart_m": 0.0} | changes).text == said
-    assert list(lines(score(since=Made(text=said))))[1] == f"{said}."
