@@ -97,6 +97,8 @@ def test_what_became_worse_is_said(foucault, rows):
     assert judged(foucault, rows, "short", rows / "worse.csv")[1]["baseline"]["worse"] == [
         "it ends at t = 9.5 s, and ended at 20 s"
     ]
+    unknown = judged(foucault, rows, "worse", rows / "wrong.csv")[1]["baseline"]["text"]
+    assert "what lies between them, 0.001 m, is no known mistake" in unknown
     lost = ("--transits", rows / "right.csv")
     assert judged(foucault, rows, "wrong", rows / "wrong.csv", *lost)[0] == 0  # the baseline has no transits
 

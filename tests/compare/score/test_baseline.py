@@ -17,7 +17,6 @@ from scipy.integrate import solve_ivp
 
 from compare.candidates.candidate import Candidate
 from compare.score.judge import judge
-from compare.score.since import Since
 from reference import load_scene, trajectory
 
 COMPILER = shutil.which("cc")
@@ -96,17 +95,18 @@ def printed(program: Path, made: Case, options: Options, name: str) -> Candidate
     return Candidate.of(name, times, columns)
 
 
-def compared(made: Case, old: Candidate, new: Candidate, **options: Any) -> Since:
+def compared(made: Case, old: Candidate, new: Candidate, **options: Any) -> Any:
     found = judge(new, made.scene, baseline=old, **options).since
     assert found is not None and found.name == "old"
     return found
 
 
-def check(found: Since, words: set[str], outcome: str) -> None:
+def check(found: Any, words: set[str], outcome: str) -> None:
     """Check that exactly these things are told, and what became of the error."""
     assert len(found.changes) == len(words), found.text
     assert all(any(word in change for change in found.changes) for word in words), found.text
     assert found.complete is bool(words) or words == {STEP} or (found.left_m or 0.0) < 0.1 * found.apart_m, found.text
+    assert ("nothing else" in found.text) is (bool(words) and found.complete), found.text
     assert (bool(found.worse), found.better) == (outcome == WORSE, outcome == BETTER) or not outcome, found.text
 
 

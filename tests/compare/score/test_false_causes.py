@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 from compare.candidates.candidate import Candidate
-from compare.score.explanation.case import Explanation
 from compare.score.judge import judge
 from reference import Scene, load_scene, trajectory
 
@@ -26,7 +26,7 @@ def right_rows(scene: Scene, times: np.ndarray) -> Columns:
     return dict(zip(("x", "y", "z"), trajectory(scene, times).T[:3], strict=True))
 
 
-def explained(scene: Scene, times: np.ndarray, columns: Columns) -> Explanation:
+def explained(scene: Scene, times: np.ndarray, columns: Columns) -> Any:
     found = judge(Candidate.of("mine", times, columns), scene)
     assert not found.agrees and found.explanation is not None
     return found.explanation
