@@ -12,8 +12,6 @@ from pathlib import Path
 
 from places import ROOT
 
-from reference import Scene, load_scene
-
 GIVEN = {
     "l": "{length}", "g": "{gravity}", "lat": "{latitude}", "rate": "{rotation_rate}", "x0": "{x0}", "y0": "{y0}",
     "vx0": "{vx0}", "vy0": "{vy0}", "tend": "{t_end}", "out": "{grid_step}", "h": "0.01",
@@ -72,10 +70,10 @@ MISTAKES = (  # what is told the program after its placeholders, what is true of
 
 @dataclass(frozen=True)
 class Ambiguous:
-    """A program: its language, its scene, its command, and the words that are true of it."""
+    """A program: its language, the options that make its scene of paris, its command, and the words true of it."""
 
     language: str
-    scene: Scene
+    settings: list[str]
     command: str
     true: frozenset[str]
 
@@ -93,9 +91,9 @@ def ambiguous(
         "JavaScript": [node, str(helpers / "mistaken.js")],
     }
     values = [f"{field}={value}" for field, value in zip(FIELDS, PLACES[place], strict=True)]
-    scene = load_scene("paris", [*values, "run.transits=false"])
+    settings = [word for value in (*values, "run.transits=false") for word in ("--set", value)]
     words = [f"{key}={value}" for key, value in (*GIVEN.items(), *mistakes.items())]  # the last of a name counts
-    return Ambiguous(language, scene, " ".join([*map(shlex.quote, runs[language]), *words]), frozenset(true.split()))
+    return Ambiguous(language, settings, " ".join([*map(shlex.quote, runs[language]), *words]), frozenset(true.split()))
 
 
 def words_said(ids: set[str]) -> set[str]:

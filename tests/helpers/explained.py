@@ -16,19 +16,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mistakes import case
+from mistakes import case, told
 from places import ROOT
 from wild_programs import TRUE, read_in, said
-
-from compare.score.explanation.case import Explanation
-from compare.score.explanation.explain import explain
 
 # kernels of OpenBLAS that other processors use: with them sums and factorisations round otherwise
 OTHER_KERNEL = {"x86_64": "Prescott", "aarch64": "ARMV8"}.get(platform.machine(), "Prescott")
 Found = dict[str, dict[str, Any]]
 
 
-def explained(program: Path, word: str) -> tuple[Explanation, set[str]]:
+def explained(program: Path, word: str) -> dict[str, Any]:
     """Return what is said of the rows of a program, and which of these words are wrong."""
     name, _, noise = word.partition("~")
     if name in TRUE:
@@ -43,10 +40,15 @@ def explained(program: Path, word: str) -> tuple[Explanation, set[str]]:
     if noise:
         rng = np.random.default_rng([int(noise), *name.encode()])
         columns = {axis: moved(values, rng) for axis, values in columns.items()}
-    found = explain(times, columns, scene, allowed_m)
-    if name in TRUE:
-        return found, said(found) - TRUE[name]
-    return found, made.wrong(found)
+    found = told(scene, times, columns, allowed_m)
+    explanation = found.explanation
+    causes = set(found.words)
+    if explanation is not None:
+        causes |= {part.id for part in explanation.causes}
+        causes |= {"slip"} if explanation.slip else set()
+        causes |= {explanation.model.id} if explanation.model else set()
+    wrong = said(explanation) - TRUE[name] if name in TRUE else made.wrong(found.words)
+    return {"causes": sorted(causes), "wrong": sorted(wrong)}
 
 
 def moved(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -73,11 +75,5 @@ def result(process: subprocess.Popen[str]) -> Found:
 
 
 if __name__ == "__main__":
-    document: Found = {}
-    for word in sys.argv[2:]:
-        explanation, wrong = explained(Path(sys.argv[1]), word)
-        causes = [part.id for part in (*explanation.conventions, *explanation.causes)]
-        causes += ["slip"] * bool(explanation.slip)
-        causes += [explanation.model.id] if explanation.model else []
-        document[word] = {"causes": sorted(causes), "lines": [*explanation.lines()], "wrong": sorted(wrong)}
+    document: Found = {word: explained(Path(sys.argv[1]), word) for word in sys.argv[2:]}
     print(json.dumps(document))

@@ -1,4 +1,4 @@
-"""Programs with one to three mistakes at values drawn at random, and what an explanation may name of each."""
+"""Programs with one to three mistakes at values drawn at random, what is told of their rows, and what may be."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from small_scenes import make_scene
 
-from compare.score.explanation.case import Explanation
-from reference import Scene
+from compare import Candidate, judge
+from reference import InputError, Scene
 
 SAME = {"effective_gravity": "no_centrifugal", "decimals": "digits", "single_precision": "digits"}
+NO_CLOCK = "the first row"  # in the message that nobody can tell when the release was
 UNTOLD = {"digits", "off_the_sphere", "stretched_cord"}  # said of the file, whatever made it
 FLATTENING = 1 / 298.257223563
 
@@ -74,19 +76,47 @@ class Case:
         """Distance in m that counts as agreement."""
         return 1e-6 * math.hypot(self.arguments["x0"], self.arguments["y0"])
 
-    def wrong(self, found: Explanation) -> set[str]:
+    def told(self, times: np.ndarray, columns: dict[str, np.ndarray]) -> Told:
+        """Return what is told of rows, at the tolerance of the case."""
+        return told(self.scene, times, columns, self.allowed_m)
+
+    def wrong(self, words: set[str]) -> set[str]:
         """Return the words that are said and are not true, programs with the same motion being one."""
         true = self.true | one_word_for_one_motion(self.true)
         if {"vertical_only", "hemisphere"} <= true and self.arguments["reading"] == 2:  # Ω is vertical
             true.add("coriolis_sign")
-        said = one_word_for_one_motion(words_of(found)) - true - UNTOLD
+        said = one_word_for_one_motion(words) - true - UNTOLD
         steps = {"integrator_loose"} if any(word.startswith("integrator") for word in self.true) else set()
         return said - steps
 
 
-def words_of(found: Explanation) -> set[str]:
-    """Return the words of what is said for certain."""
-    return {part.id for part in (*found.known, *found.conventions)}
+@dataclass(frozen=True)
+class Told:
+    """What is told of a file: words of what is certain, how it is explained, and whether nothing is left of its error.
+
+    Attributes:
+        words: ids of causes and conventions.
+        explanation: as in its score; None if it agrees, or could not be judged.
+        agrees: whether it does.
+    """
+
+    words: set[str]
+    explanation: Any
+    agrees: bool
+
+
+def told(scene: Scene, times: np.ndarray, columns: dict[str, np.ndarray], allowed_m: float) -> Told:
+    """Return what is told of rows."""
+    try:
+        score = judge(Candidate.of("mine", times, columns), scene, tolerance=allowed_m)
+    except InputError as error:
+        assert NO_CLOCK in str(error)
+        return Told({"clock_offset"}, None, False)
+    found = score.explanation
+    words = {part.id for part in (*found.known, *found.conventions)} if found else set()
+    if any(part.id == "clock_start" for part in score.candidate.conventions):
+        words.add("clock_offset")
+    return Told(words, found, score.agrees)
 
 
 def one_word_for_one_motion(words: set[str]) -> set[str]:

@@ -6,10 +6,11 @@ programs.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from places import ROOT
 
-from compare.score.explanation.case import Explanation
 from reference import Scene, load_scene
 
 FOLDER = ROOT / "tests" / "compare" / "score" / "wild"
@@ -129,8 +130,8 @@ def read_in(name: str) -> tuple[Scene, np.ndarray, dict[str, np.ndarray]]:
     return scene, table[:, 0], columns
 
 
-def said(found: Explanation) -> set[str]:
-    """Return its words."""
+def said(found: Any) -> set[str]:
+    """Return the words of an explanation."""
     slip = {"falls", "y_is_vertical"} if "y falls" in found.slip else {"slip"} if found.slip else set()
     known = {SAME.get(one.id, one.id) for one in (*found.known, *found.conventions)} - FORMAT | slip
     return known - TWO.keys() | {word for one in known & TWO.keys() for word in TWO[one]}

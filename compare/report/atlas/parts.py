@@ -172,11 +172,11 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
         "possible": [[float(span.from_s), float(span.to_s)] for span in golden.manifest.possible],
         "function": made,
         "beside": beside,
-        "words": _vocabulary(),
+        "words": vocabulary(),
     }
 
 
-def _vocabulary() -> dict[str, Any]:
+def vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
     reading = names, text_reader, header, clock, read, candidate
     tables = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}

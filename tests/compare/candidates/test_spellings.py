@@ -12,7 +12,7 @@ from spellings import Spelling, drawn, of_my_own, of_the_field
 
 from compare.candidates.read import read, read_transits
 from compare.report.atlas.pages import source
-from compare.report.atlas.parts import _vocabulary, plain
+from compare.report.atlas.parts import plain, vocabulary
 from reference import InputError
 
 FIELD, OWN = of_the_field(), of_my_own()
@@ -66,7 +66,7 @@ console.log(JSON.stringify(told));
 
 def read_by_the_page(spellings: list[Spelling]) -> list[dict]:
     asked = [{"text": spelling.text, "alone": spelling.alone} for spelling in spellings]
-    document = json.dumps({"words": _vocabulary(), "texts": asked}, default=plain)
+    document = json.dumps({"words": vocabulary(), "texts": asked}, default=plain)
     script = source("reading.js") + RUN
     done = subprocess.run(["node", "-e", script], input=document, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from compare.methods import METHODS
@@ -90,9 +92,8 @@ def test_what_would_have_no_effect_is_refused(foucault, words, field, reason, tm
 def test_methods_of_which_none_is_installed_are_refused_with_the_command_that_installs_them(
     foucault, words, monkeypatch, tmp_path
 ):
-    import compare.methods.method as declared
-
-    monkeypatch.setattr(declared, "missing", list)
+    for package in ("numba", "flint"):
+        monkeypatch.setitem(sys.modules, package, None)
     status, out, err = foucault(*words, "--out", tmp_path / "out")
     assert (status, out) == (2, "")
     assert "rk4: not installed (numba): pip install 'foucault-reference[methods]'" in err

@@ -20,11 +20,6 @@ from ambiguous import GIVEN, MISTAKES, Ambiguous, ambiguous, drawn, words_said
 from places import MISTAKEN_C, ROOT
 
 from compare.candidates.external import placeholders
-from compare.candidates.names import Naming
-from compare.commands.experimenting import Runnable
-from compare.commands.judging import Judging
-from compare.score.experiments.findings import MOST_RUNS
-from compare.score.verdict import Score
 from reference import load_scene
 
 SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
@@ -32,9 +27,8 @@ FEW = (17, 33)  # of the programs: in JavaScript, and in C with {setting}; the t
 SEEDS = (101, 102, 103)
 RTOL = 1e-6  # {setting} of programs that take a tolerance
 SHORT = ("--t-end", "120", "--set", "run.grid_step=1", "--set", "run.transits=false", "--repeats", "0")
-OPTIONS: dict[str, Any] = {
-    "tolerance": None, "covers": 0.0, "t_end": None, "inputs": "auto", "as_model": False, "explain": True,
-}  # fmt: skip
+MOST_RUNS = 10  # of a program, beside the first
+Run = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -53,15 +47,18 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return target
 
 
-def scored(made: Ambiguous, experiments: bool) -> Score:
-    program = Runnable(made.scene, made.command, RTOL if "rtol" in made.command else None, 300.0)
-    outcome = Judging(Naming(), OPTIONS).program(program, "it", None, 0, experiments)
-    assert outcome.score is not None, outcome.error
-    return outcome.score
+def measured(foucault: Run, made: Ambiguous) -> dict[str, Any] | None:
+    """Return what experiments with a program measure; None if it agrees."""
+    words = ["score", "paris", *made.settings, "--run", made.command, "--repeats", "0", "--timeout", "300"]
+    words += ["--setting", str(RTOL)] if "rtol" in made.command else []
+    status, out, err = foucault(*words, "--experiments", "--json")
+    assert status in (0, 1), err
+    found: dict[str, Any] | None = json.loads(out).get("experiments")
+    return found
 
 
 def test_every_cause_of_ambiguous_programs_is_measured_and_none_is_wrong(
-    mistaken: Path, size: Callable[[Any, Any], Any], tally: Callable[[str], None]
+    foucault: Run, mistaken: Path, size: Callable[[Any, Any], Any], tally: Callable[[str], None]
 ) -> None:
     node = shutil.which("node")
     numbers = list(size(FEW, range(len(MISTAKES))))
@@ -72,14 +69,14 @@ def test_every_cause_of_ambiguous_programs_is_measured_and_none_is_wrong(
     for number, made in programs.items():
         if number in skipped:
             continue
-        found = scored(made, True).experiments
+        found = measured(foucault, made)
         assert found is not None
-        said = [words_said(set(ids)) for ids in found.measured]
+        said = [words_said(set(ids)) for ids in found["measured"]]
         if any(words - made.true for words in said):
             wrong[number] = said
         if {frozenset(words) for words in said} != {made.true}:
             missed.append(number)
-        runs.append(len(found.runs))
+        runs.append(len(found["runs"]))
         languages.append(made.language)
     spent = sum(os.times()[:4]) - before
     counts = ", ".join(f"{languages.count(word)} in {word}" for word in sorted(set(languages)))
@@ -88,22 +85,22 @@ def test_every_cause_of_ambiguous_programs_is_measured_and_none_is_wrong(
         f"{sum(runs) / len(runs):.1f} runs each, {max(runs)} at most, {spent:.0f} CPU s; no Node.js for {len(skipped)}"
     )
     assert (wrong, missed) == ({}, [])
-    assert max(runs) <= MOST_RUNS <= 10
+    assert max(runs) <= MOST_RUNS
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", SEEDS)
 def test_no_program_drawn_at_random_is_told_a_wrong_cause(
-    mistaken: Path, seed: int, tally: Callable[[str], None]
+    foucault: Run, mistaken: Path, seed: int, tally: Callable[[str], None]
 ) -> None:
     node, wrong, named, judged = shutil.which("node"), {}, 0, 0
     mistakes = list(drawn(seed, len(MISTAKES)))
     for number in range(len(mistakes)):
         made = ambiguous(number, mistaken, node or "", mistakes)
-        found = None if made.language == "JavaScript" and node is None else scored(made, True).experiments
+        found = None if made.language == "JavaScript" and node is None else measured(foucault, made)
         if found is None:  # within the tolerance
             continue
-        said = [words_said(set(ids)) for ids in found.measured]
+        said = [words_said(set(ids)) for ids in found["measured"]]
         judged, named = judged + 1, named + ({frozenset(words) for words in said} == {made.true})
         if any(words - made.true for words in said):
             wrong[number] = mistakes[number], said
@@ -115,7 +112,7 @@ def command(program: list[str], *words: str) -> str:
     return " ".join([shlex.join(program), *(f"{key}={value}" for key, value in GIVEN.items()), *words])
 
 
-def test_what_is_measured_is_told_and_kept(foucault: Any, mistaken: Path, tmp_path: Path) -> None:
+def test_what_is_measured_is_told_and_kept(foucault: Run, mistaken: Path, tmp_path: Path) -> None:
     out = tmp_path / "runs"
     words = ("score", "paris", *SHORT, "--run", command([str(mistaken)], "lat=48.5"), "--experiments", "--out", out)
     status, text, _ = foucault(*words)
@@ -135,14 +132,14 @@ def test_what_is_measured_is_told_and_kept(foucault: Any, mistaken: Path, tmp_pa
     assert all((out / f"{word}.txt").read_text().startswith("t,x,y,z\n0,0.") for word in kept)
 
 
-def test_a_number_in_proportion_is_told_from_one_that_is_typed(foucault: Any, mistaken: Path) -> None:
+def test_a_number_in_proportion_is_told_from_one_that_is_typed(foucault: Run, mistaken: Path) -> None:
     for words, said in (("gtimes=1.001", "in proportion to what it is given"), ("g=9.8165", "whatever it is given")):
         text = foucault("score", "paris", *SHORT, "--run", command([str(mistaken)], words), "--experiments")[1]
         found = re.search(r"takes site.gravity to be (\S+) and not 9.80665 m/s², (.*): ", text)
         assert found is not None and float(found[1]) == pytest.approx(9.8165, abs=1e-3) and found[2] == said
 
 
-def test_a_program_that_fails_or_is_killed_draws_no_conclusion(foucault: Any, tmp_path: Path) -> None:
+def test_a_program_that_fails_or_is_killed_draws_no_conclusion(foucault: Run, tmp_path: Path) -> None:
     source = tmp_path / "fails.py"
     inner = (ROOT / "tests/helpers/mistaken.py").read_text()
     source.write_text(inner.replace("\nrows, h = ", "\nassert turn and given('lat', 0) < 90, 'no pole'\nrows, h = "))
@@ -155,7 +152,7 @@ def test_a_program_that_fails_or_is_killed_draws_no_conclusion(foucault: Any, tm
 
 
 def test_a_mistake_that_nobody_knows_has_no_name(
-    foucault: Any, tmp_path: Path, size: Callable[[Any, Any], Any]
+    foucault: Run, tmp_path: Path, size: Callable[[Any, Any], Any]
 ) -> None:
     """A cord that pulls harder the farther the bob is out, which is no cause of the list.
 
@@ -186,7 +183,7 @@ def test_a_mistake_that_nobody_knows_has_no_name(
     ],
 )
 def test_experiments_that_cannot_be_made_are_refused(
-    foucault: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], said: str
+    foucault: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], said: str
 ) -> None:
     (tmp_path / "mine.txt").write_text("not yours")
     monkeypatch.chdir(tmp_path)
@@ -195,14 +192,17 @@ def test_experiments_that_cannot_be_made_are_refused(
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 
-def test_a_program_that_agrees_is_not_run_again(foucault: Any, mistaken: Path) -> None:
+def test_a_program_that_agrees_is_not_run_again(foucault: Run, mistaken: Path) -> None:
     run = command([str(mistaken)])
     status, text, _ = foucault("score", "paris", *SHORT, "--run", run, "--experiments")
     assert status == 0 and "Experiment" not in text
 
 
-def test_the_usual_step_divides_the_grid() -> None:
-    scene = load_scene("paris")
-    step = Runnable(scene, "./p {setting}", None, 1.0).step
-    many = float(scene.exact.grid_step) / step
-    assert many == pytest.approx(round(many), rel=1e-12) and 16.4 / step > 199
+def test_the_usual_step_divides_the_grid(foucault: Run, tmp_path: Path) -> None:
+    source, note = tmp_path / "mine.py", tmp_path / "step"
+    source.write_text("import sys\nopen(sys.argv[1], 'w').write(sys.argv[2])\nprint('t,x,y')\nprint('0,0.3,0.4')\n")
+    run = f"{shlex.join([sys.executable, str(source), str(note)])} {{setting}}"
+    assert foucault("score", "paris", *SHORT, "--run", run, "--no-diagnosis")[0] == 1
+    step_s = float(note.read_text())
+    many = 1.0 / step_s  # steps from row to row
+    assert many == pytest.approx(round(many), rel=1e-12) and 16.4 / step_s > 199
