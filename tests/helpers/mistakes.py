@@ -106,7 +106,10 @@ class Told:
 
 
 def told(scene: Scene, times: np.ndarray, columns: dict[str, np.ndarray], allowed_m: float) -> Told:
-    """Return what is told of rows."""
+    """Return what is told of rows, of a scene that is as long as they are: so `judge` advises."""
+    last = float(times[-1])
+    if times[0] <= scene.exact.t_end < last:
+        scene = scene.with_values([f"run.t_end={last!r}"])
     try:
         score = judge(Candidate.of("mine", times, columns), scene, tolerance=allowed_m)
     except InputError as error:
