@@ -162,14 +162,15 @@ def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
     begun = time.process_time()
     for number in numbers:
         made = case(number)
-        words = made.told(*made.rows(mistaken)).words
+        found = made.told(*made.rows(mistaken))
+        words = found.words
         if made.wrong(words):
             wrong[number] = made.wrong(words)
         elif one_word_for_one_motion(made.true) & one_word_for_one_motion(words):
             right += 1
             whole += one_word_for_one_motion(made.true) <= one_word_for_one_motion(words)
-        elif not words:
-            agree += not made.matters(mistaken)  # within the tolerance, where nothing may be told
+        else:
+            agree += found.agrees
     spent = time.process_time() - begun
     named = f"{whole} named whole, {right} in part, {agree} that agree, {len(wrong)} wrong"
     tally(f"mistakes drawn at random: of {len(numbers)} {named}, {spent:.0f} CPU s")

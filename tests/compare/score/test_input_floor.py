@@ -34,7 +34,7 @@ def test_ends_within_a_factor_of_two_share_one_run(own_cache):
     for runs, ends in ((1, (20.0, 15.0, 10.1)), (2, (10.0, 5.1)), (3, (5.0, 2.51)), (4, (25.0,))):
         for end in ends:
             floors[end] = input_floor(scene, end)
-        assert len(list(own_cache.iterdir())) == runs, ends
+            assert len(list(own_cache.iterdir())) == runs, end
     assert input_floor(scene.with_values(["inputs=binary64"]), 20.0) == floors[20.0]
     assert len(list(own_cache.iterdir())) == 4
     assert all(floors[a] <= floors[b] for a, b in pairwise(sorted(floors)))
