@@ -402,7 +402,7 @@ def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(times: tuple
         assert told(scene, np.array(times), columns, 7e-7).words == set(), rows
 
 
-@pytest.mark.parametrize("pull", [1.0, 2.0])
+@pytest.mark.parametrize("pull", [1.0, pytest.param(2.0, marks=LONG)])
 def test_a_bob_that_nothing_holds_falls(pull: float) -> None:
     times = np.linspace(0, 20, 401)
     columns = {"x": 0.3 + 0.01 * times, "y": 0.4 - pull * 4.9 * times**2}
@@ -425,7 +425,8 @@ DRIFTS = {"integrator_loose"}
         ({"site.gravity": "2.4516725", "pendulum.drag": "1e-6", "release.x": "0.3001"}, DRIFTS | {"release.x"}),
     ],
 )
-@pytest.mark.parametrize("gravity", ["9.80665", "2.4516625"])  # of the second the fit lies far off, in a valley
+# of the second the fit lies far off, in a valley
+@pytest.mark.parametrize("gravity", ["9.80665", pytest.param("2.4516625", marks=LONG)])
 def test_an_integrator_drifts_in_phase_and_amplitude_and_in_nothing_else(
     gravity: str, changes: dict[str, str], words: set[str]
 ) -> None:
@@ -515,7 +516,7 @@ def slipped(term: tuple[int, int], value: float, count: int) -> tuple[dict[str, 
 
 
 @pytest.mark.parametrize("count", [300, pytest.param(3000, marks=LONG)])
-@pytest.mark.parametrize(("term", "value"), [((0, 0), 1.001), ((1, 3), 1.0), ((1, 3), 0.0)])
+@pytest.mark.parametrize(("term", "value"), [((0, 0), 1.001), ((1, 3), 1.0), pytest.param((1, 3), 0.0, marks=LONG)])
 def test_a_slip_in_a_formula_is_found_in_the_accelerations(term: tuple[int, int], value: float, count: int) -> None:
     """It is told where no combination of causes describes the rows."""
     columns, (place, wrong, right) = slipped(term, value, count)
