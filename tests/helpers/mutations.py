@@ -423,8 +423,19 @@ def noticed(mutation: Mutation, check: Callable[[Any], None], cpu_s: float = 60)
 
 def loaded(mutation: Mutation) -> Any:
     """Return a module with the mutation; no other module sees it."""
-    name = mutation.file.removesuffix(".py").replace("/", ".")
+    return _executed(mutation.file, mutation.tree())
+
+
+def with_names(file: str, **others: Any) -> Any:
+    """Return a module in which some names stand for something else, as an untrusted part that lies; nobody sees it."""
+    module = _executed(file, _parsed(file))
+    vars(module).update(others)
+    return module
+
+
+def _executed(file: str, tree: ast.Module) -> Any:
+    name = file.removesuffix(".py").replace("/", ".")
     module = ModuleType(name)
     module.__package__ = name.rpartition(".")[0]
-    exec(compile(mutation.tree(), mutation.file, "exec"), vars(module))
+    exec(compile(tree, file, "exec"), vars(module))
     return module

@@ -57,13 +57,6 @@ def test_the_hard_scenes_lie_inside(name, size):
     assert all(contains(i, x) for i, x in zip(proof.proved.states[0], exact, strict=True))
 
 
-def test_precision_rises_until_the_width_is_reached(monkeypatch):
-    monkeypatch.setattr("reference.enclosure.prove.MARGIN_BITS", -40)
-    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=recurrence(PARIS))
-    assert proof.position_radius <= WANTED
-    assert 140 < proof.bits < 260
-
-
 def test_what_cannot_be_had_is_refused_with_the_width_reached():
     with pytest.raises(UnreachableError, match="bits"):
         enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**900), approximant=recurrence(PARIS))

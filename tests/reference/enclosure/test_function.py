@@ -9,6 +9,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from enclosure_oracle import scene as inputs_of
+from enclosure_oracle import steps
 from golden_functions import TRUTH, TRUTH_BITS, errors, evaluator, proved_function, random_times
 from numpy.polynomial import chebyshev
 from sampled import one_in
@@ -19,10 +21,12 @@ pytest.importorskip("flint")
 from flint import arb, arb_mat, ctx
 
 from reference.dataset.golden import load
-from reference.enclosure import fit
-from reference.enclosure import function as function_module
+from reference.enclosure.bound import SceneBalls
+from reference.enclosure.course import Course
+from reference.enclosure.fit import Fit, on_doubles
 from reference.enclosure.function import CUT, Following, basis, check_function, on_sphere, weights
 from reference.numbers.columns import STATE
+from reference.numbers.function import GoldenFunction
 from reference.scenes.scene import load_scene
 from reference.scenes.shipped import golden_root
 
@@ -96,139 +100,173 @@ def test_a_piece_on_which_z_rounds_much_is_halved():
     assert function.bound["z"] <= 2 * np.spacing(1.0)
 
 
-def test_the_tube_and_the_orders_that_are_left_out_count(monkeypatch):
+BITS = 128  # of the coefficients of steps
+
+
+class Lying:
+    """A driver's hold on a `Following`, whose proposals `change` makes of honest ones."""
+
+    def __init__(self, following, change):
+        self.following, self.change = following, change
+
+    def __getattr__(self, name):
+        """Hand on all else."""
+        return getattr(self.following, name)
+
+    def add(self, until, series):
+        self.change(self.following, until, series)
+
+
+class Driver:
+    """Proves a scene's golden function step by step, as whoever calls trusted code may do."""
+
+    def __init__(self, scene, bits=BITS, order=64):
+        self.inputs = scene.exact
+        self.course = Course(SceneBalls(self.inputs, bits + 64), self.inputs.grid, columns=False, transits=False)
+        self.fit = Fit(self.course)
+        self.proposed = list(on_doubles(steps(self.inputs, self.inputs.grid[-1], bits, order)))
+
+    def proved(self, change=Following.add):
+        """Take every step, with proposals that are changed; return what is proved."""
+        self.fit.following = Lying(self.fit.following, change)
+        for step in self.proposed:
+            self.course.advance(step)
+            self.fit.add()
+        return self.fit.finish()
+
+    @property
+    def last(self):
+        """The last step with its tube."""
+        return self.fit.following.covered[0]
+
+
+def of_proof(made):
+    return GoldenFunction.of(made.facts, made.bounds, made.data)
+
+
+def test_the_tube_counts():
     scene = short("paris", "60")
-    usual = evaluator(proved_function(scene)).bound
-    advance = Following.advance
+    usual = of_proof(Driver(scene).proved()).bound
+    coarse = Driver(scene, bits=36, order=CUT - 6)
+    bound = of_proof(coarse.proved()).bound
+    piece, tube = coarse.last
+    eta, fastest = float(tube.eta), float(tube.u) / float(piece.step.h)
+    assert eta > 1e-10
+    # the degree is the lowest that adds a third at most
+    assert 67 * eta <= bound["x"] < 4 / 3 * 67 * eta + usual["x"]
+    assert 67 * fastest <= bound["vx"]
 
-    def wide(self, covered):
-        advance(self, covered._replace(tube=covered.tube._replace(eta=arb(1e-9), u=arb(1e-8))))
 
-    monkeypatch.setattr(Following, "advance", wide)
-    bound = evaluator(proved_function(scene)).bound
-    assert 67e-9 < bound["x"] < 68e-9 + usual["x"]
-    assert bound["vx"] > 67e-8 / 4.3  # a step is no longer
-    monkeypatch.undo()
-    monkeypatch.setattr(function_module, "total", lambda f, bits: arb(1e-9))
-    bound = evaluator(proved_function(scene)).bound
-    assert bound["x"] > 67e-9
-    assert bound["vx"] > 67e-9 * 50 / 4.3
+def test_the_orders_that_are_left_out_count():
+    """A term of the last step's x beyond those that the function takes is in the tube, and once more besides."""
+    driver = Driver(short("paris", "60"))
+    step = driver.proposed[-1]
+    rows = [[int(c) for c in row] for row in step.coefficients]
+    order, size = CUT + 4, 1e-9
+    rows[0][order] += int(size * 2**step.bits)
+    driver.proposed[-1] = step._replace(rows=tuple(rows))
+    bound = of_proof(driver.proved()).bound
+    tube = driver.last.tube
+    assert bound["x"] >= 67 * (float(tube.eta) + size) * (1 - 1e-6)
+    assert bound["vx"] >= 67 * (float(tube.u) + order * size) / float(step.h) * (1 - 1e-6)
 
 
 @pytest.mark.parametrize("size_of", [1e-17, 1e-14, 1e-9, 1e-3])
-def test_wrong_coefficients_have_a_bound_that_covers_them(size_of, monkeypatch):
+def test_wrong_coefficients_have_a_bound_that_covers_them(size_of):
     """The error of each of some coefficients, as large as it is, is inside the bound."""
     scene, rng = short("paris", "120"), np.random.default_rng(3)
-    add = Following.add
 
-    def spoilt(self, until, series):
+    def spoilt(following, until, series):
         wrong = list(series)
         for i in rng.integers(0, 20, 3):
             wrong[i + CUT * rng.integers(2)] += size_of * rng.choice([-1, 1])
-        add(self, until, wrong)
+        following.add(until, wrong)
 
-    monkeypatch.setattr(Following, "add", spoilt)
-    function = evaluator(proved_function(scene))
+    function = of_proof(Driver(scene).proved(spoilt))
     off = errors(scene, function, random_times(function, 3000))
     for component in STATE:
         assert off[component].max() <= function.bound[component], component
     assert off["x"].max() >= size_of / 4 or size_of < 1e-15
 
 
-def test_a_piece_that_does_not_join_or_lie_in_its_step_is_refused(monkeypatch):
-    add = Following.add
-    for change in (lambda self, until: until + 1, lambda self, until: float(self.end), lambda self, until: -until):
-        monkeypatch.setattr(Following, "add", lambda self, until, series, c=change: add(self, c(self, until), series))
-        with pytest.raises(Exception, match="must join"):
-            proved_function(short("paris", "60"))
+@pytest.mark.parametrize(
+    "other_end",
+    [
+        lambda following, until: until + 1,
+        lambda following, until: float(following.end),
+        lambda following, until: -until,
+    ],
+)
+def test_a_piece_that_does_not_join_or_lie_in_its_step_is_refused(other_end):
+    def moved(following, until, series):
+        following.add(other_end(following, until), series)
+
+    with pytest.raises(ArithmeticError, match="must join"):
+        Driver(short("paris", "20")).proved(moved)
 
 
-class Lying(float):
+def test_a_gap_between_pieces_is_refused():
+    driver = Driver(short("paris", "60"))
+    first, *driver.proposed = driver.proposed
+    driver.course.advance(first)  # of which no piece is proposed
+    with pytest.raises(ArithmeticError, match="must join"):
+        driver.proved()
+
+
+class OtherText(float):
     """A time that is printed as another."""
 
     def hex(self):
         return (float(self) * (1 - 2**-40)).hex()
 
 
-def test_the_times_that_are_printed_are_those_that_were_bounded(monkeypatch):
+def test_the_times_that_are_printed_are_those_that_were_bounded():
     """F7 of the audit: the end of a piece was any object, asked for its value and then for its text."""
-    add, ends = Following.add, []
+    ends = []
 
-    def lying(self, until, series):
-        ends.append((self, until.hex()))
-        add(self, Lying(until), series)
+    def lying(following, until, series):
+        ends.append(until.hex())
+        following.add(OtherText(until), series)
 
-    monkeypatch.setattr(Following, "add", lying)
-    function = proved_function(short("paris", "60")).function
-    last = ends[-1][0]  # of several attempts
-    assert function.facts["times"][1:] == [end for following, end in ends if following is last]
+    made = Driver(short("paris", "60")).proved(lying)
+    assert made.facts["times"][1:] == ends
 
 
-@pytest.mark.parametrize(
-    ("name", "call"),
-    [
-        ("a degree from 0 to 35", lambda following: following.finish(36)),
-        ("a degree from 0 to 35", lambda following: following.finish(-1)),
-        ("series of x and y", lambda following: Following(following.course, 1)),
-        ("series of x and y", lambda following: Following(following.course, 4)),
-        ("36 coefficients", lambda following: following.add(1.0, [0.0])),
-        ("a finite time", lambda following: following.add(float("inf"), [0.0] * CUT * following.count)),
-        ("a finite time", lambda following: following.add(float("nan"), [0.0] * CUT * following.count)),
-    ],
-)
-def test_a_proposal_of_another_shape_is_refused_in_words(name, call, monkeypatch):
-    refusals = []
-    finish = fit.Fit.finish
-
-    def tried(self):
-        with pytest.raises(ArithmeticError, match=name):
-            call(self.following)
-        refusals.append(name)
-        return finish(self)
-
-    monkeypatch.setattr(fit.Fit, "finish", tried)
-    proved_function(short("paris", "20"))
-    assert refusals
+def test_a_proposal_of_another_shape_is_refused_in_words():
+    driver = Driver(short("paris", "20"))
+    driver.proved()
+    course, following = driver.course, driver.fit.following
+    series = [0.0] * CUT * following.count
+    for words, call in (
+        ("a degree from 0 to 35", lambda: following.finish(36)),
+        ("a degree from 0 to 35", lambda: following.finish(-1)),
+        ("series of x and y", lambda: Following(course, 1)),
+        ("series of x and y", lambda: Following(course, 4)),
+        ("36 coefficients", lambda: following.following.add(1.0, [0.0])),
+        ("a finite time", lambda: following.following.add(float("inf"), series)),
+        ("a finite time", lambda: following.following.add(float("nan"), series)),
+    ):
+        with pytest.raises(ArithmeticError, match=words):
+            call()
 
 
-def test_a_gap_between_pieces_is_refused(monkeypatch):
-    add, skipped = fit.Fit.add, []  # in each attempt the second step
-
-    def skipping(self):
-        if len(self.following.pieces) == 1 and self not in skipped:
-            skipped.append(self)
-        else:
-            add(self)
-
-    monkeypatch.setattr(fit.Fit, "add", skipping)
-    with pytest.raises(Exception, match="must join"):
-        proved_function(short("paris", "60"))
-
-
-def test_a_tube_from_elsewhere_is_refused(monkeypatch):
+def test_a_tube_from_elsewhere_is_refused():
     """Only the course may say which tube a piece is compared with."""
-    add = Following.add
 
-    def forged(self, until, series):
-        self.advance(self.covered[0])
-        add(self, until, series)
+    def forged(following, until, series):
+        following.advance(following.covered[0])
 
-    monkeypatch.setattr(Following, "add", forged)
-    with pytest.raises(Exception, match="from the course alone"):
-        proved_function(short("paris", "60"))
+    with pytest.raises(ArithmeticError, match="from the course alone"):
+        Driver(short("paris", "20")).proved(forged)
 
 
-def test_series_are_copied_when_they_are_taken(monkeypatch):
-    add, taken = Following.add, []
-
-    def changing(self, until, series):
-        add(self, until, series)
+def test_series_are_copied_when_they_are_taken():
+    def changing(following, until, series):
+        following.add(until, series)
         series[0] += 1.0
-        taken.append(series)
 
-    monkeypatch.setattr(Following, "add", changing)
     scene = short("paris", "60")
-    function = evaluator(proved_function(scene))
+    function = of_proof(Driver(scene).proved(changing))
     assert errors(scene, function, random_times(function, 200))["x"].max() <= function.bound["x"]
 
 
@@ -316,9 +354,8 @@ def test_the_evaluator_makes_the_specified_operations():
 def test_z_from_the_sphere_is_within_its_bound():
     """Made-up errors of x, y, vx, vy, as large as they are said to be, beside a true state on the sphere."""
     rng, inside = np.random.default_rng(5), []
-    balls = Following.__new__(Following)  # stands for the scene
     length = Fraction("1.3")
-    balls.length, balls.release = arb("1.3") if ctx.prec > 60 else arb(13) / 10, ([arb(0), arb(0), arb(-1)], None)
+    balls = SceneBalls(inputs_of(length="1.3"), 64)
     square = rounded(length**2)
     for _ in range(400):
         d, e, wide, fast = (float(x) for x in rng.uniform(0, 1, 4) * [10.0 ** -rng.integers(2, 17), 1e-3, 0.8, 2])
@@ -355,10 +392,11 @@ def test_z_has_a_series_unless_the_bob_stays_deep():
     assert proved_function(steep).function.facts["components"] == ["x", "y", "z"]
 
 
-def test_without_a_series_of_z_a_high_bob_is_refused(monkeypatch):
-    monkeypatch.setattr(fit, "_stays_deep", lambda balls: True)
-    with pytest.raises(Exception, match=r"finite|negative"):
-        proved_function(short("hard", "10"))
+def test_without_a_series_of_z_a_high_bob_is_refused():
+    driver = Driver(short("hard", "10"))
+    driver.fit.following = Following(driver.course, 2)
+    with pytest.raises(ArithmeticError, match=r"finite|negative"):
+        driver.proved()
 
 
 def test_files_that_state_something_else_are_refused():

@@ -11,8 +11,8 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, SceneBalls
-from reference.enclosure.enclosed_transits import Scan, Slope, touched
-from reference.enclosure.shapes import Covered, Leaf, Tube
+from reference.enclosure.enclosed_transits import Scan
+from reference.enclosure.shapes import Covered, Tube
 from reference.numbers.taylor_step import TaylorStep
 
 BITS = 200
@@ -111,20 +111,19 @@ def test_from_rest_the_third_derivative_must_keep_its_sign_on_the_whole_leaf():
     assert any(f.t.low <= Fraction(1, 4) <= f.t.high for f in scan.finish())
 
 
+def two_steps(cut, *rows):
+    """The zeros that are found in two made-up steps of 1 s that meet at `cut`; their polynomials need not."""
+    balls = SceneBalls(MOVING, 128)
+    scan = Scan(balls)
+    for low, high, own in zip((Fraction(0), cut), (cut, Fraction(1)), rows, strict=True):
+        piece = Piece(balls, TaylorStep(Fraction(0), Fraction(1), low, high, 128, own))
+        scan.advance(Covered(piece, Tube(*[arb(2) ** -100] * 3)))
+    return scan.finish()
+
+
 def test_at_a_boundary_both_steps_are_asked():
-    balls, third = SceneBalls(MOVING, 128), Fraction(1, 3)
-    leaves = []
-    with ctx.workprec(128):
-        for low, high, y in ((Fraction(0), third, 0), (third, Fraction(1), 1)):
-            rows = ([0, -(2**128) // 3, 2**127], [y << 120], [0], [0])  # xdot = s - 1/3
-            piece = Piece(balls, TaylorStep(Fraction(0), Fraction(1), low, high, 128, rows))
-            slope = Slope(Covered(piece, Tube(*[arb(2) ** -100] * 3)))
-            leaves.append(Leaf(1, ball(low), ball(high), slope))
-        assert len(touched(leaves, ball(third))) == 2
-        scan = Scan(balls)
-        scan.cluster, scan.left = leaves, -1
-        scan._close(1)
-    (found,) = scan.found
+    third, x = Fraction(1, 3), [0, -(2**128) // 3, 2**127]  # xdot = s - 1/3
+    (found,) = two_steps(third, *((x, [y << 120], [0], [0]) for y in (0, 1)))
     assert found.parity == "one"
     assert found.t.low <= third <= found.t.high
     assert found.z.high - found.z.low > Fraction(67, 2**9)  # m of both steps (cos of the latitude is 0.66)
@@ -147,7 +146,6 @@ def test_constants_below_the_last_bit_still_count(changes, rows, least):
 
 
 def test_sides_that_contradict_each_other_are_refused():
-    scan = Scan(SceneBalls(MOVING, 128))
-    scan.left = -1
+    """xdot is -1/s up to the boundary, and +1/s from there on."""
     with pytest.raises(ArithmeticError, match="contradict"):
-        scan._close(1)
+        two_steps(Fraction(1, 2), *(([0, way << 128], [0], [0], [0]) for way in (-1, 1)))
