@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 from fractions import Fraction
-from functools import cache
+from pathlib import Path
 
 import heyoka as hy
 import numpy as np
 import pytest
-from sampled import one_in
+from places import ROOT
 from small_scenes import make_scene, model_at, stepper_of
 
-import reference.engines.heyoka.run as module
-from reference.engines.heyoka import model as model_module
-from reference.engines.heyoka import stepper as stepper_module
-from reference.engines.heyoka import system
+from reference import trajectory
 from reference.engines.heyoka.system import equations_text, system_of
 from reference.engines.plan import Plan
+from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.columns import STATE
@@ -53,28 +55,6 @@ def test_the_error_shrinks_with_the_precision_of_the_type(paris, place, number, 
     assert max(abs(a - b) for a, b in zip(got, place[1], strict=True)) < error
 
 
-@pytest.fixture(scope="module")
-def full():
-    """A function that gives the size of the system of Paris, in which no term vanishes."""
-    return cache(lambda name: len(stepper_of(make_scene("paris"), DOUBLE, name)._ta.decomposition))
-
-
-@pytest.mark.parametrize(
-    "sections",
-    [{"rotation_rate": "0"}, {"latitude": "90"}, {"latitude": "0"}, {"latitude": "-90"}],
-    ids=["no rotation", "north pole", "equator", "south pole"],
-)
-@pytest.mark.parametrize("name", one_in(3, ["momentum", "space", "spin"]))
-def test_a_scene_whose_terms_vanish_compiles_a_smaller_system(full, sections, name):
-    small = stepper_of(make_scene(site=sections), DOUBLE, name)
-    assert len(small._ta.decomposition) < full(name)
-
-
-def test_events_are_compiled_only_when_asked_for(paris):
-    assert not stepper_of(paris, DOUBLE)._ta.with_events
-    assert stepper_of(paris, DOUBLE, events=True)._ta.with_events
-
-
 @pytest.mark.parametrize(
     ("name", "number"),
     [
@@ -82,9 +62,8 @@ def test_events_are_compiled_only_when_asked_for(paris):
         *((name, real(168)) for name in ("inertial", "space", "spin")),
     ],
 )
-def test_other_numbers_in_the_same_terms_share_the_code_and_it_rounds_as_their_own(paris, name, number):
+def test_code_that_scenes_share_rounds_as_their_own(paris, name, number):
     """What ships was made by code in which each constant stood as a number: real numbers come out bit by bit."""
-    model_module._compiled.cache_clear()
     other = make_scene(pendulum={"length": "1.7"}, release={"x": "0.01", "y": "0.2"})
     for scene in (paris, other):
         stepper = stepper_of(scene, number, name)
@@ -96,13 +75,10 @@ def test_other_numbers_in_the_same_terms_share_the_code_and_it_rounds_as_their_o
             if not number.hardware:
                 assert stepper.state.tolist() == own.state.tolist()
             assert stepper.state.astype(float) == pytest.approx(own.state.astype(float), rel=1e-12, abs=1e-14)
-    kept = model_module._compiled.cache_info()
-    assert (kept.misses, kept.hits) == (1, 1)
 
 
 @pytest.mark.parametrize("number", [DOUBLE, real(90)], ids=str)
 def test_steppers_that_share_their_code_find_their_own_zeros_in_turn(paris, number):
-    model_module._compiled.cache_clear()
     other = make_scene(pendulum={"length": "1.7"}, release={"x": "0.01", "y": "0.2"})
 
     def zeros(*steppers):
@@ -114,64 +90,59 @@ def test_steppers_that_share_their_code_find_their_own_zeros_in_turn(paris, numb
         return found
 
     both = zeros(*(stepper_of(scene, number, events=True) for scene in (paris, other)))
-    assert model_module._compiled.cache_info().hits == 1
     assert min(map(len, both)) > 1
     assert both == [*zeros(stepper_of(paris, number, events=True)), *zeros(stepper_of(other, number, events=True))]
 
 
 @pytest.mark.parametrize("number", [DOUBLE, real(48), real(90)], ids=str)
-def test_runs_of_the_same_equations_share_their_code_and_nothing_else(paris, number):
-    model_module._compiled.cache_clear()
+def test_a_run_leaves_another_of_the_same_equations_as_it_was(paris, number):
     first, second = stepper_of(paris, number), stepper_of(paris, number)
-    kept = model_module._compiled.cache_info()
-    assert (kept.misses, kept.hits) == (1, 1)
     release = first.state.tolist()
     times = [first.numbers.of(t) for t in (0, 7, 20)]
     states = first.propagate(times).tolist()
     assert second.time == 0
     assert second.state.tolist() == release
     assert second.propagate(times).tolist() == states
-    model_module._compiled.cache_clear()
-    assert stepper_of(paris, number).propagate(times).tolist() == states
 
 
-def test_other_terms_bits_or_tolerances_are_other_code(paris):
-    model_module._compiled.cache_clear()
-    stepper_of(make_scene(pendulum={"drag": "1e-5"}), DOUBLE)
-    for number in (LONG_DOUBLE, real(90), real(91), DOUBLE):
-        model = stepper_of(paris, number).model
-    for tolerance in (1e-9, 1e-8):
-        model.propagator(tolerance)
-    assert model_module._compiled.cache_info().hits == 0
+def test_runs_in_turn_have_their_own_terms_bits_and_tolerance(paris):
+    damped = make_scene(pendulum={"drag": "1e-5"})
+    numbers = (DOUBLE, LONG_DOUBLE, real(90), real(91))
+    ends = [end_of(scene, number, t_end=5) for scene in (damped, paris) for number in numbers]
+    assert len({*map(tuple, ends)}) == 8
+    one, other, again = (trajectory(paris, [0, 60], tolerance=tolerance) for tolerance in (1e-9, 1e-8, 1e-9))
+    assert (one == again).all()
+    assert (one != other).any()
 
 
-def test_the_equations_shown_are_the_ones_compiled():
-    _, k, _, _ = model_at(make_scene(site={"latitude": "90"}), 100)
-    text = "\n".join(equations_text(FORMULATIONS["momentum"], k))
-    assert "Omega_z" in text
-    assert "Omega_y" not in text
-    assert "gamma" not in text
+@pytest.mark.parametrize(
+    ("site", "gone"),
+    [
+        ({"rotation_rate": "0"}, {"Omega_y", "Omega_z", "c_y"}),
+        ({"latitude": "90"}, {"Omega_y", "c_y"}),
+        ({"latitude": "-90"}, {"Omega_y", "c_y"}),
+        ({"latitude": "0"}, {"Omega_z", "c_y"}),
+    ],
+    ids=["no rotation", "north pole", "south pole", "equator"],
+)
+@pytest.mark.parametrize("name", ["momentum", "inertial", "spin"])
+def test_terms_that_vanish_are_in_no_equation(site, gone, name):
+    def constants(scene):
+        _, k, _, _ = model_at(scene, 100)
+        return {*re.findall(r"[A-Za-z]\w*", " ".join(equations_text(FORMULATIONS[name], k)))}
+
+    assert gone <= constants(make_scene())
+    assert not gone & constants(make_scene(site=site))
 
 
-def test_what_is_constant_is_neither_shown_nor_integrated(monkeypatch):
-    """At a pole H_z is constant: five variables are left, and the states are those of all six to the last bits."""
-    scene = make_scene(site={"latitude": "90"}, run={"t_end": "60"})
+def test_what_is_constant_is_not_shown_and_the_motion_is_the_same():
+    """At a pole H_z is constant: five variables are left. `inertial` has none that is."""
+    scene = make_scene(site={"latitude": "90"})
     _, k, _, _ = model_at(scene, 100)
-    assert [line.partition("'")[0] for line in equations_text(FORMULATIONS["momentum"], k)] == [
-        "nx", "ny", "nz", "Hx", "Hy",
-    ]  # fmt: skip
-    plan = Plan(scene.exact, "momentum", real(120), (Fraction(0), Fraction(7), Fraction(60)), transits=True)
-    integrated = []
-
-    def stepper(formulation, *arguments, **options):
-        integrated.append(formulation.variables)
-        return stepper_module.Stepper(formulation, *arguments, **options)
-
-    monkeypatch.setattr(module, "Stepper", stepper)
-    less = module.run(plan)
-    monkeypatch.setattr(module, "carried", lambda formulation, start, number: formulation)
-    whole = module.run(plan)
-    assert [*map(len, integrated)] == [5, 6]
+    shown = [line.partition("'")[0] for line in equations_text(FORMULATIONS["momentum"], k)]
+    assert shown == ["nx", "ny", "nz", "Hx", "Hy"]
+    times = (Fraction(0), Fraction(7), Fraction(60))
+    less, whole = (run(Plan(scene.exact, name, real(120), times, transits=True)) for name in ("momentum", "inertial"))
     gaps = less.grid.distance(whole.grid).largest()
     assert all(0 <= gap < Fraction(1, 2**100) for gap in gaps.values())
     assert less.directions == whole.directions and len(less.directions) > 0
@@ -184,13 +155,12 @@ def test_drag_is_in_the_equations_when_the_scene_has_it():
 
 def test_no_python_float_stands_in_a_real_system(paris):
     """A float is a double for ever; every constant of the equations is a parameter, which carries the run's digits."""
-    stepper = stepper_of(paris, real(200))
-    lines = system_of(FORMULATIONS["momentum"], stepper.model.symbols)[0]
+    model = stepper_of(paris, real(200)).model
+    lines = system_of(FORMULATIONS["momentum"], model.symbols)[0]
     words = {word.strip("()-") for _, rate in lines for word in str(rate).split()}
     assert not [word for word in words if word[:1].isdigit()]
     assert {word for word in words if word[:1] == "p"} == {f"p{i}" for i in (1, 2, 3, 4)}
-    assert all(value.prec == 200 for value in stepper._ta.pars)
-    assert stepper._ta.pars[1:].tolist() == [*stepper.model.k.entries("turn", "pull").values()]
+    assert all(value.prec == 200 for value in model.parameters)
 
 
 def test_a_run_that_blows_up_is_an_error_and_gives_no_numbers():
@@ -222,52 +192,53 @@ def test_one_time_is_the_release_itself(paris):
     assert states.shape == (1, 6)
 
 
-@pytest.fixture
-def asked_anew():
-    """Code is compiled, and the place of its cache looked for again where there was none: locked, or without a home."""
-    model_module._compiled.cache_clear()
-    if not system._has_place():
-        system._has_place.cache_clear()
+CACHED = """
+import heyoka as hy
+import reference
+from reference.numbers.precision import real
+
+print(reference.trajectory("paris", [0, 20])[1].tolist())
+if hy.llvm_state.get_diskcache_enabled():
+    print(hy.llvm_state.get_diskcache_path(), hy.llvm_state.get_diskcache_limit())
+reference.trajectory("paris", [0, 20], number=real(160))
+print(hy.llvm_state.get_diskcache_enabled())
+"""
 
 
-@pytest.mark.usefixtures("asked_anew")
-def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
-    stepper_of(paris, DOUBLE)
-    assert hy.llvm_state.get_diskcache_enabled()
-    stepper_of(paris, real(160))
-    assert not hy.llvm_state.get_diskcache_enabled()
+def in_a_home(home, folder):
+    """What a process prints that has this home, and works in this folder."""
+    environment = {name: value for name, value in os.environ.items() if name != "XDG_CACHE_HOME"}
+    environment |= {"HOME": str(home), "PYTHONPATH": str(ROOT)}
+    words = [sys.executable, "-c", CACHED]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, cwd=folder, env=environment)
+    return done.stdout.splitlines()
 
 
-@pytest.mark.usefixtures("asked_anew")
-def test_the_disk_cache_is_the_projects_own_and_bounded(paris):
-    stepper_of(paris, DOUBLE)
-    assert hy.llvm_state.get_diskcache_path().name == system.FOLDER
-    assert hy.llvm_state.get_diskcache_limit() == system.MOST_BYTES
+def test_the_disk_cache_is_the_projects_own_and_bounded_and_off_for_real_where_it_never_hits(paris, tmp_path):
+    states, cache, kept_in_real = in_a_home(tmp_path, tmp_path)
+    place, _, limit = cache.rpartition(" ")
+    assert Path(place).name == "foucault"
+    assert any(Path(place).iterdir())
+    assert int(limit) < 100e6  # bytes
+    assert kept_in_real == "False"
+    assert states == str(trajectory(paris, [0, 20])[1].tolist())
 
 
-@pytest.mark.parametrize("place", ["relative", "", "/dev/null/no_folder"])
-def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path, place):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(system.hy.llvm_state, "get_diskcache_path", lambda: place)
-    system._has_place.cache_clear()
-    model_module._compiled.cache_clear()
-    try:
-        stepper_of(paris, DOUBLE)
-        assert not hy.llvm_state.get_diskcache_enabled()
-        assert not list(tmp_path.iterdir())
-    finally:
-        monkeypatch.undo()
-        system._has_place.cache_clear()
+@pytest.mark.parametrize("home", ["relative", "", "/dev/null/no_folder"])
+def test_where_no_cache_can_be_heyoka_does_without(paris, tmp_path, home):
+    assert in_a_home(home, tmp_path) == [str(trajectory(paris, [0, 20])[1].tolist()), "False"]
+    assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("prec", one_in(2, [200, 80]))
-def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris, monkeypatch, prec):
-    plan = Plan(paris.exact, "space", real(prec), (Fraction(0), Fraction(50), Fraction(100)), transits=True)
-    quick = module.run(plan)
-    monkeypatch.setattr(model_module, "SHORT_WORK", 0)
-    thorough = module.run(plan)
-    assert quick.grid.values == thorough.grid.values
-    assert quick.transits.values == thorough.transits.values
+def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris):
+    """As it is for a short run; that of a long one, whose steps are the same at first, is compiled thoroughly."""
+    quick, thorough = (
+        run(Plan(paris.exact, "space", real(200), (Fraction(0), Fraction(50), Fraction(end)), transits=True))
+        for end in (100, 7200)
+    )
+    assert quick.grid.values[:2] == thorough.grid.values[:2]
+    early = [row for row in quick.transits.values if row[0] < 50 << quick.transits.bits]
+    assert early == thorough.transits.values[: len(early)] != []
 
 
 def test_no_states_give_no_rows(paris):
