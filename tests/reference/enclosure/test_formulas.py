@@ -11,7 +11,6 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
 from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, Radius, Scaled, SceneBalls
-from reference.enclosure.shapes import Sizes
 from reference.enclosure.six_columns import CUT, FINE, Columns, cut, residuals
 from reference.numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 
@@ -92,7 +91,7 @@ def test_sizes_bound_what_their_names_say_and_nearly_reach_it(size):
         for s in (Fraction(-1), Fraction(0), Fraction(1)):
             got = [length(x) for x in defects(piece, s)]
             for i, (x, bound) in enumerate(zip(got, bounds, strict=True)):
-                assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9), (Sizes._fields[i], piece.step)
+                assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9), (i, piece.step)
                 best[i] = max(best[i], x / float(bound) if x else 0)
     assert all(best > 0.97), best
 

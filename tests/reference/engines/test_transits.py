@@ -11,9 +11,9 @@ import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
 from reference import solve, sweep
-from reference.engines.heyoka.events import _first_contradiction, _Step, march
+from reference.engines.heyoka.events import march
 from reference.engines.heyoka.model import Numbers
-from reference.engines.heyoka.stepper import Stepper
+from reference.engines.heyoka.stepper import Stepper, Zero
 from reference.engines.heyoka.system import system_of
 from reference.engines.plan import Plan
 from reference.engines.registry import run
@@ -229,18 +229,44 @@ def guarded_moving(scene, stepper, t_end=60):
     return march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)])[1]
 
 
-def step_of(zeros, rest, directions, dtype=float):
-    """A step whose xdot has these zeros, and directions of the zeros that were found."""
-    xdot = np.polynomial.polynomial.polymul(np.polynomial.polynomial.polyfromroots(zeros), rest)
-    series = np.concatenate([[0.3], xdot / np.arange(1, len(xdot) + 1)]).astype(dtype)
-    return _Step((0.0, None), 0, 0, 1.0, series, dtype(1), directions)
+class MadeUp:
+    """What `march` steps: one second, in which xdot is a known polynomial with these zeros and others elsewhere."""
+
+    def __init__(self, number, zeros, rest):
+        self.number, self.numbers = number, Numbers(number)
+        polynomial = np.polynomial.polynomial
+        xdot = polynomial.polymul(polynomial.polyfromroots(zeros), rest)
+        series = np.concatenate([[0.3], xdot / np.arange(1, len(xdot) + 1)])
+        self.series = series.astype(self.numbers.dtype)
+        self.state, self.time = self.series[:1], self.numbers.of(0)
+        self.found, self.zeros = [], []
+
+    def advance(self, limit):
+        """Take the whole step, however long it may be, and find what is found of its zeros."""
+        self.time, self.zeros = self.numbers.of(1), list(self.found)
+
+    def last_of_x(self):
+        return self.series, self.numbers.of(1)
+
+    def mark(self):
+        return self.time, None
+
+    def back(self, mark):
+        self.time = mark[0]
+
+    def sample(self, times, states):
+        states.append(self.state)
+
+    def marched(self, found):
+        """The zeros that `march` lets pass, of those that are found."""
+        self.time, self.found = self.numbers.of(0), found
+        return march(self, [self.numbers.of(0), self.numbers.of(1)])[1]
 
 
 @pytest.mark.parametrize("number", [DOUBLE, LONG_DOUBLE])
 def test_guard_the_zeros_of_any_polynomial_are_counted(number, size):
     """Up to four zeros in a step, some close together, others just outside it, or complex and near."""
     rng, numbers = np.random.default_rng(31), Numbers(number)
-    dtype = numbers.dtype
     for case in range(size(80, 300)):
         many = case % 5
         zeros = np.sort(rng.uniform(0.001, 0.999, many))
@@ -256,10 +282,12 @@ def test_guard_the_zeros_of_any_polynomial_are_counted(number, size):
         rest = np.polynomial.polynomial.polymul(rest, far)
         first = -np.sign(np.polynomial.polynomial.polyval(0, rest) * (-1) ** many)
         directions = [int(first) * (-1) ** k for k in range(many)]
-        assert _first_contradiction([step_of(zeros, rest, directions, dtype)], numbers) is None, (case, zeros)
+        every = [Zero(numbers.of(s), d, None) for s, d in zip(zeros.tolist(), directions, strict=True)]
+        stepper = MadeUp(number, zeros, rest)
+        assert stepper.marched(every) == every, (case, zeros)
         for lost in range(1, 1 << many):
-            kept = [d for k, d in enumerate(directions) if not lost >> k & 1]
-            assert _first_contradiction([step_of(zeros, rest, kept, dtype)], numbers) is not None, (case, zeros, lost)
+            with pytest.raises(IntegrationError, match="zeros of xdot near"):
+                stepper.marched([zero for k, zero in enumerate(every) if not lost >> k & 1])
 
 
 def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
