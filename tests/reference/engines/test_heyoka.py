@@ -13,6 +13,7 @@ import heyoka as hy
 import numpy as np
 import pytest
 from places import ROOT
+from sampled import one_in
 from small_scenes import make_scene, model_at, stepper_of
 
 from reference import trajectory
@@ -224,7 +225,7 @@ def test_the_disk_cache_is_the_projects_own_and_bounded_and_off_for_real_where_i
     assert states == str(trajectory(paris, [0, 20])[1].tolist())
 
 
-@pytest.mark.parametrize("home", ["relative", "", "/dev/null/no_folder"])
+@pytest.mark.parametrize("home", one_in(3, ["relative", "", "/dev/null/no_folder"]))
 def test_where_no_cache_can_be_heyoka_does_without(paris, tmp_path, home):
     assert in_a_home(home, tmp_path) == [str(trajectory(paris, [0, 20])[1].tolist()), "False"]
     assert not list(tmp_path.iterdir())
@@ -234,7 +235,7 @@ def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris):
     """As it is for a short run; that of a long one, whose steps are the same at first, is compiled thoroughly."""
     quick, thorough = (
         run(Plan(paris.exact, "space", real(200), (Fraction(0), Fraction(50), Fraction(end)), transits=True))
-        for end in (100, 7200)
+        for end in (100, 2000)
     )
     assert quick.grid.values[:2] == thorough.grid.values[:2]
     early = [row for row in quick.transits.values if row[0] < 50 << quick.transits.bits]
