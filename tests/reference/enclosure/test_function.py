@@ -255,6 +255,7 @@ def test_a_tube_from_elsewhere_is_refused():
 
     def forged(following, until, series):
         following.advance(following.covered[0])
+        following.add(until, series)
 
     with pytest.raises(ArithmeticError, match="from the course alone"):
         Driver(short("paris", "20")).proved(forged)
