@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from forgery import forge, moved, seal
-from small_scenes import make_scene
 
 import reference
 from reference.dataset.checks.scene_check import largest_jerk
@@ -30,21 +29,8 @@ WIDER = 10**8  # bounds so wide that rounding, of which they consist, is nothing
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    """A spherical pendulum on an Earth at rest, with its passages of a gate."""
-    scene = make_scene(
-        "spherical_swing",
-        pendulum={"length": "10"},
-        site={"rotation_rate": "0", "gravity": "9.8", "gravity_is": "effective"},
-        release={"x": "3", "y": "1", "vx": "1", "vy": "-2"},
-        run={"t_end": "20", "grid_step": "10", "digits": 15, "sections": ["gate 30"]},
-    )
-    return write(reference.solve(scene), tmp_path_factory.mktemp("tight") / "spherical_swing")
-
-
-@pytest.fixture(scope="module")
-def wide(written, tmp_path_factory):
-    """The same with wide bounds on transits and passages, which a dataset without a proof may have."""
+def wide(passing, tmp_path_factory):
+    """The same motion with wide bounds on transits and passages, which a dataset without a proof may have."""
 
     def widened(bounds):
         return {name: bound if name == "t" else f"{float(bound) * WIDER:.1e}" for name, bound in bounds.items()}
@@ -54,7 +40,7 @@ def wide(written, tmp_path_factory):
         document["bounds"] = bounds_of(bounds["grid"], widened(bounds["transits"])).model_dump()
         document["sections"]["bounds"] = widened(document["sections"]["bounds"])
 
-    folder = Path(shutil.copytree(written, tmp_path_factory.mktemp("wide") / written.name))
+    folder = Path(shutil.copytree(passing, tmp_path_factory.mktemp("wide") / passing.name))
     forge(folder, manifest=widen)
     assert verify(folder).problems == []
     return folder
@@ -186,8 +172,8 @@ def test_the_bound_of_a_time_is_at_least_half_a_unit_of_its_last_digit(swing, pa
 
 @pytest.mark.parametrize("kind, column", [("grid", "x"), ("transits", "t"), ("transits", "x")])
 @pytest.mark.parametrize("side", [-1, 1])
-def test_a_double_is_that_of_some_number_within_the_bound_of_the_decimal(written, tmp_path, kind, column, side):
-    folder = Path(shutil.copytree(written, tmp_path / written.name))
+def test_a_double_is_that_of_some_number_within_the_bound_of_the_decimal(passing, tmp_path, kind, column, side):
+    folder = Path(shutil.copytree(passing, tmp_path / passing.name))
     files = read_files(folder)
     plain, name = files.tables[f"{kind}.csv"], f"{kind}.binary64.csv"
     cell = plain.header.index(column)
@@ -204,8 +190,8 @@ def test_a_double_is_that_of_some_number_within_the_bound_of_the_decimal(written
 
 
 @pytest.mark.parametrize("column", ["x", "vy"])
-def test_a_column_with_a_digit_less_than_asked_for_is_found(written, tmp_path, column):
-    folder = Path(shutil.copytree(written, tmp_path / written.name))
+def test_a_column_with_a_digit_less_than_asked_for_is_found(passing, tmp_path, column):
+    folder = Path(shutil.copytree(passing, tmp_path / passing.name))
 
     def cut(rows, header):
         for row in rows:
