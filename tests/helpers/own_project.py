@@ -1,4 +1,4 @@
-"""A copy of the project with a few scenes and no golden datasets: what ships there is for a test to make or to change."""
+"""A copy of the project with a few scenes and no golden datasets: a test may make and change what ships there."""
 
 from __future__ import annotations
 
@@ -30,13 +30,19 @@ def environment_of(project: Path) -> dict[str, str]:
     return os.environ | {"PYTHONPATH": str(project)}
 
 
-# numba would compile all again for a new folder
 WITHOUT_NUMBA = "import sys; sys.modules['numba'] = None; from foucault import main; main()"
 
 
-def foucault_of(project: Path, *words: object) -> Any:
-    """Run a command of a copy of the project, without numba; return the finished process with its output as text."""
-    command = [sys.executable, "-c", WITHOUT_NUMBA, *map(str, words)]
+def foucault_of(project: Path, *words: object, numba: bool = True) -> Any:
+    """Run a command of a copy of the project; return the finished process with its output as text.
+
+    Args:
+        project: the folder of the copy.
+        words: of the command.
+        numba: whether it is installed: for a new folder it compiles all again.
+    """
+    begin = ["-m", "foucault"] if numba else ["-c", WITHOUT_NUMBA]
+    command = [sys.executable, *begin, *map(str, words)]
     return subprocess.run(
         command, cwd=project, env=environment_of(project), capture_output=True, text=True, check=False
     )

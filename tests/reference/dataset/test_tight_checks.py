@@ -122,6 +122,13 @@ def test_a_row_may_break_a_law_by_what_its_bounds_allow_and_not_by_a_tenth_more(
     assert any(said in sentence for sentence in problems_of(swing)) is found
 
 
+@pytest.mark.parametrize("scene", ["near_inverted", "over_top"])
+def test_a_bob_above_the_pivot_obeys_the_laws_too(tmp_path, scene):
+    solution = reference.solve(scene, t_end="2", digits=10, level="computed")
+    assert max(solution.grid.exact("z")) > solution.scene.exact.length / 4
+    assert problems_of(write(solution, tmp_path / scene)) == []
+
+
 def change_a_row(folder, kind, cells, place=1, **more):
     """Put other texts into a row of a table, the second if no other is asked for."""
 
