@@ -435,8 +435,8 @@ def test_a_forged_passage_is_found(written, tmp_path, said, section, columns, pa
 
 
 def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(tmp_path, foucault):
-    """Two rows and no transits, of 500,000 s."""
-    scene = reference.load_scene("paris", ["run.t_end=500000", "run.grid_step=500000", "run.digits=4"])
+    """Two rows and no transits, of a million seconds."""
+    scene = reference.load_scene("paris", ["run.t_end=1000000", "run.grid_step=1000000", "run.digits=4"])
     folder = write(reference.solve(scene, level="computed", transits=False), tmp_path / "paris")
     status, out, _ = foucault("verify", folder)
     ok, note = out.rstrip("\n").split("; ", 1)
@@ -445,6 +445,15 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(tmp_pa
     assert re.search(r"integrating it again would take about [0-9]+ s\)$", note)
     (row,) = json.loads(foucault("verify", folder, "--json")[1])["rows"]
     assert row == {"path": str(folder), "ok": True, "problems": [], "notes": [note]}
+
+
+def test_where_two_runs_do_not_decide_the_motion_finer_ones_follow(tmp_path):
+    """This swing loses more than ten digits, and the manifest names a run of too few bits for them."""
+    scene = reference.load_scene("near_inverted", ["id=inverted", "run.transits=false", "run.level=confirmed"])
+    folder = write(reference.solve(scene), tmp_path / "inverted")
+    forge(folder, manifest=lambda document: document["run"].update(number="real(64)"))
+    found = verify(folder)
+    assert (found.problems, found.undecided) == ([], ["not decided without --recompute: the cross-checks"])
 
 
 def test_recomputing_finds_what_no_physics_can_see_and_names_it_with_both_values(dataset, foucault):
