@@ -15,6 +15,7 @@ import jsonschema
 import numpy as np
 import pytest
 import schemas
+from forgery import forge, moved
 from small_scenes import make_scene
 
 import reference
@@ -397,15 +398,18 @@ def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     assert command(make_scene("mine"), "mine+site.latitude=1", Making().options).endswith("--set site.latitude=1")
 
 
-def test_what_was_solved_is_compared_with_what_was_proved_before_it_is_in_place(solution, tmp_path):
-    """The files of another motion pass every check of their own, and are refused beside this solution."""
-    other = reference.solve(solution.scene.with_values(["release.x=0.31"]), level="confirmed")
-    texts = render(other)
-    with pytest.raises(DatasetError):
-        write_texts(texts, tmp_path / "checked", solution)
-    assert [*tmp_path.iterdir()] == []
-    write_texts(texts, tmp_path / "unchecked")
-    assert problems_of(tmp_path / "unchecked") == []
+def test_what_is_printed_is_compared_with_what_was_proved_before_it_is_in_place(tmp_path):
+    """A number that is off by a unit of its last digit passes every check of the files by themselves."""
+    pytest.importorskip("flint")
+    scene = reference.load_scene("paris", ["run.t_end=20", "run.grid_step=10", "run.digits=12"])
+    proved = reference.solve(scene, confirm="none", audit=False)
+    folder = write(proved, tmp_path / "paris")
+    forge(folder, grid=lambda rows, _: rows[1].__setitem__(1, moved(rows[1][1], Fraction(1, 10**60))))
+    assert problems_of(folder) == []
+    texts = {path.name: path.read_text() for path in folder.iterdir()}
+    with pytest.raises(DatasetError, match="this is not what was proved"):
+        write_texts(texts, tmp_path / "forged", proved)
+    assert [path.name for path in tmp_path.iterdir()] == ["paris"]
 
 
 def test_a_number_that_its_error_reaches_gets_the_double_of_the_printed_one():
