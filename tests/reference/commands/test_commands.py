@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from interruption import gone_within, interrupted, members
+from own_project import foucault_of, own_project
 from places import ROOT
 
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
@@ -298,23 +299,35 @@ def test_an_engine_that_so_few_digits_do_not_need_is_refused(foucault, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path, monkeypatch):
-    from reference.solver import pilot as pilot_runs
-
-    monkeypatch.setattr(pilot_runs, "MAX_PREC", 60)
-    status, out, err = foucault("generate", "paris", "--t-end", "60", "--out", str(tmp_path / "p"))
+def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path):
+    ages = ("--t-end", "1e13", "--set", "run.grid_step=1e10", "--level", "computed")
+    status, out, err = foucault("generate", "paris", *ages, "--out", tmp_path / "p")
     assert (status, out) == (3, "")
-    assert "keep no digit" in err
+    assert "steps" in err and "Ask for a shorter run (run.t_end up to about" in err
     assert list(tmp_path.iterdir()) == []
 
 
-def test_verify_without_any_dataset_says_so(foucault, tmp_path, monkeypatch):
-    from reference.commands import verify
+def test_verify_without_any_dataset_says_so(tmp_path):
+    done = foucault_of(own_project(tmp_path / "own", ["paris"]), "verify")
+    assert (done.returncode, "foucault generate" in done.stderr) == (2, True)
 
-    monkeypatch.setattr(verify, "seals", dict)
-    status, _, err = foucault("verify")
-    assert status == 2
-    assert "foucault generate" in err
+
+@pytest.mark.parametrize("installed", [False, True])
+def test_a_scene_as_it_stands_is_written_where_it_ships_in_a_checkout_and_never_into_an_installed_package(
+    tmp_path, installed
+):
+    project = own_project(tmp_path / "own", ["conical"])
+    scene = project / "data/scenes/conical.toml"
+    short = {"t_end": 't_end = "6"', "digits": "digits = 9", "level": 'level = "computed"'}
+    lines = [short.get(line.partition(" ")[0], line) for line in scene.read_text().splitlines()]
+    scene.write_text("\n".join(lines) + "\n")
+    if installed:
+        (project / "data").rename(project / "reference/data")
+    done = foucault_of(project, "generate", "conical", "--json")
+    assert done.returncode == 0, done.stderr
+    place = Path(json.loads(done.stdout)["out"])
+    assert project / place == project / ("golden/conical" if installed else "data/golden/conical")
+    assert (project / place / "manifest.json").is_file()
 
 
 def test_help_loads_neither_heyoka_nor_flint_nor_numpy():

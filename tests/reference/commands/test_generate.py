@@ -3,67 +3,37 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import signal
-from concurrent.futures import Future
+import subprocess
+import sys
+import time
 from pathlib import Path
 
-import failing_datasets
 import pytest
-from typer.testing import CliRunner
+from own_project import environment_of, foucault_of, own_project
 
-from foucault import commands
 from reference.commands.generate_all import is_done, jobs
-from reference.scenes.shipped import data_root, index, scene_ids, seals
+from reference.scenes.shipped import scene_ids, seals
 
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
 FEW = ["conical", "pantheon", "paris"]
 
 
-def ship_few(monkeypatch):
-    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW)
-    monkeypatch.setattr("reference.commands.generate_all.seals", dict)
-
-
-@pytest.fixture
-def few(monkeypatch):
-    """Have three scenes ship, and no seals."""
-    ship_few(monkeypatch)
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    """A project with which three scenes come, and no datasets."""
+    return own_project(tmp_path_factory.mktemp("project") / "own", FEW)
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(project, tmp_path_factory):
     """The datasets of three scenes, made by two workers, and what was said of them."""
     out = tmp_path_factory.mktemp("everything") / "all"
-    with pytest.MonkeyPatch.context() as patch:
-        ship_few(patch)
-        words = ["generate", "--all", *SHORT, "--workers", "2", "--out", str(out), "--json"]
-        said = CliRunner().invoke(commands(), words)
-    assert said.exit_code == 0, said.output
+    said = foucault_of(project, "generate", "--all", *SHORT, "--workers", "2", "--out", out, "--json")
+    assert said.returncode == 0, said.stderr
     return out, json.loads(said.stdout)
-
-
-class Here:
-    """A pool that works in this process, for tests of what is made and not of how."""
-
-    def __init__(self, workers):
-        assert workers == 1
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def submit(self, work, *arguments):
-        done = Future()
-        done.set_result(work(*arguments))
-        return done
-
-
-@pytest.fixture
-def here(monkeypatch):
-    monkeypatch.setattr("reference.commands.generate_all.Pool", Here)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -95,65 +65,92 @@ def test_each_dataset_has_the_bytes_that_generate_gives_it_alone(foucault, made,
         assert contents(out / name) == contents(tmp_path / name)
 
 
-@pytest.mark.usefixtures("few", "here")
-def test_it_goes_on_with_what_is_missing_or_damaged(foucault, made, tmp_path, monkeypatch):
+def test_it_goes_on_with_what_is_missing_or_damaged(project, made, tmp_path):
     out = Path(shutil.copytree(made[0], tmp_path / "all"))
     before = contents(out / "paris"), contents(out / "conical")
     (out / "paris" / "grid.csv").write_text("t,x\n")
     (out / ".conical.partial-abc").mkdir()  # of a command that was killed once it had put the dataset in place
     kept = (out / "conical" / "manifest.json").stat()
-    status, text, _ = foucault("generate", "--all", *SHORT, "--out", out)
-    assert status == 0
-    assert "3 datasets: 2 were there, 1 made, 0 failed" in text
+    done = foucault_of(project, "generate", "--all", *SHORT, "--out", out)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "3 datasets: 2 were there, 1 made, 0 failed" in done.stdout
     assert (contents(out / "paris"), contents(out / "conical")) == before
     assert sorted(path.name for path in out.iterdir()) == FEW
     assert (out / "conical" / "manifest.json").stat().st_mtime_ns == kept.st_mtime_ns
     # other inputs are another dataset
-    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW[2:])
-    status, text, _ = foucault("generate", "--all", "--t-end", "120", *SHORT[2:], "--out", out)
-    assert (status, "1 made" in text) == (0, True)
+    done = foucault_of(project, "generate", "--all", "--t-end", "120", *SHORT[2:], "--out", out)
+    assert (done.returncode, "0 were there, 3 made" in done.stdout) == (0, True)
 
 
-@pytest.mark.usefixtures("few")
-@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes")
-def test_a_scene_that_fails_costs_only_itself(foucault, tmp_path, monkeypatch):
-    monkeypatch.setattr("reference.commands.generate_all.made", failing_datasets.made)
-    words = ("generate", "--all", *SHORT, "--workers", 1, "--out", tmp_path / "all", "--json")
-    status, out, err = foucault(*words)
-    assert status == 1
-    found = {row["dataset"]: (row["status"], bool(row["reason"])) for row in json.loads(out)["rows"]}
+def replace_in(path, *pairs):
+    text = path.read_text()
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+
+
+def children(command):
+    lists = Path(f"/proc/{command.pid}/task").glob("*/children")
+    return [int(child) for path in lists for child in path.read_text().split()]
+
+
+def kill_the_solving_worker(command, but=0):
+    """Kill the process that solves, once it has loaded heyoka; return its id."""
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline:
+        for child in children(command):
+            if child != but and "heyoka" in Path(f"/proc/{child}/maps").read_text():
+                os.kill(child, signal.SIGKILL)
+                return child
+        time.sleep(0.02)
+    raise AssertionError("no worker began")
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="looks for the worker in /proc")
+def test_a_scene_that_fails_costs_only_itself(tmp_path):
+    """The first is killed at its millions of steps; the second needs too many to begin."""
+    project, out = own_project(tmp_path / "own", FEW), tmp_path / "all"
+    replace_in(project / "data/scenes/conical.toml", ("rotation_rate = ", 'rotation_rate = "20"  # '))
+    replace_in(project / "data/scenes/pantheon.toml", ("[pendulum]", '[pendulum]\ndrag = "1e9"'))
+    words = ["generate", "--all", *SHORT, "--workers", "1", "--out", str(out), "--json"]
+    command = [sys.executable, "-m", "foucault", *words]
+    with subprocess.Popen(
+        command, cwd=project, env=environment_of(project), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        first = kill_the_solving_worker(process)
+        kill_the_solving_worker(process, but=first)  # what dies is tried once more
+        said, err = process.communicate()
+    assert process.returncode == 1
+    found = {row["dataset"]: (row["status"], bool(row["reason"])) for row in json.loads(said)["rows"]}
     assert found == {"conical": ("crashed", True), "pantheon": ("unreachable", True), "paris": ("ok", False)}
     assert "2 of 3 datasets failed" in err
-    assert [path.name for path in (tmp_path / "all").iterdir()] == ["paris"]
+    assert [path.name for path in out.iterdir()] == ["paris"]
     # what is left is out of reach alone
-    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW[1:])
-    monkeypatch.setattr("reference.commands.generate_all.Pool", Here)
-    assert foucault(*words)[0] == 3
+    (project / "data/scenes/conical.toml").unlink()
+    assert foucault_of(project, *words).returncode == 3
 
 
-@pytest.mark.usefixtures("few")
-def test_a_cluster_makes_the_same_bytes(foucault, tmp_path, monkeypatch):
+def test_a_cluster_makes_the_same_bytes(foucault, tmp_path):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: ["paris"])
-    status, _, err = foucault("generate", "--all", *SHORT, "--cluster", "local:1", "--out", tmp_path / "there")
-    assert status == 0, err
+    project = own_project(tmp_path / "own", ["paris"])
+    done = foucault_of(project, "generate", "--all", *SHORT, "--cluster", "local:1", "--out", tmp_path / "there")
+    assert done.returncode == 0, done.stderr
     assert foucault("generate", "paris", *SHORT, "--out", tmp_path / "here")[0] == 0
     assert contents(tmp_path / "there" / "paris") == contents(tmp_path / "here")
 
 
-@pytest.mark.usefixtures("here")
-def test_a_seal_of_a_dataset_that_ships_is_kept(foucault, tmp_path, monkeypatch):
-    data = tmp_path / "data"
-    shutil.copytree(data_root() / "scenes", data / "scenes")
-    shutil.copy(data_root() / "flags.toml", data)
-    (data / "golden").mkdir()
-    monkeypatch.setattr("reference.scenes.shipped.data_root", lambda: data)
-    monkeypatch.setattr("reference.commands.generate_all.scene_ids", lambda: FEW[1:])
-    foucault("generate", "--all", *SHORT, "--out", data / "golden", "--workers", 1)
-    assert sorted(seals()) == FEW[1:]
-    assert "2 were there" in foucault("generate", "--all", *SHORT, "--out", data / "golden")[1]
-    (data / "golden" / "index.json").write_text(json.dumps(index() | {"paris": {**index()["paris"], "seal": "0" * 64}}))
-    assert "1 were there, 1 made" in foucault("generate", "--all", *SHORT, "--out", data / "golden")[1]
+@pytest.mark.usefixtures("made")
+def test_the_seal_of_a_dataset_that_ships_is_kept_and_of_no_other(project):
+    golden = project / "data/golden"
+    assert [*golden.iterdir()] == []  # what was made elsewhere has none
+    words = ("generate", "--all", *SHORT, "--out", golden)
+    assert "0 were there, 3 made" in foucault_of(project, *words).stdout
+    index = json.loads((golden / "index.json").read_text())
+    manifests = {name: json.loads((golden / name / "manifest.json").read_text()) for name in FEW}
+    assert index == {name: {"seal": manifests[name]["seal"], "options": "--engine heyoka"} for name in FEW}
+    (golden / "index.json").write_text(json.dumps(index | {"paris": {**index["paris"], "seal": "0" * 64}}))
+    assert "2 were there, 1 made" in foucault_of(project, *words).stdout
 
 
 @pytest.mark.parametrize(

@@ -113,13 +113,3 @@ def test_near_the_inverted_position_the_bound_is_kept(nearly_inverted):
     times, rows = on_another_grid(nearly_inverted, "0.625")
     evaluated = dense(nearly_inverted, times)
     assert 0 < distance_m(evaluated, rows) <= evaluated.bound_m <= 2.0**-58
-
-
-def test_only_at_other_times_than_the_grid_s_is_anything_solved(decimal_grid, monkeypatch):
-    def refuse(*_):
-        raise AssertionError("solved")
-
-    monkeypatch.setattr("reference.solver.solve.solve_at", refuse)
-    assert dense(decimal_grid, [1.0, 0.0, 30.0]).states[1, 0] == float(decimal_grid.exact("x")[10])
-    with pytest.raises(AssertionError, match="solved"):
-        dense(decimal_grid, [1.0, 1.03125])

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import re
+import shutil
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
+from forgery import seal
 
 import reference
-from reference.dataset import render as rendering
+from reference.dataset.checks import read_back
 from reference.dataset.evidence import check_evidence
+from reference.dataset.files import read_files
+from reference.dataset.manifest import MANIFEST
+from reference.dataset.render import render
+from reference.dataset.verify import problems_of
 from reference.errors import DatasetError
 
 
@@ -22,6 +31,17 @@ def solution():
 def proved():
     pytest.importorskip("flint")
     return reference.solve("paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=False)
+
+
+@pytest.fixture(scope="module")
+def written(solution, tmp_path_factory):
+    return reference.write(solution, tmp_path_factory.mktemp("evidence") / "paris")
+
+
+def sealed(folder):
+    """Have hashes and seal fit the page and the vectors that stand there."""
+    texts = {name: (folder / name).read_text() for name in ("vectors.json", "certified.txt")}
+    seal(folder, json.loads((folder / MANIFEST).read_text()), texts)
 
 
 def moved(solution, **changes):
@@ -42,7 +62,7 @@ def moved(solution, **changes):
 )
 def test_a_manifest_of_other_runs_or_another_title_is_refused(change, place, solution):
     """The same files pass beside their own solution."""
-    contents = rendering.render(solution)
+    contents = render(solution)
     check_evidence(contents, solution)
     with pytest.raises(DatasetError, match=place):
         check_evidence(contents, change(solution))
@@ -58,7 +78,7 @@ def test_a_manifest_of_other_runs_or_another_title_is_refused(change, place, sol
     ],
 )
 def test_a_manifest_of_another_proof_is_refused(changes, place, proved):
-    contents = rendering.render(proved)
+    contents = render(proved)
     check_evidence(contents, proved)
     with pytest.raises(DatasetError, match=place):
         check_evidence(contents, replace(proved, proof=replace(proved.proof, **changes)))
@@ -76,19 +96,15 @@ def test_a_manifest_of_another_proof_is_refused(changes, place, proved):
         (lambda said: said["notes"].pop("end"), "notes"),
     ],
 )
-def test_write_refuses_wrong_vectors_that_it_would_make_again(change, place, solution, tmp_path, monkeypatch):
-    honest = rendering.vectors
-
-    def wrong(*words):
-        made = honest(*words)
-        said = made.model_dump()
-        change(said)
-        return type(made).model_validate(said)
-
-    monkeypatch.setattr(rendering, "vectors", wrong)
-    with pytest.raises(DatasetError, match=f"vectors.json: .*{place}"):
-        reference.write(solution, tmp_path / "out")
-    assert list(tmp_path.iterdir()) == []
+def test_wrong_vectors_are_found_by_reading_them_back(change, place, written, tmp_path):
+    """What reads them has nothing in common with what writes them, and so finds what that would write wrongly again."""
+    folder = Path(shutil.copytree(written, tmp_path / "paris"))
+    said = json.loads((folder / "vectors.json").read_text())
+    change(said)
+    (folder / "vectors.json").write_text(json.dumps(said))
+    sealed(folder)
+    assert re.search(f"vectors.json: .*{place}", "\n".join(read_back.problems(read_files(folder))))
+    assert problems_of(folder)
 
 
 @pytest.mark.parametrize(
@@ -99,8 +115,11 @@ def test_write_refuses_wrong_vectors_that_it_would_make_again(change, place, sol
         ("read as: decimal", "read as: binary64"),
     ],
 )
-def test_write_refuses_a_page_of_another_level_that_it_would_make_again(old, new, solution, tmp_path, monkeypatch):
-    honest = rendering.certified_page
-    monkeypatch.setattr(rendering, "certified_page", lambda *words: honest(*words).replace(old, new))
-    with pytest.raises(DatasetError, match=r"certified.txt: its head does not say"):
-        reference.write(solution, tmp_path / "out")
+def test_a_page_of_another_level_is_found_by_reading_it_back(old, new, written, tmp_path):
+    folder = Path(shutil.copytree(written, tmp_path / "paris"))
+    page = (folder / "certified.txt").read_text()
+    assert old in page
+    (folder / "certified.txt").write_text(page.replace(old, new))
+    sealed(folder)
+    assert "certified.txt: its head does not say" in "\n".join(read_back.problems(read_files(folder)))
+    assert problems_of(folder)

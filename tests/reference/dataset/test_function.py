@@ -18,8 +18,6 @@ pytest.importorskip("flint")
 
 import reference
 from reference import DatasetError, InputError
-from reference.dataset.checks import function as checks
-from reference.dataset.checks import motion
 from reference.dataset.files import read_files, read_manifest
 from reference.dataset.manifest import FUNCTION, MANIFEST
 from reference.dataset.place import dataset_id
@@ -163,42 +161,33 @@ def test_bounds_that_are_too_small_are_refused(folder):
 def test_forged_coefficients_are_found_where_the_motion_leaves_the_bound(whole, folder, size):
     """One coefficient is off by 1, 30 or 1,000 units in its last place: the seal finds each, `verify` these too."""
     files, rng = read_files(whole), np.random.default_rng(9)
-    record, function = files.function
-    prec = motion._first_prec(files.manifest)
-    coarse, fine = (motion._run(files, bits, None) for bits in (prec - 22, prec))
-    moments = checks.moments(files)
-    rough, table = (motion._at(map(Fraction, moments), run) for run in (coarse, fine))
-    apart, ends = table.distance(rough).largest(), function.times
+    _, function = files.function
+    ends = function.times
     degree, count, pieces = (n - 1 if i == 0 else n for i, n in enumerate(function.coefficients.shape))
     inside = [
         np.unique([*rng.uniform(*ends[i : i + 2], 100), ends[i], np.nextafter(ends[i + 1], 0)]) for i in range(pieces)
     ]
     truth = [states(files.scene.exact, times) for times in inside]
-    leaving = caught = 0
-    for _ in range(size(60, 300)):
+    leaving = 0
+    for _ in range(size(20, 300)):
         k, j, i = int(rng.integers(0, degree + 1)), int(rng.integers(count)), int(rng.integers(pieces))
         for ulps in (1, 30, 1000):
             coefficients = function.coefficients.copy()
             coefficients[k, j, i] += rng.choice([-1, 1]) * ulps * np.spacing(abs(coefficients[k, j, i]))
             forged = replace(function, coefficients=coefficients)
-            folder.joinpath(FUNCTION[1]).write_bytes(np.ascontiguousarray(coefficients.transpose(2, 1, 0)).tobytes())
+            data = np.ascontiguousarray(coefficients.transpose(2, 1, 0)).tobytes()
+            folder.joinpath(FUNCTION[1]).write_bytes(data)
             assert verify(folder).problems == ["function.f64: a byte was changed (sha256 differs)"]
             at, (high, low) = forged.at(inside[i]), truth[i]
             off = {name: np.abs((getattr(at, name) - high[:, n]) - low[:, n]).max() for n, name in enumerate(STATE)}
             leaves = max(off[name] / forged.bound[name] for name in STATE)
-            found = bool(checks.contradicted(replace(files, function=(record, forged)), moments, table, apart))
+            changed(folder, data=data)
+            found = verify(folder).problems
+            assert all(problem.startswith("function.json: t = ") for problem in found)
             leaving += leaves > 1
-            caught += found
             assert found or leaves <= 1, (k, j, i, ulps, leaves)
             assert leaves > 0.999 or not found
-    assert caught == leaving > size(10, 50)
-    numbers = np.frombuffer(whole.joinpath(FUNCTION[1]).read_bytes(), "<f8").copy()
-    numbers[(degree + 1) * 9 + 1] += 1000 * np.spacing(numbers[(degree + 1) * 9 + 1])
-    changed(folder, data=numbers.tobytes())
-    assert problems_of(folder) == []
-    problems = verify(folder).problems
-    assert problems
-    assert all(problem.startswith("function.json: t = ") for problem in problems)
+    assert leaving > size(3, 50)
 
 
 def test_generate_makes_it_by_default_and_not_with_no_function(foucault, tmp_path):

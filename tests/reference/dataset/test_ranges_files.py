@@ -7,13 +7,13 @@ import re
 from fractions import Fraction
 
 import pytest
+from mutations import loaded, named
 from typer.testing import CliRunner
 
 import reference
 from reference.commands import app
-from reference.dataset import ranges as written
 from reference.dataset.manifest import text_of
-from reference.dataset.ranges import _seal, ends, ranges_id, verify_ranges, write_ranges
+from reference.dataset.ranges import ends, ranges_id, verify_ranges, write_ranges
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 
@@ -69,7 +69,7 @@ def test_ends_are_rounded_outward_to_the_digits_of_the_width(low, high, texts):
     assert ends(Fraction(low), Fraction(high)) == texts
 
 
-def test_ranges_replace_ranges_and_nothing_else(ranges, tmp_path, monkeypatch):
+def test_ranges_replace_ranges_and_nothing_else(ranges, tmp_path):
     folder = write_ranges(ranges, tmp_path / "out")
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     write_ranges(ranges, folder)
@@ -81,11 +81,15 @@ def test_ranges_replace_ranges_and_nothing_else(ranges, tmp_path, monkeypatch):
     point = reference.solve("paris", t_end="20", digits=6, level="computed")
     with pytest.raises(reference.InputError, match="or an older dataset"):
         reference.write(point, folder)
-    monkeypatch.setattr(written, "outward", lambda value, side, places: written.fixed_decimal(value, places))
-    with pytest.raises(reference.DatasetError, match="does not hold what is proved"):
-        write_ranges(ranges, folder)
     assert before == {path.name: path.read_bytes() for path in folder.iterdir()}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "out"]
+
+
+def test_an_end_that_is_rounded_inward_is_not_written(ranges, tmp_path):
+    lying = loaded(named("reference/dataset/ranges.py ends, flip sign: -1"))
+    with pytest.raises(reference.DatasetError, match="does not hold what is proved"):
+        lying.write_ranges(ranges, tmp_path / "out")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_ranges_are_read_back_as_printed(ranges, tmp_path):
@@ -102,6 +106,11 @@ def test_ranges_are_read_back_as_printed(ranges, tmp_path):
         reference.load(folder)
     with pytest.raises(reference.InputError, match=r"a folder with ranges\.json"):
         reference.load_ranges("paris")
+
+
+def seal_of(said):
+    """Return the hash of ranges.json as it is written, without its seal."""
+    return hashlib.sha256(text_of({**said, "seal": ""}).encode()).hexdigest()
 
 
 def narrower(text):
@@ -140,7 +149,7 @@ def test_verify_finds_what_is_not_proved_even_if_it_is_sealed_anew(ranges, tmp_p
         if sealed:
             said["sha256"][file] = hashlib.sha256(text.encode()).hexdigest()
     if sealed:
-        said["seal"] = _seal(said)
+        said["seal"] = seal_of(said)
     (folder / "ranges.json").write_text(text_of(said), encoding="utf-8")
     problems = verify_ranges(folder)
     assert problems and ("does not hold what is proved" in problems[0]) is sealed
@@ -165,7 +174,7 @@ def sealed_anew(folder, change):
     change(said)
     for name in said["sha256"]:
         said["sha256"][name] = hashlib.sha256((folder / name).read_bytes()).hexdigest()
-    said["seal"] = _seal(said)
+    said["seal"] = seal_of(said)
     (folder / "ranges.json").write_text(text_of(said), encoding="utf-8")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -12,7 +13,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from own_project import environment_of, own_project
 from same_bytes import confirmed, made_again, processor, shipped, swept
 from sampled import one_in
 
@@ -68,7 +69,7 @@ def jitter(monkeypatch, share: int) -> list[str]:
         return replace(found, grid=moved(found.grid, prec), transits=moved(found.transits, prec), steps=found.steps + 1)
 
     monkeypatch.setattr(Heyoka, "run", run)
-    monkeypatch.setattr("reference.engines.registry.usable_cores", lambda: 1)  # nothing escapes to a child
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})  # one core, so that nothing escapes to a child
     return types
 
 
@@ -167,7 +168,7 @@ def test_options_are_read_as_they_are_written():
 
 
 def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch, foucault, tmp_path):
-    monkeypatch.setattr("reference.system.imports.missing", lambda names: [name for name in names if name == "numba"])
+    monkeypatch.setitem(sys.modules, "numba", None)
     for words in (("conical",), ("conical", "--out", tmp_path / "conical")):
         status, out, err = foucault("generate", *words)
         assert (status, out) == (2, "")
@@ -180,18 +181,18 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
 
 KEEPING = """
 import sys
-from pathlib import Path
 from reference.scenes import shipped
-shipped.golden_root = lambda: Path(sys.argv[1])
 for k in range(20):
-    shipped.keep_seal(f"scene_{sys.argv[2]}_{k}", f"{k:064x}", "--engine limbs --audit")
+    shipped.keep_seal(f"scene_{sys.argv[1]}_{k}", f"{k:064x}", "--engine limbs --audit")
 """
 
 
-def test_seals_that_several_processes_keep_at_once_are_all_kept(tmp_path, monkeypatch):
-    words = [[sys.executable, "-c", KEEPING, str(tmp_path), str(k)] for k in range(3)]
-    processes = [subprocess.Popen(command, cwd=ROOT) for command in words]
+def test_seals_that_several_processes_keep_at_once_are_all_kept(tmp_path):
+    project = own_project(tmp_path / "own", [])
+    words = [[sys.executable, "-c", KEEPING, str(k)] for k in range(3)]
+    processes = [subprocess.Popen(command, cwd=project, env=environment_of(project)) for command in words]
     assert [process.wait() for process in processes] == [0] * 3
-    monkeypatch.setattr("reference.scenes.shipped.golden_root", lambda: tmp_path)
-    assert len(index()) == 60 and sorted(path.name for path in tmp_path.iterdir()) == ["index.json"]
-    assert seals()["scene_2_3"] == f"{3:064x}"
+    (only,) = (project / "data/golden").iterdir()
+    kept = json.loads(only.read_text())
+    assert (only.name, len(kept)) == ("index.json", 60)
+    assert kept["scene_2_3"] == {"seal": f"{3:064x}", "options": "--engine limbs --audit"}
