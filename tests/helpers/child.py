@@ -28,8 +28,9 @@ def refuse(parent: Any) -> None:
     raise InputError("length", "-1", "a length above 0")
 
 
-def freeze(_: Any) -> None:
-    """Stop this process (SIGSTOP), so that it does not notice the end of its parent."""
+def freeze(parent: Any) -> None:
+    """Send the number of this process and stop it (SIGSTOP), so that it does not notice the end of its parent."""
+    parent(os.getpid())
     os.kill(os.getpid(), signal.SIGSTOP)
 
 
@@ -55,6 +56,13 @@ def hold(parent: Any, folder: str) -> None:
             time.sleep(600)
     finally:
         (Path(folder) / "cleared").touch()
+
+
+class DeadlyArgument:
+    """An argument whose sending kills the process that sends it."""
+
+    def __reduce__(self) -> Any:
+        os.kill(os.getpid(), signal.SIGKILL)
 
 
 def die() -> None:
