@@ -48,6 +48,14 @@ def finalise(parent: Any) -> None:
     _Slow(parent)
 
 
+def report_and_wait(emit: Any, reached: float, file: str) -> None:
+    """Send how far this has come, wait until a file is there, and send a result."""
+    emit(reached)
+    while not Path(file).exists():
+        time.sleep(0.01)
+    emit("done")
+
+
 def hold(parent: Any, folder: str) -> None:
     """Send a word, and wait; leave a file when it ends by an exception."""
     try:
