@@ -254,8 +254,9 @@ def test_the_times_of_passages_have_the_decimals_of_the_latest_of_all_sections(p
 @pytest.mark.parametrize("bits", [100, 200])
 def test_no_error_of_a_transit_is_below_twice_the_difference_of_two_runs(error, bits):
     rough, _, _ = transits_in_double("short cord")
-    differences = [[k * 10**-12 * (1 + row) for k in range(1, len(TRANSITS) + 1)] for row in range(len(rough.transits))]
-    apart = Table(TRANSITS, bits, [[int(x * 2**bits) for x in row] for row in differences])
+    rows, columns = range(1, len(rough.transits) + 1), range(1, len(TRANSITS) + 1)
+    # of more bits than a double has, so that half of them are rounded down there
+    apart = Table(TRANSITS, bits, [[2**bits * row * column // 10**12 for column in columns] for row in rows])
     table = with_transit_errors(rough, dict.fromkeys(GRID, error), apart)
     for name in TRANSITS:
         for bound, gap in zip(table.bound(name), apart.exact(name), strict=True):
