@@ -64,6 +64,13 @@ def test_a_tiny_swing_has_bounds_that_hold(scene):
             assert all(gap <= bound for gap, bound in zip(gaps.exact(name), bounds, strict=True)), name
 
 
+def test_where_steps_are_at_their_longest_the_second_run_has_others():
+    solution = reference.solve(ONE_RUN_TWICE, engine="limbs")
+    (check,) = solution.checks
+    assert solution.run.engine == check.engine == "limbs"
+    assert check.steps > 1.02 * solution.run.steps
+
+
 def test_a_run_does_not_confirm_itself(paris):
     alone = run(Plan(paris.exact, "spin", real(90), (Fraction(0), Fraction(10)), transits=True))
     with pytest.raises(IntegrationError, match="the same run"):
