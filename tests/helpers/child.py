@@ -28,8 +28,9 @@ def refuse(parent: Any) -> None:
     raise InputError("length", "-1", "a length above 0")
 
 
-def freeze(_: Any) -> None:
-    """Stop this process (SIGSTOP), so that it does not notice the end of its parent."""
+def freeze(parent: Any) -> None:
+    """Send the number of this process and stop it (SIGSTOP), so that it does not notice the end of its parent."""
+    parent(os.getpid())
     os.kill(os.getpid(), signal.SIGSTOP)
 
 
@@ -47,6 +48,14 @@ def finalise(parent: Any) -> None:
     _Slow(parent)
 
 
+def report_and_wait(emit: Any, reached: float, file: str) -> None:
+    """Send how far this has come, wait until a file is there, and send a result."""
+    emit(reached)
+    while not Path(file).exists():
+        time.sleep(0.01)
+    emit("done")
+
+
 def hold(parent: Any, folder: str) -> None:
     """Send a word, and wait; leave a file when it ends by an exception."""
     try:
@@ -55,6 +64,13 @@ def hold(parent: Any, folder: str) -> None:
             time.sleep(600)
     finally:
         (Path(folder) / "cleared").touch()
+
+
+class DeadlyArgument:
+    """An argument whose sending kills the process that sends it."""
+
+    def __reduce__(self) -> Any:
+        os.kill(os.getpid(), signal.SIGKILL)
 
 
 def die() -> None:

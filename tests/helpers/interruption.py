@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +69,17 @@ def stderr_of(process: subprocess.Popen[Any]) -> Any:
 def members(group: int) -> int:
     """Return the number of processes of a process group."""
     return sum(_group_of(int(entry.name)) == group for entry in Path("/proc").iterdir() if entry.name.isdecimal())
+
+
+def children() -> set[int]:
+    """Return the processes that this one has started, those included that have ended and were not waited for."""
+    found = set()
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended
+            parent = path.read_text().rpartition(")")[2].split()[1]  # the name before may hold anything
+            if int(parent) == os.getpid():
+                found.add(int(path.parent.name))
+    return found
 
 
 def gone_within(group: int, seconds: float) -> bool:

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-import dataclasses
 import shutil
+import time
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+import child
 import pytest
-import unhurried
 from forgery import forge
 
 import reference
 from reference.dataset.files import read_files
 from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
-from reference.engines import registry
-from reference.engines.registry import Background, send_run
+from reference.engines import AUTO
+from reference.engines.registry import in_background, run, slowest
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.scenes.fields import CONFIRMATIONS
-from reference.solver import enclosed, pilot
+from reference.solver.choice import confirming_plan, first_prec
+from reference.solver.enclosed import confirmed
+from reference.solver.pilot import run_pilot
+from reference.solver.proving import ProofTask
+from reference.system.workers import usable_cores
 
 SHORT = {"t_end": "60", "digits": 18, "level": "enclosed"}
 PARIS = reference.load_scene("paris")
@@ -95,24 +100,21 @@ def test_what_was_made_before_the_option_says_nothing_of_a_whole_confirmation(ma
         assert bool(problems_of(old)) == (word == "sampled")
 
 
-def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
-    honest = Background.result
-
-    def wrong(self, report=None):
-        return dataclasses.replace(honest(self), directions=[])
-
-    monkeypatch.setattr(Background, "result", wrong)
-    monkeypatch.setattr("reference.solver.enclosed.run", lambda plan: wrong(Background(None, send_run, plan)))
+def test_a_proof_of_other_numbers_is_not_confirmed(solved):
+    scene, times = solved["none"].scene, solved["none"].times
+    problem = ProofTask(scene, AUTO, run_pilot(scene.exact, times))
+    witness = run(confirming_plan(scene, times, problem.pilot, first_prec(scene, problem.pilot, AUTO)))
+    assert confirmed(problem, solved["none"], "whole", witness).proof.confirmed == "whole"
+    forged = replace(solved["none"], directions=solved["none"].directions[:-1])
     with pytest.raises(IntegrationError, match="does not confirm"):
-        reference.solve(PARIS, **SHORT, confirm="whole")
+        confirmed(problem, forged, "whole", witness)
 
 
-def test_a_confirmation_out_of_reach_is_refused_before_the_proof(monkeypatch):
-    monkeypatch.setattr(pilot, "MAX_PREC", 70)  # the pilot has 69
-    monkeypatch.setattr("reference.solver.enclosed.proved", None)
-    for word in ("whole", "sampled"):
-        with pytest.raises(UnreachableError, match="--confirm none"):
-            reference.solve(PARIS, **SHORT, confirm=word)
+@pytest.mark.parametrize(("word", "t_end"), [("whole", "40000"), ("sampled", "400000")])
+def test_a_confirmation_out_of_reach_is_refused_before_the_proof(word, t_end):
+    """A tenth of ten times as many steps is out of reach as well; a test would not end with such a proof."""
+    with pytest.raises(UnreachableError, match="--confirm none"):
+        reference.solve(PARIS, t_end=t_end, digits=590, level="enclosed", confirm=word)
 
 
 def test_without_a_proof_there_is_nothing_to_confirm(foucault, tmp_path):
@@ -145,24 +147,15 @@ def test_a_user_gets_an_audit_and_a_sampled_confirmation_unasked(foucault, tmp_p
     assert read_files(tmp_path / "paris").manifest.command.endswith(f" {named} --function")
 
 
-def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeypatch):
-    seen: list[float] = []
-    honest, before = enclosed.proved, []
-
-    def noted(*arguments):
-        solution = honest(*arguments)
-        before.extend(seen)
-        return solution
-
-    monkeypatch.setattr(enclosed, "proved", noted)
-    monkeypatch.setattr(registry, "usable_cores", lambda: 2)
-    monkeypatch.setattr(enclosed, "WORTH_A_PROCESS", 0.0)
-    monkeypatch.setattr(enclosed, "AUDIT_STEPS", 0)
-    monkeypatch.setattr(enclosed, "_send_digits", unhurried.digits)
-    monkeypatch.setattr(enclosed, "send_run", unhurried.confirming_run)
-    end = 60.0
-    reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm="whole", report=seen.append)
-    assert before[-1] < end  # the proof has ended, its audit has not
-    after = seen[len(before) :]
-    assert after[0] < after[-1]
-    assert after == sorted(after)
+@pytest.mark.skipif(usable_cores() < 2, reason="nothing is done in the background on one core")
+def test_progress_is_that_of_the_slowest_work(tmp_path):
+    told: list[float] = []
+    with in_background(True, child.report_and_wait, 7.0, str(tmp_path / "go_on")) as work:
+        while work.reached < 7.0:
+            time.sleep(0.01)
+        report = slowest(told.append, [work])
+        report(60.0)
+        (tmp_path / "go_on").touch()
+        assert work.result() == "done"
+        report(60.0)
+    assert told == [7.0, 60.0]

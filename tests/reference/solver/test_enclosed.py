@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 from time import process_time
 
 import pytest
+from interruption import children
 from sampled import one_in
 from small_scenes import make_scene
 
@@ -16,16 +21,16 @@ from reference.dataset.golden import load
 from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
-from reference.enclosure import prove
-from reference.enclosure.course import FINISHED, Course
-from reference.enclosure.prove import _Run, plan_for
+from reference.enclosure import enclose
+from reference.enclosure.course import FINISHED
 from reference.engines.plan import Plan
-from reference.engines.registry import engines, fastest, run
+from reference.engines.registry import engines, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.precision import fixed_decimal, real
-from reference.solver import proof_steps
 from reference.solver.enclosed import audited, proved_digits
+from reference.solver.pilot import run_pilot
 from reference.solver.proof_steps import Feed
+from reference.solver.proving import ProofTask, guarded, proved
 
 SHORT = {"t_end": "120", "digits": 30, "level": "enclosed"}
 
@@ -127,48 +132,20 @@ def test_scenes_that_bounds_find_hard_are_proved(name, engine, size):
     assert solution.possible == ()
 
 
-@pytest.fixture
-def attempts(monkeypatch):
-    """Return the CPU seconds of each attempt of a proof, with those of its approximant, in this process."""
-    seconds, honest = [], _Run.prove
-
-    def timed(attempt, approximant):
-        begun = process_time()
-        try:
-            return honest(attempt, approximant)
-        finally:
-            seconds.append(process_time() - begun)
-
-    monkeypatch.setattr(_Run, "prove", timed)
-    monkeypatch.setattr(proof_steps, "WORTH_A_PROCESS", 1e9)
-    return seconds
+def cpu_s():
+    """Return the CPU seconds of this process and of those that it waited for."""
+    return process_time() + sum(os.times()[2:4])
 
 
 @pytest.mark.parametrize(
     ("name", "t_end", "digits"), [("paris", "60", 15), ("pantheon", "60", 40), ("damped", "600", 20)]
 )
-def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(attempts, name, t_end, digits):
+def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(name, t_end, digits):
+    before = cpu_s()
     solution = reference.solve(name, t_end=t_end, digits=digits, level="enclosed", engine="heyoka")
-    assert len(attempts) == 1
-    run_s, proof_s = solution.run.cpu_s, solution.proof.enclosure.cpu_s
-    assert run_s > 0 and proof_s > 0 and run_s + proof_s < attempts[0]
+    assert solution.run.cpu_s > 0 and solution.proof.enclosure.cpu_s > 0
     assert solution.discarded_s == 0
-
-
-@pytest.mark.parametrize("engine", ["heyoka", "limbs"])
-def test_a_proof_that_is_made_twice_tells_the_cpu_seconds_of_both(attempts, monkeypatch, engine):
-    def too_few(*words):
-        plan = plan_for(*words)
-        return plan._replace(bits=plan.bits * 2 // 3)
-
-    reference.solve("paris", t_end="120", level="enclosed", engine=engine)  # compiles
-    attempts.clear()
-    monkeypatch.setattr(prove, "plan_for", too_few)
-    solution = reference.solve("paris", t_end="120", level="enclosed", engine=engine)
-    assert len(attempts) == 2
-    assert 0.4 * attempts[0] < solution.discarded_s < attempts[0]
-    parts = solution.pilot_s + solution.run.cpu_s + solution.check_s + solution.discarded_s
-    assert solution.cpu_s == parts > sum(attempts) / 2
+    assert solution.run.cpu_s + solution.proof.enclosure.cpu_s < solution.cpu_s < cpu_s() - before
 
 
 def test_the_cpu_seconds_of_an_audit_are_told():
@@ -186,24 +163,25 @@ def test_transits_can_be_left_out():
     assert reference.solve(make_scene(run=SHORT), transits=False, engine="limbs").zeros is None
 
 
-def doctored(monkeypatch, change):
-    """Let the trusted code return something else than it proves."""
-    honest = Course.finish
+def solved_with(change, scene, engine="limbs"):
+    """Return what becomes of a scene whose proof says something else than trusted code has proved."""
 
-    def finish(course):
-        FINISHED.add(proved := change(honest(course)))
-        return proved
+    def lying(*words, **options):
+        honest = enclose(*words, **options)
+        said = change(honest.proved)
+        FINISHED.add(said)
+        return replace(honest, proved=said)
 
-    monkeypatch.setattr(Course, "finish", finish)
+    problem = ProofTask(scene, engine, run_pilot(scene.exact, tuple(scene.exact.grid)))
+    return guarded(proved(problem, lying), problem.pilot)
 
 
-def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_path):
+def test_what_cannot_be_decided_is_said_and_its_row_left_out(tmp_path):
     def doubt(proved):
         unsure = replace(proved.transits[3], parity="odd", direction=0)
         return replace(proved, transits=[*proved.transits[:3], unsure, *proved.transits[4:]])
 
-    doctored(monkeypatch, doubt)
-    path = write(reference.solve(make_scene(run=SHORT), engine="limbs"), tmp_path / "doubt")
+    path = write(solved_with(doubt, make_scene(run=SHORT)), tmp_path / "doubt")
     manifest = load(path).manifest
     assert manifest.transits == "undecided intervals"
     (possible,) = manifest.possible
@@ -232,45 +210,41 @@ def test_a_run_that_ends_at_a_transit_is_written_with_what_is_possible_up_to_its
     assert Fraction(possible.to_s) == scene.exact.t_end
 
 
-def test_a_possible_transit_is_reported_within_the_run(monkeypatch):
+def test_a_possible_transit_is_reported_within_the_run():
     def doubt(proved):
         first, last = proved.transits[0], proved.transits[-1]
         early = replace(first, parity="odd", t=replace(first.t, low=Fraction(-1, 10**14)))
         late = replace(last, parity="odd", t=replace(last.t, high=proved.times[-1] + Fraction(1, 10**14)))
         return replace(proved, transits=[early, *proved.transits[1:-1], late])
 
-    doctored(monkeypatch, doubt)
-    early, late = reference.solve(make_scene(run=SHORT), engine="limbs").possible
+    early, late = solved_with(doubt, make_scene(run=SHORT)).possible
     assert (early[0], late[1]) == (0, 120)
 
 
 @pytest.mark.parametrize(("engine", "shift"), [("heyoka", Fraction(1, 10**35)), ("limbs", Fraction(1, 10**29))])
-def test_a_state_outside_its_ball_names_time_and_component(monkeypatch, engine, shift):
+def test_a_state_outside_its_ball_names_time_and_component(engine, shift):
     def move(proved):
         row = list(proved.states[1])
         row[2] = replace(row[2], low=row[2].low + shift, high=row[2].high + shift)
         return replace(proved, states=[proved.states[0], tuple(row), *proved.states[2:]])
 
-    doctored(monkeypatch, move)
     with pytest.raises(IntegrationError, match=r"outside the enclosure at t = 60\.0 s in z"):
-        reference.solve(make_scene(run=SHORT), engine=engine)
+        solved_with(move, make_scene(run=SHORT), engine)
 
 
-def test_a_transit_that_heyoka_does_not_see_is_named(monkeypatch):
-    doctored(monkeypatch, lambda proved: replace(proved, transits=proved.transits[:-1]))
+def test_a_transit_that_heyoka_does_not_see_is_named():
     with pytest.raises(IntegrationError, match="heyoka finds 14 transits, the enclosure 13"):
-        reference.solve(make_scene(run=SHORT), engine="limbs")
+        solved_with(lambda proved: replace(proved, transits=proved.transits[:-1]), make_scene(run=SHORT))
 
 
-def test_a_transit_that_heyoka_sees_elsewhere_is_named(monkeypatch):
+def test_a_transit_that_heyoka_sees_elsewhere_is_named():
     def shift(proved):
         late = proved.transits[4]
         moved = replace(late, t=replace(late.t, low=late.t.low + 1, high=late.t.high + 1))
         return replace(proved, transits=[*proved.transits[:4], moved, *proved.transits[5:]])
 
-    doctored(monkeypatch, shift)
     with pytest.raises(IntegrationError, match="does not find transit 5 of the enclosure, at t = "):
-        reference.solve(make_scene(run=SHORT), engine="limbs")
+        solved_with(shift, make_scene(run=SHORT))
 
 
 def test_a_number_exactly_between_two_decimals_is_refused_with_advice():
@@ -292,7 +266,7 @@ def test_balls_that_cannot_be_had_end_with_the_widths_reached():
 
 
 def test_without_flint_the_level_says_what_to_install(monkeypatch):
-    monkeypatch.setattr("reference.system.imports.missing", list)  # none is installed
+    monkeypatch.setitem(sys.modules, "flint", None)
     with pytest.raises(InputError, match=r"foucault-reference\[enclose\]"):
         reference.solve(make_scene(run=SHORT))
 
@@ -305,15 +279,18 @@ def test_the_feed_joins_step_to_step_without_a_gap(paris):
     assert len({step.h for step in steps}) < len(steps)
 
 
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes in /proc")
 def test_a_feed_that_dies_is_an_error_and_leaves_no_process(paris):
+    others = children()
     feed = Feed(paris.exact, (Fraction(0), Fraction(86400)), "heyoka")
     steps = feed(180)
     next(steps)
-    feed._worker.kill()
+    (process,) = children() - others
+    os.kill(process, signal.SIGKILL)
     with pytest.raises(IntegrationError, match="ended without"):
         feed.finished()
     feed.stop()
-    assert feed._worker._process.poll() is not None
+    assert children() <= others
 
 
 def test_an_error_in_the_feeds_process_arrives(paris):
@@ -324,28 +301,19 @@ def test_an_error_in_the_feeds_process_arrives(paris):
     feed.stop()
 
 
-def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
+def test_a_proof_that_another_engine_has_to_make_is_the_one_that_this_engine_makes():
     """At rest at the top, limbs have too few bits for the second try: heyoka begins again with the first."""
-    scene, tried = reference.load_scene("inverted_rest"), []
-
-    def watched(prec, *words, **options):
-        engine = fastest(prec, *words, **options)
-        tried.append((engine.name, prec))
-        return engine
-
-    monkeypatch.setattr(proof_steps, "fastest", watched)
-    by_limbs = reference.solve(scene, engine="limbs")
-    assert (by_limbs.run.engine, by_limbs.level, by_limbs.possible) == ("heyoka", "enclosed", ())
-    names, precs = zip(*tried, strict=True)
-    again = names.index("heyoka") + 1
-    assert names[0] == "limbs"
-    assert precs[again] == precs[0]
-    assert by_limbs.discarded_s > 0
-    del tried[:again]
-    begun_by_limbs = list(tried)
-    tried.clear()
-    assert reference.solve(scene, engine="heyoka").run.number == by_limbs.run.number
-    assert tried == begun_by_limbs
+    begun_by_limbs, by_heyoka = (reference.solve("inverted_rest", engine=engine) for engine in ("limbs", "heyoka"))
+    assert begun_by_limbs.level == "enclosed"
+    assert begun_by_limbs.possible == ()
+    for name in ("engine", "number", "order", "steps"):
+        assert getattr(begun_by_limbs.run, name) == getattr(by_heyoka.run, name), name
+    assert begun_by_limbs.run.engine == "heyoka"
+    assert begun_by_limbs.proof.enclosure.bits == by_heyoka.proof.enclosure.bits
+    # what was tried is told, and counts
+    assert begun_by_limbs.discarded_s > by_heyoka.discarded_s > 0
+    for solution in (begun_by_limbs, by_heyoka):
+        assert solution.cpu_s == solution.pilot_s + solution.run.cpu_s + solution.check_s + solution.discarded_s
 
 
 def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):

@@ -14,7 +14,6 @@ import mpmath
 import pytest
 from sampled import one_in
 
-from foucault import main
 from reference import Scene, Solution, load_scene, parse_scene, scene_ids, solve
 from reference.scenes.inputs import Inputs
 
@@ -349,12 +348,9 @@ def test_a_swing_in_the_meridian_plane_has_no_transits_and_the_separatrix_one() 
     ],
     ids=["stiff", "sensitive", "long", "out of range"],
 )
-def test_what_cannot_be_reached_ends_with_exit_3_and_its_reason(words, reason, tmp_path, monkeypatch, capfd) -> None:
-    monkeypatch.setattr("sys.argv", ["foucault", "generate", *words, "--out", str(tmp_path / "made")])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    seen = capfd.readouterr()
-    assert stop.value.code == 3
-    assert reason in seen.err
-    assert "Traceback" not in seen.err
+def test_what_cannot_be_reached_ends_with_exit_3_and_its_reason(words, reason, tmp_path, foucault) -> None:
+    status, _, err = foucault("generate", *words, "--out", tmp_path / "made")
+    assert status == 3
+    assert reason in err
+    assert "Traceback" not in err
     assert list(tmp_path.iterdir()) == []

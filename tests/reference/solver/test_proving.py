@@ -1,71 +1,85 @@
-"""A run with event detection confirms the transits of a proof within what it can see, and in their order."""
+"""A run with event detection refuses a proof whose transits it does not see: in number, direction, order and time."""
 
+from dataclasses import replace
 from fractions import Fraction
-from types import SimpleNamespace
 
 import pytest
 
+import reference
 from reference.errors import IntegrationError
-from reference.numbers.table import Table
-from reference.solver.pilot import ESTIMATE_FACTOR
-from reference.solver.proving import EVALUATION_BITS, SEEN_BITS, _between_rows, _bits_to_see, _transit_gap
-
-BITS, PREC, END = 150, 64, Fraction(100)
-XDOT_ERROR = Fraction(1, 10**12)  # m/s
-TIMES, AX = (Fraction(10), Fraction(30), Fraction(61)), (Fraction(-1, 3), Fraction(1, 7), Fraction(-2))
-BOUND = Fraction(1, 10**20)
-ROUNDING = END / 2 ** (PREC - EVALUATION_BITS)
+from reference.solver.pilot import run_pilot
+from reference.solver.proving import guarded
 
 
+@pytest.fixture(scope="module")
 def proved():
-    rows = [tuple(int(x * 2**BITS) for x in row) for row in zip(TIMES, AX, strict=True)]
-    return Table(("t", "ax"), BITS, rows).with_errors({"t": BOUND, "ax": BOUND})
+    return reference.solve("paris", t_end="60", digits=18, level="enclosed")
 
 
-def gap(times, signs=(-1, 1, -1), *, bits=90, undecided=False):
-    """The gap to a run that found zeros at these times, at other bits than the proof's."""
-    found = Table(("t",), bits, [(round(t * 2**bits),) for t in times])
-    plan = SimpleNamespace(number=SimpleNamespace(prec=PREC), times=(Fraction(0), END))
-    event_run = SimpleNamespace(transits=found, directions=list(signs), plan=plan)
-    solution = SimpleNamespace(transits=proved(), directions=[-1, 1, -1], possible=("some",) if undecided else ())
-    return _transit_gap(event_run, solution, XDOT_ERROR)
+@pytest.fixture(scope="module")
+def pilot(proved):
+    return run_pilot(proved.scene.exact, proved.times)
 
 
-@pytest.mark.parametrize("bits", [90, 200])
-@pytest.mark.parametrize("k", [0, 1, 2])
+def with_times(solution, times):
+    """Return a solution whose transits are said to be at other times."""
+    zeros = solution.zeros
+    place = zeros.columns.index("t")
+    rows = [list(row) for row in zeros.values]
+    for row, t in zip(rows, times, strict=True):
+        row[place] = round(t * 2**zeros.bits)
+    return replace(solution, zeros=replace(zeros, values=[tuple(row) for row in rows]))
+
+
+def without(solution, k):
+    """Return a solution that lacks one of its transits."""
+    zeros = solution.zeros
+    values, errors = ([*column[:k], *column[k + 1 :]] for column in (zeros.values, zeros.errors))
+    directions = [*solution.directions[:k], *solution.directions[k + 1 :]]
+    return replace(solution, zeros=replace(zeros, values=values, errors=errors), directions=directions)
+
+
+@pytest.mark.parametrize("k", [0, 3, 6])
 @pytest.mark.parametrize("way", [-1, 1])
-def test_a_zero_may_be_off_by_the_errors_of_the_proof_and_of_the_run_and_no_more(bits, k, way):
-    allowed = BOUND + XDOT_ERROR / abs(AX[k]) + ROUNDING
-    for share, seen in ((Fraction(999, 1000), True), (Fraction(1001, 1000), False)):
-        moved = [t + way * share * allowed * (i == k) for i, t in enumerate(TIMES)]
+def test_a_transit_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(proved, pilot, k, way):
+    """In double a time near 60 s has a last bit of 7e-15 s; xdot has errors near 1e-15 m/s, over its slope of 0.04."""
+    times = proved.zeros.exact("t")
+    for off, seen in ((Fraction(1, 10**13), True), (Fraction(1, 10**9), False)):
+        moved = with_times(proved, [t + way * off * (i == k) for i, t in enumerate(times)])
         if seen:
-            assert abs(gap(moved, bits=bits) - share * allowed) < Fraction(1, 2**80)
+            assert guarded(moved, pilot).guard.transit_s >= off * Fraction(9, 10)
         else:
-            with pytest.raises(IntegrationError, match=rf"does not find transit {k + 1} .*at t = {float(TIMES[k])} s"):
-                gap(moved, bits=bits)
+            with pytest.raises(IntegrationError, match=f"does not find transit {k + 1} of the enclosure"):
+                guarded(moved, pilot)
 
 
-def test_other_directions_and_other_counts_are_refused_and_zeros_between_only_where_some_are_undecided():
-    assert gap(TIMES) < Fraction(1, 2**80)
-    with pytest.raises(IntegrationError, match="transit 2"):
-        gap(TIMES, (-1, -1, -1))
-    with pytest.raises(IntegrationError, match="finds 2 transits, the enclosure 3"):
-        gap(TIMES[:2], (-1, 1))
-    more = ((*TIMES[:1], Fraction(20), *TIMES[1:]), (-1, 1, 1, -1))
-    with pytest.raises(IntegrationError, match="finds 4 transits, the enclosure 3"):
-        gap(*more)
-    assert gap(*more, undecided=True) < Fraction(1, 2**80)
+def test_another_direction_is_refused(proved, pilot):
+    first, second, *others = proved.directions
+    assert guarded(proved, pilot).guard.number == "double"
+    with pytest.raises(IntegrationError, match="does not find transit 2"):
+        guarded(replace(proved, directions=[first, -second, *others]), pilot)
 
 
-def test_the_bits_to_see_two_transits_follow_from_the_flattest_and_the_nearest():
-    pilot = SimpleNamespace(prec=53, cautious={"vx": Fraction(1, 2**40)})
-    # xdot reaches 10/7 m/s, which is from 1 to 2, between the release and the first transit
-    assert _bits_to_see(proved(), END, pilot) == 53 - 40 + SEEN_BITS
-    assert _bits_to_see(Table(("t", "ax"), BITS, []), END, pilot) == 0
+def test_transits_in_another_order_are_refused(proved, pilot):
+    first, second, third, *others = proved.zeros.exact("t")
+    with pytest.raises(IntegrationError, match="does not find transit 2"):
+        guarded(with_times(proved, [third, second, first, *others]), pilot)
 
 
-def test_between_rows_a_column_may_be_off_as_far_as_any_of_its_kind():
-    assert _between_rows({"x": 3, "y": 1, "z": 2, "vx": 5, "vy": 7, "vz": 6}) == {
-        **dict.fromkeys(("x", "y", "z"), 3 * ESTIMATE_FACTOR),
-        **dict.fromkeys(("vx", "vy", "vz"), 7 * ESTIMATE_FACTOR),
-    }
+def test_a_transit_that_is_missing_is_refused_unless_some_are_undecided(proved, pilot):
+    fewer = without(proved, 2)
+    with pytest.raises(IntegrationError, match="finds 7 transits, the enclosure 6"):
+        guarded(fewer, pilot)
+    t = proved.zeros.exact("t")[2]
+    undecided = replace(fewer, possible=((t - 1, t + 1, "odd"),))
+    assert guarded(undecided, pilot).guard is not None
+
+
+@pytest.mark.parametrize(("x", "number"), [("0.3", "double"), ("-1e-9", "real")])
+def test_a_flat_transit_soon_after_the_release_is_seen_in_more_bits(x, number):
+    """A nanometre beside the meridian, 0.615 m from the rest position: xdot is 0 at x/(0.615 Ω sin φ), after 30 µs."""
+    scene = reference.load_scene("paris", [f"release.x={x}", "release.y=0.5", "run.t_end=20", "run.grid_step=20"])
+    solution = reference.solve(scene, digits=20, level="enclosed")
+    assert solution.guard.number.startswith(number)
+    if number == "real":
+        assert solution.transits["t"][0] == pytest.approx(1e-9 / (0.615 * 5.49e-5), rel=0.02)

@@ -6,21 +6,21 @@ import subprocess
 import sys
 from dataclasses import replace
 from fractions import Fraction
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 import reference
 from reference import InputError
+from reference.engines.plan import Plan
+from reference.engines.registry import run
 from reference.numbers import columns
-from reference.numbers.columns import GRID, SECTION, STATE, TRANSITS, GridColumns
+from reference.numbers.columns import GRID, SECTION, TRANSITS, GridColumns
+from reference.numbers.precision import DOUBLE
 from reference.numbers.table import Table
 from reference.solver.solution import (
     SAMPLED,
     CrossCheck,
     Passages,
-    Proof,
     UndecidedRounding,
     check_decided,
     exact_decimals,
@@ -28,7 +28,7 @@ from reference.solver.solution import (
     section_decimals,
     transit_decimals,
 )
-from reference.solver.swing import NO_SECTION, UNDECIDED, Swing
+from reference.solver.swing import NO_SECTION, UNDECIDED
 
 SURE, OPEN = Fraction(1, 10**12), Fraction(1)
 
@@ -78,15 +78,16 @@ def test_terminating_decimals_are_printed_exactly(values, digits):
 
 
 def test_the_motion_at_any_time_takes_a_golden_function(solution):
-    proof = Proof(SimpleNamespace(function=None), None, 1)
-    facts = {"times": [(0.0).hex(), (2.0).hex()], "components": ["x", "y", "z"], "degree": 1, "length_squared": None}
-    made = SimpleNamespace(facts=facts, bounds=dict.fromkeys(STATE, "1e-15"), data=np.arange(6.0).tobytes())
-    for without in (solution, replace(solution, proof=proof)):
+    enclosed = {"t_end": "20", "digits": 12, "level": "enclosed"}
+    for without in (solution, reference.solve("paris", **enclosed)):
         assert without.function is None
         with pytest.raises(InputError, match="function=True"):
             without.at(1.0)
-    at = replace(solution, proof=Proof(SimpleNamespace(function=made), None, 1)).at([0.0, 1.5])
-    assert (at.x.tolist(), at.vz.tolist()) == ([-1.0, 0.5], [5.0, 5.0])
+    moving = reference.solve("paris", **enclosed, function=True)
+    at = moving.at([0.0, 8.217792, 20.0])
+    assert at.x[0] == 0.3
+    assert at.vx[1] == pytest.approx(0, abs=1e-6)  # the first transit
+    assert at.z[2] == pytest.approx(moving.z[-1], abs=1e-12)
 
 
 @pytest.mark.parametrize("words", [("early", "late"), ("late", "early")])
@@ -96,31 +97,27 @@ def test_passages_have_the_decimals_of_the_grid_and_those_of_the_latest_time(sol
     assert section_decimals(replace(solution, sections=sections)) == grid_decimals(solution) | {"t": 4}
 
 
-def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(solution, monkeypatch):
-    class Measured(Swing):
-        """What a swing is measured from, in place of its frequency and its precession."""
-
-    monkeypatch.setattr("reference.solver.solution.swing_or_reason", lambda *given: Measured(given, None))
-    table = Table(SECTION, 7, [(1, 2, 3, 4, 5, 6, 7)], [(1,) * 7])
-    unit = Fraction(1, 1 << 7)
-    points = [tuple(((k - 1) * unit, (k + 1) * unit) for k in range(1, 5))]
-    decided, unsure = Passages(table, []), Passages(table, [], ((SURE, OPEN, "even"),))
-    measured = Measured((points, solution.scene.exact, 7), None)
-    for sections, swing_or_reason in (
-        ({"lowest": decided}, NO_SECTION),
-        ({"highest": unsure}, UNDECIDED),
-        ({"highest": decided}, measured),
+def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(solution):
+    found = reference.solve(solution.scene, sections=["highest", "lowest"])
+    highest, lowest = found.sections["highest"], found.sections["lowest"]
+    # two a swing of 16.4355 s
+    times = highest.table["t"]
+    assert float(sum(found.swing.hz)) / 2 == pytest.approx((len(times) - 1) / 2 / (times[-1] - times[0]), rel=1e-9)
+    assert float(found.swing.hz[0]) == pytest.approx(1 / 16.4355, rel=1e-4)
+    for sections, reason in (
+        ({"lowest": lowest}, NO_SECTION),
+        ({"highest": Passages(highest.table, highest.directions, ((SURE, OPEN, "even"),))}, UNDECIDED),
     ):
-        solved = replace(solution, sections=sections)
-        assert solved.swing_or_reason == swing_or_reason
-        assert solved.swing == (measured if swing_or_reason is measured else None)
+        solved = replace(found, sections=sections)
+        assert solved.swing_or_reason == reason
+        assert solved.swing is None
 
 
 def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
-    plan = SimpleNamespace(engine="heyoka", formulation="spin", number="double")
-    witness = SimpleNamespace(plan=plan, order=20, steps=9, cpu_s=0.5, compile_s=0.0)
+    witness = run(Plan(solution.scene.exact, "spin", DOUBLE, solution.times, transits=True))
     gaps = {name: Fraction(i, 7) for i, name in enumerate(GRID)}
     check = CrossCheck.by(witness, gaps, None)
+    assert (check.engine, check.formulation, check.number) == ("heyoka", "spin", "double")
     assert (check.position_m, check.velocity_m_s, check.transit_s) == (Fraction(2, 7), Fraction(5, 7), None)
     assert SAMPLED == 10  # "a tenth" in help, pages and what is written
     assert len(replace(solution, zeros=None).transits) == 0 < len(solution.transits)

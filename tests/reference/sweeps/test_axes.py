@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from reference import InputError
-from reference.sweeps.axes import axis, grid, listed, varied_names
+from reference.sweeps.axes import MOST_VALUES, axis, grid, listed, varied_names
 
 
 def texts(word: str) -> list[str]:
@@ -117,17 +117,28 @@ def test_only_regular_files_hold_values(tmp_path, option):
             read(path)
 
 
-def test_rows_are_counted_before_they_are_read(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("name", "count", "said"),
+    [("site.latitude", MOST_VALUES + 1, "at most 10,000,000"), ("nothing", 1, "a field that a sweep can vary")],
+)
+def test_rows_of_parquet_are_counted_before_they_are_read(tmp_path, name, count, said):
+    """What stands before the footer is damaged: it is not looked at."""
     pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
-    monkeypatch.setattr("reference.sweeps.axes.MOST_VALUES", 3)
-    monkeypatch.setattr(pq.ParquetFile, "read", lambda *_: pytest.fail("it was read"))
-    for name, count, said in (("site.latitude", 4, "at most 3"), ("nothing", 1, "a field that a sweep can vary")):
-        pq.write_table(pa.table({name: [1.0] * count}), tmp_path / "rows.parquet")
-        with pytest.raises(InputError, match=said):
-            listed(tmp_path / "rows.parquet")
-    (tmp_path / "rows.csv").write_text("site.latitude\n" + "1\n" * 4)
-    with pytest.raises(InputError, match="1 to 3 rows"):
-        listed(tmp_path / "rows.csv")
+    path = tmp_path / "rows.parquet"
+    pq.write_table(pa.table({name: pa.nulls(count)}), path)
+    data = path.read_bytes()
+    footer = 8 + int.from_bytes(data[-8:-4], "little")
+    path.write_bytes(data[:4] + bytes(len(data) - 4 - footer) + data[-footer:])
+    with pytest.raises(InputError, match=said):
+        listed(path)
+
+
+@pytest.mark.long  # a gigabyte of memory
+def test_more_lines_than_may_be_held_are_refused(tmp_path):
+    path = tmp_path / "rows.csv"
+    path.write_text("site.latitude\n" + "1\n" * (MOST_VALUES + 1))
+    with pytest.raises(InputError, match="1 to 10,000,000 rows"):
+        listed(path)
 
 
 @pytest.mark.parametrize(

@@ -142,20 +142,14 @@ def test_a_worker_that_comes_later_with_other_versions_does_no_work(cluster):
         ("tcp://127.0.0.1:1", "a scheduler that answers"),
     ],
 )
-def test_a_wrong_address_is_named(tmp_path, monkeypatch, address, said):
-    from reference.sweeps import cluster as module
-
-    monkeypatch.setattr(module, "WAIT_S", 0.5)
+def test_a_wrong_address_is_named(tmp_path, address, said):
     with pytest.raises(InputError, match=said):
         run(asked(tmp_path / "out"), tmp_path / "out", cluster=address)
 
 
-def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
+def test_a_scheduler_without_workers_is_named(tmp_path):
     import distributed
 
-    from reference.sweeps import cluster as module
-
-    monkeypatch.setattr(module, "WAIT_S", 1.0)
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as empty,
         pytest.raises(InputError, match="a scheduler with workers"),

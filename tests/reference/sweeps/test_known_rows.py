@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from swept_here import is_left, left, swept_here
 
 from reference.scenes.scene import load_scene
-from reference.sweeps import driver
 from reference.sweeps.parquet import COLUMNS
-from reference.sweeps.promote import Promoted, promoted
+from reference.sweeps.promote import promoted
 from reference.sweeps.request import request
 from reference.sweeps.sweep import sweep
 
@@ -63,12 +63,8 @@ KNOWN = {
     ),
 }
 SMALL = {"highest points at the top": 2e-8}  # errors: there an azimuth is uncertain
-LEFT, LONG = "left to the solver", pytest.mark.long
+LONG = pytest.mark.long
 SOLVED = {"highest points at the top", "nearly a cone", "close pairs"}  # by themselves in every run
-
-
-def in_this_process(_, *row, **options):
-    return promoted(*row, **options)
 
 
 def is_right(name, row):
@@ -79,11 +75,10 @@ def is_right(name, row):
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", KNOWN)
-def test_a_row_is_right_or_left_to_the_solver(name, engine, monkeypatch):
-    monkeypatch.setattr(driver, "isolated", lambda *_, **__: Promoted({}, ([], []), LEFT))
+def test_a_row_is_right_or_left_to_the_solver(name, engine):
     scene, *values = KNOWN[name][0].split()
-    row = next(sweep(load_scene(scene, values[1:]), values[:1], engine=engine, audit_rows=0).rows())
-    if LEFT not in (row["reason"] or ""):
+    row = next(swept_here(load_scene(scene, values[1:]), values[:1], left, engine=engine).rows())
+    if not is_left(row):
         assert row["status"] == "ok"
         is_right(name, row)
 
@@ -126,10 +121,9 @@ def test_the_largest_angle_of_a_bob_at_rest_is_told_at_every_level():
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_the_least_rise_at_the_release_is_a_highest_point(engine, monkeypatch):
+def test_the_least_rise_at_the_release_is_a_highest_point(engine):
     """u' is 1e-36 of a radian a second and no rounding of 0: the bob rises, and the time is above 0."""
-    monkeypatch.setattr(driver, "isolated", in_this_process)
     scene = load_scene("paris", ["run.t_end=20"])
-    swept = sweep(scene, ["release.vx=1e-32,1e-20"], engine=engine, want=("precession",), workers=1)
+    swept = swept_here(scene, ["release.vx=1e-32,1e-20"], engine=engine, want=("precession",))
     for column in ("swing_hz", "precession_deg_per_h", "precession_ratio"):
         assert abs(np.diff(swept[column])[0]) <= swept[ERRORS[column]].sum(), column

@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from places import ROOT
+from swept_here import is_left, left, swept_here
 
 from reference.scenes.scene import load_scene
-from reference.sweeps import driver
 from reference.sweeps.parquet import COLUMNS
-from reference.sweeps.promote import Promoted, promoted
+from reference.sweeps.promote import promoted
 from reference.sweeps.sweep import sweep
 
 SCENES = {"angles": "two_radians", "positions": "paris"}
@@ -21,9 +21,6 @@ MOST_SOLVED = {"angles": 53, "positions": 39}
 EVERY = {"angles": 84, "positions": 133}  # whose multiples the solver solves: row 168, of the cheapest; 0 and 133
 SAME = ("status", "transits", "close_pairs")
 ERRORS = {column.name: column.error for column in COLUMNS if column.error}
-
-
-LEFT = "left to the solver"
 
 
 def solved(name, every):
@@ -34,24 +31,15 @@ def solved(name, every):
     scene, rows = load_scene(SCENES[name], ["run.t_end=60"]), ROOT / f"tests/helpers/random_{name}.csv"
     kept = {}
 
-    def some(_, request, row, *, doubtful):
+    def some(request, row, *, doubtful):
         assert doubtful
         if row % every:
-            return Promoted({}, ([], []), LEFT)
+            return left()
         if row not in kept:
             kept[row] = promoted(request, row, doubtful=doubtful)
         return kept[row]
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(driver, "isolated", some)
-        return [
-            list(sweep(scene, rows=rows, engine=engine, audit_rows=0, workers=1).rows())
-            for engine in ("heyoka", "octet")
-        ]
-
-
-def is_left(row):
-    return LEFT in (row["reason"] or "")
+    return [list(swept_here(scene, [], some, rows, engine=engine).rows()) for engine in ("heyoka", "octet")]
 
 
 def differences(one, other):

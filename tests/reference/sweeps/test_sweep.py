@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import threading
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
+from interruption import interrupted
+from swept_here import swept_here
 
 from reference import InputError, load_scene, solve, sweep
-from reference.sweeps import driver, promote
+from reference.sweeps import driver
 from reference.sweeps.part import solve_part
-from reference.sweeps.promote import Promoted
+from reference.sweeps.promote import Promoted, audited, promoted
 from reference.sweeps.request import request
 from reference.sweeps.sweep import asked_for
 
@@ -134,71 +137,53 @@ def test_a_tolerance_promotes_the_rows_above_it(paris):
     assert swept["position_error_m"][0] < 2e-14  # an ulp of 67 m
 
 
-def test_a_transit_at_the_end_is_left_to_more_digits(paris, monkeypatch):
-    monkeypatch.setattr(driver, "isolated", lambda _, *row, **options: promote.promoted(*row, **options))
+def test_a_transit_at_the_end_is_left_to_more_digits(paris):
     t = solve(paris, t_end="20", level="computed", digits=20).transits.exact("t")[0]
-    swept = sweep(paris.with_values([f"run.t_end={float(t)!r}"]), ["site.latitude=48.846111"], engine="heyoka")
+    swept = swept_here(paris.with_values([f"run.t_end={float(t)!r}"]), ["site.latitude=48.846111"], engine="heyoka")
     assert swept["level"][0] == "self_consistent"
     assert swept["status"][0] == "ok"
 
 
-@pytest.fixture(scope="module")
-def solved_again():
-    """A scene whose sweep an audit finds right, and what the solver gave the audit of its rows."""
-    scene, kept, promoted = load_scene("paris", ["run.t_end=60"]), {}, promote.promoted
-
-    def noted(request, row, **options):
-        kept[row] = promoted(request, row, **options)
-        return kept[row]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(promote, "promoted", noted)
-        good = sweep(scene, ["site.latitude=5,10,20"], engine="heyoka", audit_rows=2)
-    assert (good.audit.rows, good.audit.wrong) == (2, ())
-    assert good.audit_s > 0
-    assert 0 < good.audit.worst_ratio < 1
-    return scene, kept
+SPOILT = {
+    **dict.fromkeys(("x_m", "vz_m_s", "t_last_s", "frequency_hz", "swing_hz", "max_angle_deg"), 1e-9),
+    **dict.fromkeys(("precession_deg_per_h", "precession_ratio"), 1e-3),
+    **dict.fromkeys(("transits", "close_pairs"), 1),
+}
 
 
-@pytest.mark.parametrize(
-    ("name", "amount"),
-    [
-        *((column, 1e-9) for column in ("x_m", "vz_m_s", "t_last_s", "frequency_hz", "swing_hz", "max_angle_deg")),
-        *((column, 1e-3) for column in ("precession_deg_per_h", "precession_ratio")),
-        ("transits", 1),
-        ("close_pairs", 1),
-    ],
-)
-def test_an_audit_finds_what_is_wrong_in_any_column(solved_again, monkeypatch, name, amount):
-    scene, kept = solved_again
-
-    def other(_, row, **__):
-        result = kept[row]
-        return Promoted(result.values | {name: result.values[name] + amount}, result.times)
-
-    monkeypatch.setattr(promote, "promoted", other)
-    assert len(sweep(scene, ["site.latitude=5,10,20"], engine="heyoka", audit_rows=2).audit.wrong) == 2
+def test_an_audit_finds_what_is_wrong_in_any_column(paris):
+    """One number of each row but the first is spoilt, in another column each time."""
+    count = 1 + len(SPOILT)
+    swept = swept_here(
+        paris.with_values(["run.t_end=30"]), [f"site.latitude=5:{4 + count}:1"], engine="heyoka", audit=count
+    )
+    columns = swept.columns()
+    for row, (name, amount) in enumerate(SPOILT.items(), 1):
+        columns[name][row] += amount
+    found = audited(swept.request, lambda _: columns)
+    assert (found.rows, found.wrong) == (count, tuple(range(1, count)))
 
 
 def test_a_row_that_the_solver_refuses_is_no_wrong_one():
     """1e-170 m: its square, which event detection needs, is below what 28 digits hold."""
-    found = sweep(load_scene("paris", ["run.t_end=60"]), ["release.x=1e-170,0.1"], engine="heyoka", audit_rows=2).audit
+    swept = sweep(load_scene("paris", ["run.t_end=60"]), ["release.x=1e-170,0.1"], engine="heyoka", audit_rows=2)
+    found = swept.audit
     assert (found.rows, found.wrong, found.refused) == (1, (), (0,))
     assert 0 < found.worst_ratio < 1
+    assert swept.audit_s > 0
 
 
-def test_highest_points_near_the_plumb_line_are_counted_by_the_solver(monkeypatch):
+def test_highest_points_near_the_plumb_line_are_counted_by_the_solver():
     """Released on the plumb line, off its rest position: 73 highest points by an independent solver in 160 bits."""
     scene, asked = load_scene("paris_measured", ["release.x=1e-12", "release.y=0", "run.t_end=600"]), []
 
-    def here(_, request, row, *, doubtful):  # once, for both engines
+    def once(request, row, *, doubtful):  # for both engines
         assert doubtful
-        asked.append(asked[0] if asked else promote.promoted(request, row, doubtful=doubtful))
+        asked.append(asked[0] if asked else promoted(request, row, doubtful=doubtful))
         return asked[-1]
 
-    monkeypatch.setattr(driver, "isolated", here)
     for engine in ("heyoka", "octet"):
-        swept = sweep(scene, ["pendulum.length=67"], engine=engine)
+        swept = swept_here(scene, ["pendulum.length=67"], once, engine=engine)
         assert swept["level"][0] == "self_consistent"
         assert abs(swept["swing_hz"][0] - 0.0608896) < 1e-7
         assert abs(swept["precession_deg_per_h"][0] - 39451) < 1
@@ -241,27 +226,24 @@ def test_a_grid_has_the_shape_of_its_axes(paris):
         swept.transits()
 
 
-def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monkeypatch):
+def test_rows_that_another_process_solves_cost_what_they_cost_there(paris):
     asked = request(paris.with_values(["run.t_end=30"]), ["site.latitude=10,20"], engine="heyoka", tolerance=1e-30)
     part = solve_part(asked, range(2), lambda *_, **__: Promoted({}, ([], []), cpu_s=100.0))
     assert 200.0 < part.tally.cpu_s < 300.0
-
-    monkeypatch.setattr(driver, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
     assert driver.compute_alone(asked.text, 0, True).cpu_s > 0
 
 
-def test_a_sweep_that_is_interrupted_does_not_wait_for_rows_that_take_long(paris, monkeypatch):
-    begun, go_on = threading.Event(), threading.Event()
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads CPU seconds in /proc")
+def test_a_sweep_that_is_interrupted_does_not_wait_for_rows_that_take_long(tmp_path):
+    out, begun = tmp_path / "out", []
 
-    def work(*_: object) -> None:
-        begun.set()
-        go_on.wait(60)
+    def at_work(pid, _):
+        """Return whether it has worked for a second since its plan was written."""
+        if (out / "plan.json").exists():
+            begun.append(sum(map(int, Path(f"/proc/{pid}/stat").read_text().split()[13:15])))
+        return bool(begun) and begun[-1] - begun[0] > os.sysconf("SC_CLK_TCK")
 
-    monkeypatch.setattr(driver, "solve_and_save", work)
-    asked = request(paris, ["site.latitude=0"], engine="heyoka")
-    with pytest.raises(KeyboardInterrupt), driver.on_this_machine(asked, None, 1) as executor:
-        future = executor.begin(range(1))
-        assert begun.wait(60)
-        raise KeyboardInterrupt
-    assert future.running()
-    go_on.set()
+    minutes = ["sweep", "paris", "--over", "latitude=0", "--t-end", "1.2e8", "--engine", "heyoka", "--audit", "0"]
+    status, err, _ = interrupted([*minutes, "--out", str(out)], at_work)
+    assert status == 130
+    assert err.decode().splitlines()[-1].endswith(f"`foucault sweep --out {out}` goes on")

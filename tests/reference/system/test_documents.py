@@ -11,7 +11,14 @@ import pytest
 
 from reference.errors import InputError
 from reference.scenes.scene import load_scene
-from reference.system.documents import MAX_BYTES, MAX_DEPTH, json_document, json_lines, toml_document
+from reference.system.documents import (
+    MAX_BYTES,
+    MAX_DEPTH,
+    MAX_JSON_BYTES,
+    json_document,
+    json_lines,
+    toml_document,
+)
 
 
 def filled(*pieces: str) -> str:
@@ -98,14 +105,14 @@ def test_what_is_no_json_document_is_refused(tmp_path, text, said):
     assert list(json_lines(path, "--out")) == []
 
 
-def test_only_regular_files_of_a_bounded_size_are_json(tmp_path, monkeypatch):
+def test_only_regular_files_of_a_bounded_size_are_json(tmp_path):
     path = tmp_path / "mine.json"
     path.write_text('{"a": [1]}\n[]\n{"b": \n{"c": 2}')
     assert list(json_lines(path, "--out")) == [{"a": [1]}, {"c": 2}]
     path.write_text('{"a": [1]}')
     assert json_document(path, "--out") == {"a": [1]}
-    monkeypatch.setattr("reference.system.documents.MAX_JSON_BYTES", 9)
-    with pytest.raises(InputError, match="at most 9 bytes"):
+    os.truncate(path, MAX_JSON_BYTES + 1)  # on the disk it takes no room
+    with pytest.raises(InputError, match=f"at most {MAX_JSON_BYTES} bytes"):
         json_document(path, "--out")
     for name, said in (("/dev/zero", "regular file"), (tmp_path, "readable|regular file")):
         with pytest.raises(InputError, match=said):

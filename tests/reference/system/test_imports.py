@@ -13,7 +13,6 @@ import pytest
 from compare.approximations import APPROXIMATIONS
 from compare.methods import METHODS
 from reference import InputError
-from reference.system import imports
 from reference.system.imports import Registry
 
 INTERFACES = {
@@ -122,8 +121,7 @@ SWEEP = "sweep paris --over latitude=0,5 --t-end 60 --engine heyoka"
     ],
 )
 def test_a_command_whose_package_is_missing_names_the_extra(foucault, monkeypatch, tmp_path, line, module, extra):
-    found = imports.find_spec
-    monkeypatch.setattr(imports, "find_spec", lambda name: None if name == module else found(name))
+    monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rows.parquet").touch()
     (tmp_path / "rows.csv").write_text("t,x,y\n0,0.3,0.4\n1,0.3,0.4\n")
@@ -136,8 +134,7 @@ def test_a_command_whose_package_is_missing_names_the_extra(foucault, monkeypatc
 
 
 def test_a_scene_with_uncertain_inputs_is_shown_without_the_proof(foucault, monkeypatch):
-    found = imports.find_spec
-    monkeypatch.setattr(imports, "find_spec", lambda name: None if name == "flint" else found(name))
+    monkeypatch.setitem(sys.modules, "flint", None)
     status, out, err = foucault("show", "museum_gate")
     assert (status, err) == (0, "")
     inputs, motion, ranges = (next(line for line in out.splitlines() if line.startswith(f"[{word}")) for word in SHOWN)

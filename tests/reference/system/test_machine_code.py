@@ -6,11 +6,10 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 from places import ROOT
-
-from reference.system import machine_code
 
 pytest.importorskip("numba")
 
@@ -67,7 +66,7 @@ def begun(folder: Path, numba: str = "numba") -> subprocess.Popen[str]:
 
 def said(process: subprocess.Popen[str]) -> list[str]:
     """Return the words that it says to its end, which has to be a good one."""
-    words = process.communicate(timeout=60)[0].split()
+    words = process.communicate()[0].split()
     assert process.returncode == 0
     return words
 
@@ -87,15 +86,31 @@ def test_of_the_processes_that_live_one_compiles_and_again_if_a_function_of_anot
     assert {path.is_relative_to(folder / "numba") for path in folder.rglob("*.nb?")} == {True}
 
 
-def test_it_is_kept_beside_the_package_or_else_in_the_cache(folder, monkeypatch):
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    monkeypatch.setenv("FOUCAULT_CACHE", str(folder / "cache"))
-    sources = [folder / "callee.py", folder / "caller.py"]
-    beside = machine_code.folder_of(sources)
-    assert beside is not None
-    assert beside.parent == machine_code.HERE / "__pycache__"
-    monkeypatch.setattr(machine_code, "HERE", folder / "missing")
-    assert machine_code.folder_of(reversed(sources)) == folder / "cache" / "machine_code" / beside.name
+FOLDER = """
+from pathlib import Path
+from reference.system.machine_code import folder_of
+print(folder_of(Path(name) for name in ("caller.py", "callee.py")))
+"""
+
+
+def test_it_is_kept_beside_the_package_or_else_in_the_cache(folder):
+    """Nothing can be written beside a package in an archive."""
+    archive = folder / "packed.zip"
+    with ZipFile(archive, "w") as packed:
+        for path in (ROOT / "reference").rglob("*.py"):
+            packed.write(path, path.relative_to(ROOT))
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment["FOUCAULT_CACHE"] = str(folder / "cache")
+
+    def kept_in(package):
+        told = subprocess.check_output(
+            [sys.executable, "-c", FOLDER], cwd=folder, env=environment | {"PYTHONPATH": str(package)}, text=True
+        )
+        return Path(told.strip())
+
+    beside = kept_in(ROOT)
+    assert beside.parent == ROOT / "reference" / "system" / "__pycache__"
+    assert kept_in(archive) == folder / "cache" / "machine_code" / beside.name
 
 
 def test_where_nothing_can_be_kept_it_is_compiled_for_this_process(folder):

@@ -10,7 +10,6 @@ import sys
 import threading
 import time
 from concurrent.futures import CancelledError, Future
-from multiprocessing.connection import Pipe
 from pathlib import Path
 
 import child
@@ -20,7 +19,6 @@ from interruption import PATIENCE_S
 from places import ROOT
 
 from reference.errors import IntegrationError
-from reference.system import workers
 from reference.system.workers import Pool, Worker, WorkerDied, as_done
 
 
@@ -28,7 +26,7 @@ def test_results_come_in_order_and_end_with_the_function():
     worker = Worker(count_to, 5)
     assert list(worker) == [1, 2, 3, 4, 5]
     worker.stop()
-    assert worker._process.returncode == 0
+    assert worker.ended
 
 
 def test_a_child_takes_objects_while_it_works_and_ends_when_its_parent_stops():
@@ -40,33 +38,50 @@ def test_a_child_takes_objects_while_it_works_and_ends_when_its_parent_stops():
     worker.send(5)
     assert worker.receive() == 15
     worker.stop()
-    assert worker._process.poll() is not None
+    assert worker.ended
+
+
+def parent(code: str) -> list[str]:
+    """Return the command of a process that has children: a program that may use what tests run in them."""
+    return [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(HELPERS)!r})\n{BEGUN}{code}"]
+
+
+HELPERS = Path(child.__file__).parent
+BEGUN = """
+import os, signal
+from child import DeadlyArgument, doubled, hold
+from reference.system.workers import Worker
+"""
 
 
 def test_a_child_whose_parent_ends_before_it_sends_anything_ends_without_a_word():
-    ours, theirs = Pipe()
-    ours.close()
-    command = [sys.executable, "-c", workers._START, str(theirs.fileno()), *sys.path]
-    child = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, check=False)
-    assert (child.returncode, child.stdout, child.stderr) == (1, b"", b"")
+    # returns when the child, too, has closed its stderr
+    ended = subprocess.run(parent("Worker(doubled, DeadlyArgument())"), capture_output=True, cwd=ROOT, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (-signal.SIGKILL, b"", b"")
+
+
+SIGNALLED = """
+worker = Worker(doubled, 3)
+if {started}:
+    worker.send(1)
+    assert worker.receive() == 3
+signal.signal({number}, lambda *_: print("signalled"))
+os.killpg(0, {number})
+worker.send(2)
+print(worker.receive())
+worker.stop()
+"""
 
 
 @pytest.mark.parametrize(
     ("number", "started"),
     [(signal.SIGINT, False), (signal.SIGTERM, False), (signal.SIGHUP, False), (signal.SIGINT, True)],
 )
-def test_a_signal_to_the_whole_group_leaves_the_end_of_a_child_to_its_parent(number, started, capfd):
+def test_a_signal_to_the_whole_group_leaves_the_end_of_a_child_to_its_parent(number, started):
     """Ctrl-C reaches children too, also while they begin; a child that ended by itself would look like a crash."""
-    worker = Worker(doubled, 3)
-    if started:
-        worker.send(1)
-        assert worker.receive() == 3
-    os.kill(worker._process.pid, number)
-    worker.send(2)
-    assert worker.receive() == 6
-    worker.stop()
-    assert worker._process.returncode == 0
-    assert capfd.readouterr().err == ""
+    program = parent(SIGNALLED.format(number=int(number), started=started))
+    ended = subprocess.run(program, capture_output=True, text=True, cwd=ROOT, start_new_session=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "signalled\n6\n", "")
 
 
 def test_a_child_that_is_in_a_finaliser_as_its_parent_stops_ends_without_a_word(capfd):
@@ -78,19 +93,16 @@ def test_a_child_that_is_in_a_finaliser_as_its_parent_stops_ends_without_a_word(
 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals to threads")
 def test_a_child_clears_away_what_it_began_when_its_parent_is_killed(tmp_path):
-    code = f"""
-import sys; sys.path.insert(0, {str(Path(child.__file__).parent)!r})
-from child import hold
-from reference.system.workers import Worker
+    holding = parent(f"""
 worker = Worker(hold, {str(tmp_path)!r})
 print(worker.receive(), flush=True)
 worker.receive()
-"""
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, cwd=ROOT) as parent:
-        assert parent.stdout is not None
-        assert parent.stdout.readline() == b"held\n"
-        parent.kill()
-        assert parent.stdout.read() == b""
+""")
+    with subprocess.Popen(holding, stdout=subprocess.PIPE, cwd=ROOT) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"held\n"
+        process.kill()
+        assert process.stdout.read() == b""
     end = time.monotonic() + 60
     while not (tmp_path / "cleared").exists() and time.monotonic() < end:  # the child ends a moment after its parent
         time.sleep(0.01)
@@ -112,19 +124,19 @@ def test_a_child_that_is_killed_is_an_error_and_no_silence():
     worker.stop()
 
 
-def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it(monkeypatch):
-    monkeypatch.setattr(workers, "GRACE_S", 0.2)
+def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it():
+    """After ten seconds."""
     worker = Worker(freeze)
-    os.waitid(os.P_PID, worker._process.pid, os.WSTOPPED | os.WNOWAIT)
-    waiting = threading.Thread(target=_receive_nothing, args=(worker,), daemon=True)
+    os.waitid(os.P_PID, worker.receive(), os.WSTOPPED | os.WNOWAIT)
+    waiting = threading.Thread(target=receive_nothing, args=(worker,), daemon=True)
     waiting.start()
     worker.stop()
     waiting.join(5)
-    assert worker._process.returncode == -9
+    assert worker.ended
     assert not waiting.is_alive()
 
 
-def _receive_nothing(worker: Worker) -> None:
+def receive_nothing(worker: Worker) -> None:
     with contextlib.suppress(IntegrationError, ValueError):  # the latter if the pipe is closed before it waits
         worker.receive()
 
@@ -154,8 +166,7 @@ def test_a_worker_that_is_killed_while_idle_costs_no_try(tmp_path):
     with Pool(1) as pool:
         idle = pool.submit(os.getpid).result()
         os.kill(idle, signal.SIGKILL)
-        while not next(iter(pool._processes.values())).ended:
-            pass
+        os.waitid(os.P_PID, idle, os.WEXITED | os.WNOWAIT)
         assert pool.submit(die_once, str(tmp_path)).result() == "alive"
         assert pool.submit(os.getpid).result() != idle
 
@@ -173,20 +184,36 @@ def test_a_pool_that_is_interrupted_ends_what_is_begun_and_begins_nothing_again(
             future.result(timeout=0)
 
 
-def test_what_is_done_comes_first_and_no_more_is_begun_at_once_than_asked(monkeypatch):
-    monkeypatch.setattr(workers, "CHECK_S", 0.01)
+def test_what_is_done_comes_first_and_no_more_is_begun_at_once_than_asked():
     begun: list[Future[int]] = []
+
+    def unfinished() -> list[Future[int]]:
+        return [future for future in begun if not future.done()]
 
     def begin(item: int) -> Future[int]:
         begun.append(Future())
-        assert sum(not future.done() for future in begun) <= 3
+        assert len(unfinished()) <= 3
+        if item == 2:
+            begun[-1].set_result(0)
         return begun[-1]
 
-    def check() -> None:
-        [*_, last] = [future for future in begun if not future.done()]
-        last.set_result(0)
+    order = []
+    for item, future in as_done(begin, range(5), 3):
+        assert future.done()
+        order.append(item)
+        for last in unfinished()[-1:]:
+            last.set_result(0)
+    assert order == [2, 1, 3, 4, 0]
 
-    assert [item for item, _ in as_done(begin, range(5), 3, check)] == [2, 3, 4, 1, 0]
+
+def test_where_nothing_will_come_any_more_the_wait_ends():
+    """It looks every five seconds."""
+
+    def lost() -> None:
+        raise ConnectionError
+
+    with pytest.raises(ConnectionError):
+        list(as_done(lambda _: Future(), range(1), 1, lost))
 
 
 def test_ctrl_c_at_any_instruction_leaves_no_thread_waiting(size):
