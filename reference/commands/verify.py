@@ -48,6 +48,7 @@ def command(
                 refuse({"--recompute": recompute}, "with a sweep or a report")
                 problems, undecided, notes = *results, []
             else:
+                _check_manifest(folder)
                 outcome = verify(folder, show(folder.name))
                 problems, undecided, notes = outcome.problems, outcome.undecided, outcome.foreign
                 if recompute and not problems:
@@ -78,3 +79,19 @@ def _written_results(folder: Path) -> tuple[list[str], list[str]] | None:
     if (folder / SUMS).is_file() or any(folder.glob(JOURNALS)):
         return verify_report(folder)
     return None
+
+
+def _check_manifest(folder: Path) -> None:
+    """Refuse a folder that has none of the files by which a result is known: one may have been lost.
+
+    Raises:
+        InputError: it is such a folder.
+    """
+    from ..dataset.manifest import MANIFEST
+    from ..dataset.place import RANGES
+    from ..sweeps.store import PLAN
+    from ..system.checksums import SUMS
+
+    if folder.is_dir() and not (folder / MANIFEST).exists():
+        expected = f"a golden dataset (a folder with {MANIFEST}), or a folder with {RANGES}, {PLAN} or {SUMS}"
+        raise InputError("PATH", str(folder), expected, "Make it with `foucault generate`.")

@@ -111,9 +111,8 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
         advice = "`foucault generate SCENE --uncertain …` makes them."
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
-        texts = {RANGES: (folder / RANGES).read_bytes().decode()}
         names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in manifest else []))
-        texts |= {name: (folder / name).read_bytes().decode() for name in names}
+        texts = {name: _text(folder / name) for name in (RANGES, *names)}
         if text_of({**manifest, "seal": _seal(manifest)}) != texts[RANGES]:
             hint = _hint(texts[RANGES], _hash(text_of({**manifest, "seal": _seal(manifest)})))
             raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed{hint}"])
@@ -144,6 +143,20 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
             raise
         raise DatasetError(str(folder), [f"cannot be read: {type(error).__name__} {error}"]) from None
     return ranges, texts
+
+
+def _text(path: Path) -> str:
+    """Return the text of a file.
+
+    Raises:
+        DatasetError: it is missing, cannot be read, or is not UTF-8.
+    """
+    try:
+        return path.read_bytes().decode()
+    except OSError as error:
+        raise DatasetError(str(path.parent), [f"{path.name}: {error.strerror}"]) from None
+    except UnicodeDecodeError as error:
+        raise DatasetError(str(path.parent), [f"{path.name} is not UTF-8: {error}"]) from None
 
 
 def _hint(text: str, digest: str) -> str:

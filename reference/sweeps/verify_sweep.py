@@ -21,7 +21,8 @@ def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:
     problems, undecided = [], []
     missing = store.missing()
     if missing:
-        begin = f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {missing[0]}"
+        first = store.path(missing[0]).name
+        begin = f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {first}"
         problems.append(f"{begin}; `foucault sweep --out {folder}` makes them again")
     for name in store.foreign():
         problems.append(f"{name} is no part of this sweep: remove it, as whoever reads the folder would take its rows")

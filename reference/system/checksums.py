@@ -48,20 +48,19 @@ def check_sums(folder: Path) -> list[str]:
     with regular(folder / SUMS, "PATH", MOST_BYTES, SUMS) as stream:
         lines = stream.read().decode(errors="replace").splitlines()
     problems = [] if lines else [f"{SUMS} is empty"]
-    for line in lines:
-        match = _LINE.fullmatch(line)
-        if match is None:
-            problems.append(f"{SUMS} has a line that is no checksum")
-            continue
+    matches = [_LINE.fullmatch(line) for line in lines]
+    if None in matches:
+        problems.append(f"{SUMS} has {matches.count(None)} lines that are no checksums")
+    for match in filter(None, matches):
         expected, name = match.groups()
         try:
             with regular(folder / name, "PATH", MOST_BYTES, "a file") as stream:
                 found = sha256(stream.read()).hexdigest()
         except FileNotFoundError:
-            problems.append(f"{name} is missing")
+            problems.append(f"{name} is missing, which {SUMS} lists")
             continue
         if found != expected:
-            problems.append(f"{name} is not as it was written")
+            problems.append(f"{name} is not as it was written, by {SUMS}")
     return problems
 
 
@@ -92,7 +91,7 @@ def _check_journal(path: Path) -> tuple[list[str], list[str]]:
             damaged.append(number)
         elif SEAL not in record:
             unsealed += 1
-    problems = [f"{path.name}: line {number} is not as it was written" for number in damaged]
+    problems = [f"{path.name}: line {number} is not as it was written, and not used: delete it" for number in damaged]
     undecided = []
     if cut_short:
         undecided.append(f"{path.name}: lines that were cut short, as by a kill, and are not used: {cut_short}")
