@@ -112,7 +112,7 @@ def solve_and_save(
 
     Raises:
         Interrupted: the event `stop` was set meanwhile.
-        OSError: it cannot be saved.
+        InputError: it cannot be saved.
     """
     blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
     for first in range(rows.start, rows.stop, size):

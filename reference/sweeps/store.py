@@ -15,7 +15,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError, plain_json
+from ..errors import InputError, plain_json, usable
 from ..system.checksums import SUMS, sums_text
 from ..system.documents import json_document, regular
 from ..system.imports import needed
@@ -48,8 +48,8 @@ class Store:
         """Begin a folder, or go on with that of the same sweep.
 
         Raises:
-            InputError: it holds another sweep, or something else, or other versions would write other bytes.
-            OSError: it cannot be written.
+            InputError: it holds another sweep, or something else, or other versions would write other bytes, or it
+                cannot be written.
         """
         if (folder / PLAN).exists():
             store = cls.opened(folder)
@@ -59,10 +59,11 @@ class Store:
             if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
                 raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
             store = cls(folder, request, version("pyarrow"))
-        for kind in store._kinds:
-            (folder / kind).mkdir(parents=True, exist_ok=True)
-            clear(folder / kind)  # a part that is there is not written again, which would clear it
-        clear(folder)
+        with usable("--out", folder):
+            for kind in store._kinds:
+                (folder / kind).mkdir(parents=True, exist_ok=True)
+                clear(folder / kind)  # a part that is there is not written again, which would clear it
+            clear(folder)
         if not (folder / PLAN).exists():
             write_json(folder / PLAN, {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()})
         return store
@@ -134,7 +135,7 @@ class Store:
         """Write a part, whole or not at all.
 
         Raises:
-            OSError: it cannot be written.
+            InputError: it cannot be written.
         """
         tables = {ROWS: (self.request.columns, solved.columns), TRANSITS: (TRANSIT_COLUMNS, solved.transits)}
         for kind in self._kinds:
@@ -144,7 +145,7 @@ class Store:
         """Write what the sweep has found, and the checksums of the files that have no seal of their own.
 
         Raises:
-            OSError: they cannot be written.
+            InputError: they cannot be written.
         """
         write_json(self.folder / SUMMARY, summary)
         files = {name: (self.folder / name).read_bytes() for name in (PLAN, SUMMARY)}
@@ -186,4 +187,5 @@ def write_json(path: Path, document: dict[str, Any]) -> None:
 
 
 def _write(path: Path, data: bytes) -> None:
-    replace_file(path, lambda stream: stream.write(data))
+    with usable("--out", path, "a file that can be written"):
+        replace_file(path, lambda stream: stream.write(data))

@@ -60,7 +60,8 @@ def test_a_file_that_is_none_of_its_folder_is_told(made, tmp_path, tally):
         for name in files_of(made.whole):
             restored(folder, made.whole)
             if damaged(folder, name, fault, made.other):
-                counts["refused" if made.is_told(folder) else "the same numbers"] += 1
+                refused = made.is_told(folder, of_another_run=fault is of_another_run)
+                counts["refused" if refused else "the same numbers"] += 1
     tally(f"files of a {made.format.name}: {dict(counts)}")
 
 
