@@ -41,7 +41,7 @@ atlas: .venv/testing
 	$(BIN)/foucault generate --all
 	$(BIN)/foucault atlas --out atlas
 
-# The cases that `make test` skips "under --long", and tests by the thousand (damaged files, forgeries, fuzzed inputs,
+# The cases that `make test` skips "under --long", and tests by the thousand (damaged files, faults, fuzzed inputs,
 # kills) of which it runs a short form.
 campaign: .venv/testing
 	$(PYTEST) --long -m campaign

@@ -22,7 +22,7 @@ from reference.scenes.scene import Scene, load_scene
 
 COSTLY = 15  # files named at the end of a test run, with the CPU seconds that they took
 # begun first, so that no worker is left with one of them at the end
-FIRST = {f"test_{name}.py" for name in ("explanation", "docs", "same_bytes", "kills", "experiments", "judge")}
+FIRST = {f"test_{name}.py" for name in ("explanation", "docs", "same_bytes", "kill", "experiments", "judge")}
 
 settings.register_profile("here", deadline=None, derandomize=True)
 settings.load_profile("here")

@@ -10,7 +10,10 @@ import random
 from collections import Counter
 from pathlib import Path
 
-from formats import files_of, restored
+import pytest
+from formats import files_of, restored, values_of
+
+import reference
 
 
 def another_byte(data: bytes, at: int, chance: random.Random) -> bytes:
@@ -71,3 +74,20 @@ def test_the_same_command_makes_it_whole_or_says_why_not(made, tmp_path, size, t
         if damaged(folder / name, kind, chance):
             counts["whole again" if made.goes_on(folder) else "refused"] += 1
     tally(f"bytes of a {made.format.name}, and the same command: {dict(counts)}")
+
+
+@pytest.mark.parametrize("made", ["sweep"], indirect=True)
+def test_a_part_that_is_damaged_after_its_seal_was_checked_is_refused_or_the_same(made, tmp_path, size, tally):
+    """Columns are read when they are asked for; the pages of Parquet have checksums of their own."""
+    chance, right, counts = random.Random(SEED), made.format.read(made.whole), Counter()
+    for _ in range(size(30, 1000)):
+        folder = restored(tmp_path / "damaged", made.whole)
+        swept = reference.load_sweep(folder)
+        name = chance.choice([name for name in files_of(folder) if name.endswith(".parquet")])
+        damaged(folder / name, "a bit", chance)
+        try:
+            assert values_of(swept) == right, name
+            counts["the same numbers"] += 1
+        except reference.InputError:
+            counts["refused"] += 1
+    tally(f"parts damaged after they were loaded: {dict(counts)}")

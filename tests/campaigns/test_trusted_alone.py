@@ -240,7 +240,7 @@ def test_what_is_right_is_accepted_and_no_claim_of_it_is_false(honest):
 
 
 def attempt(seed, honest):
-    """Make the files of a solution with one fault; return what trusted code says of it, and whether a claim is false."""
+    """Make the files of a solution with one fault; return what trusted code says, and whether a claim is false."""
     rng, fault = Random(seed), FAULTS[seed % len(FAULTS)]
     scene, solution, fine = honest[rng.choice(list(honest))]
     try:

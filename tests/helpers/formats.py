@@ -83,7 +83,7 @@ def contents(folder: Path) -> Contents:
 
 
 def _holds(found: Any, right: Any) -> bool:
-    """Return whether a result is the right one; beside files there may be others, such as an old one by another name."""
+    """Return whether a result is the right one; other files may be beside it, such as an old one by another name."""
     return found.items() >= right.items() if isinstance(right, dict) else found == right
 
 
@@ -132,7 +132,11 @@ def read_ranges(folder: Path) -> Any:
 
 
 def read_sweep(folder: Path) -> Any:
-    swept = reference.load_sweep(folder)
+    return values_of(reference.load_sweep(folder))
+
+
+def values_of(swept: reference.Swept) -> Any:
+    """Return all that a sweep holds."""
     columns = {**swept.columns(), **{f"transits {name}": values for name, values in swept.transits().items()}}
     return {name: values.tolist() if values.dtype.kind == "O" else values.tobytes() for name, values in columns.items()}
 

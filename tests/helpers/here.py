@@ -11,7 +11,7 @@ from compare.studies.campaign import Measurement
 
 
 def measured_here(patch: pytest.MonkeyPatch) -> None:
-    """Have campaigns start no processes; test_campaign.py and campaigns/test_kills.py are of those."""
+    """Have campaigns start no processes; test_campaign.py and campaigns/test_kill.py are of those."""
 
     def isolated(measurement: Measurement[Any, Any], items: Sequence[Any]) -> Iterator[Any]:
         yield from map(measurement.measure, items)

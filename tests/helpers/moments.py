@@ -14,7 +14,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +21,7 @@ from typing import TYPE_CHECKING
 from places import ROOT
 
 if TYPE_CHECKING:
-    import typer
+    pass
 
 PATIENCE_S = 300.0
 
@@ -45,11 +44,6 @@ def ended_at(event: int, number: signal.Signals, words: Sequence[object], named:
     return _run([str(event), str(int(number)), "-", named], words)
 
 
-def ended_after(wait_s: float, number: signal.Signals, words: Sequence[object]) -> Ended:
-    """Run `foucault words`; after some seconds it gets a signal from outside, as `ended_at` sends it."""
-    return _run(["-1", "0", "-", ""], words, (wait_s, number))
-
-
 def undisturbed(note: Path, words: Sequence[object], named: str = "") -> tuple[Ended, list[float]]:
     """Run `foucault words` to its end; return it, and the time of each of its events in s, or of those of a name."""
     ended = _run(["-1", "0", str(note), named], words)
@@ -64,7 +58,7 @@ def chosen(times: list[float], count: int, seed: int) -> list[int]:
     return [next(i for i, time_s in enumerate(times) if time_s >= moment) for moment in moments]
 
 
-def _run(how: list[str], words: Sequence[object], stopped: tuple[float, signal.Signals] | None = None) -> Ended:
+def _run(how: list[str], words: Sequence[object]) -> Ended:
     command = [sys.executable, __file__, *how, *map(str, words)]
     with subprocess.Popen(
         command,
@@ -76,12 +70,6 @@ def _run(how: list[str], words: Sequence[object], stopped: tuple[float, signal.S
         env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},  # else the first run has events that no later one has
     ) as process:
         try:
-            if stopped is not None:
-                wait_s, number = stopped
-                with suppress(subprocess.TimeoutExpired):
-                    process.wait(wait_s)
-                if process.poll() is None:
-                    (os.kill if number == signal.SIGKILL else os.killpg)(process.pid, number)
             out, err = process.communicate(timeout=PATIENCE_S)
         except BaseException:
             os.killpg(process.pid, signal.SIGKILL)
@@ -93,17 +81,6 @@ def _foucault(event: int, number: int, note: str, named: str, words: list[str]) 
     sys.path.insert(0, str(ROOT))
     import foucault
 
-    commands = foucault.commands
-
-    def with_few() -> typer.Typer:
-        """Import what is patched where the command does, so that a signal finds `main` at work."""
-        if few := os.environ.get("SCENES_THAT_SHIP"):  # instead of all that do
-            from reference.commands import generate_all
-
-            generate_all.scene_ids, generate_all.seals = few.split, dict
-        return commands()
-
-    foucault.commands = with_few
     times: list[float] = []
     done = False
 

@@ -1,24 +1,18 @@
-"""A disk without room: a message and exit status 2 where a result was to be written, time alone where it is a cache."""
+"""A disk without room for a picture, stdout or the cache; the formats are in tests/campaigns/test_full_disk.py."""
 
 from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from disks import fill, small_disk
-from here import measured_here
 from places import ROOT
 
-import reference
-
-SMALL = ["paris", "--t-end", "60", "--digits", "10", "--level", "computed"]
 STUDY = ["study", "paris", "--t-end", "60", "--methods", "rk4", "--no-formulations"]
-STABILITY = ["stability", "--scenes", "hard", "--methods", "heyoka_double"]
 
 
 @pytest.fixture
@@ -28,20 +22,10 @@ def disk(tmp_path):
 
 
 @pytest.fixture
-def here(monkeypatch):
-    pytest.importorskip("numba")
-    measured_here(monkeypatch)
-
-
-@pytest.fixture
 def candidate(tmp_path):
     path = tmp_path / "mine.csv"
     path.write_text("t,x,y\n0,0.3,0.4\n60,0.1,0.1\n")
     return path
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 def refused(outcome: tuple[int, str, str], field: str) -> bool:
@@ -50,55 +34,6 @@ def refused(outcome: tuple[int, str, str], field: str) -> bool:
     *notices, message = err.splitlines()
     assert message.startswith(f"foucault: {field}: ")
     return status == 2 and all(": about " in line for line in notices)  # how long it will take, on a slow machine
-
-
-def test_generate_keeps_the_old_dataset(disk, foucault):
-    out = disk / "p"
-    assert foucault("generate", *SMALL, "--out", out)[0] == 0
-    before = contents(out)
-    fill(disk)
-    assert refused(foucault("generate", *SMALL, "--out", out), "--out")
-    assert contents(out) == before
-    assert sorted(os.listdir(disk)) == ["filler", "p"]
-    reference.load(out)
-
-
-def test_generate_finds_out_at_any_file(disk, foucault):
-    """Room for nothing, for a part of the dataset, for more of it: nothing of it is left."""
-    assert foucault("generate", *SMALL, "--out", disk / "p")[0] == 0
-    shutil.rmtree(disk / "p")
-    fill(disk)
-    for room in range(0, 5 * 4096, 4096):
-        os.truncate(disk / "filler", (disk / "filler").stat().st_size - (room and 4096))
-        assert refused(foucault("generate", *SMALL, "--out", disk / "p"), "--out")
-        assert os.listdir(disk) == ["filler"]
-
-
-@pytest.mark.usefixtures("here")
-@pytest.mark.parametrize("words", [STUDY, pytest.param(STABILITY, marks=pytest.mark.long)], ids=["study", "stability"])
-def test_a_campaign_ends_with_a_message(words, disk, foucault):
-    fill(disk)
-    assert refused(foucault(*words, "--out", disk / "report"), "--out")
-
-
-@pytest.mark.usefixtures("here")
-def test_a_report_stays_as_it_was(disk, foucault):
-    assert foucault(*STUDY, "--out", disk / "report")[0] == 0
-    before = contents(disk / "report")
-    fill(disk)
-    assert refused(foucault(*STUDY, "--out", disk / "report"), "--out")
-    assert contents(disk / "report") == before
-
-
-def test_the_papers_page_is_written_whole_or_not_at_all(disk, foucault, monkeypatch):
-    pytest.importorskip("matplotlib")
-    monkeypatch.setattr("compare.papers.rows", lambda report: [])
-    monkeypatch.setattr("compare.papers.figures.FIGURES", {})
-    monkeypatch.setattr("compare.papers.papers_page.FIGURES", {})
-    fill(disk)
-    assert refused(foucault("paper", "--out", disk / "page"), "--out")
-    assert os.listdir(disk) in (["filler"], ["filler", "page"], ["page", "filler"])
-    assert not (disk / "page").exists() or os.listdir(disk / "page") == []
 
 
 def test_a_picture_stays_as_it_was(disk, foucault, candidate):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import math
 import os
@@ -329,18 +328,6 @@ def test_a_target_that_is_a_link_stays_one(dataset, solution):
     write(shorter, link)
     assert link.is_symlink()
     assert load(dataset).manifest.digits == 8
-
-
-@pytest.mark.parametrize("place", ["os.fsync", "tempfile.mkdtemp", "pathlib.Path.mkdir", "pathlib.Path.rename"])
-def test_a_disk_that_refuses_is_a_message_and_the_old_dataset_stays(dataset, solution, monkeypatch, place):
-    def refuse(*_, **__):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.chdir(dataset.parent)
-    said = r"--out: got 'paris', expected a writable place .*No space left on device\."
-    with left_as_it_was(dataset), monkeypatch.context() as patch, pytest.raises(InputError, match=said):
-        patch.setattr(place, refuse)
-        write(solution, "paris")
 
 
 def test_a_dataset_is_called_by_its_scene_and_by_what_was_changed(paris):

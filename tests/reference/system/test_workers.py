@@ -15,7 +15,6 @@ from pathlib import Path
 import child
 import pytest
 from child import count_to, die, die_once, doubled, finalise, freeze, refuse
-from interruption import PATIENCE_S
 from places import ROOT
 
 from reference.errors import IntegrationError
@@ -214,12 +213,3 @@ def test_where_nothing_will_come_any_more_the_wait_ends():
 
     with pytest.raises(ConnectionError):
         list(as_done(lambda _: Future(), range(1), 1, lost))
-
-
-def test_ctrl_c_at_any_instruction_leaves_no_thread_waiting(size):
-    """Each exception comes out as it is: none amid the locks of `threading`, for which another thread then waits."""
-    command = [sys.executable, ROOT / "tests/helpers/any_instruction.py", str(size(31, 3))]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
-    count, _, ends = ended.stdout.partition(" ")
-    assert ends == f"{{'KeyboardInterrupt()': {count}}}\n", ended.stderr
-    assert int(count) > size(100, 1000)
