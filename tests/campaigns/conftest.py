@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -9,21 +11,15 @@ from formats import FORMATS, IN_PROCESSES, Foucault, Made
 
 
 @pytest.fixture(scope="session")
-def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, Path]]:
-    """Return the folders that were made so far, by format."""
-    return {}
+def places(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return the folder of each format in which it is made once."""
+    return cache(tmp_path_factory.mktemp)
 
 
 @pytest.fixture(params=FORMATS)
-def made(
-    request: pytest.FixtureRequest,
-    folders: dict[str, tuple[Path, Path]],
-    tmp_path_factory: pytest.TempPathFactory,
-    foucault: Foucault,
-) -> Made:
+def made(request: pytest.FixtureRequest, places: Callable[[str], Path], foucault: Foucault) -> Made:
     """Return each format, made by its command, and another one of its kind."""
     chosen = {**FORMATS, IN_PROCESSES.name: IN_PROCESSES}[request.param]
-    if chosen.name not in folders:
-        place = tmp_path_factory.mktemp(chosen.name)
-        folders[chosen.name] = chosen.make(place / "whole"), chosen.make(place / "other", other=True)
-    return Made(chosen, *folders[chosen.name], foucault)
+    for module in chosen.needs:
+        pytest.importorskip(module)
+    return Made(chosen, places(chosen.name.replace(" ", "_")), foucault)
