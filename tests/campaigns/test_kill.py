@@ -59,8 +59,8 @@ def stops(made: Made, words: list[str], folder: Path, number: signal.Signals, no
     if not long:
         return [lambda: ended_at(MOVED_ASIDE, number, words, "os.rename")]
     _, times = undisturbed(note, words)
-    last = [len(times) - 1 - 4 * k for k in range(6)]
-    return [lambda event=event: ended_at(event, number, words) for event in [*chosen(times, 6, 1), *last]]
+    last = [len(times) - 1 - 4 * k for k in range(3)]
+    return [lambda event=event: ended_at(event, number, words) for event in [*chosen(times, 4, 1), *last]]
 
 
 def well_ended(ended: Ended, number: signal.Signals, folder: Path, threads: bool = False) -> None:

@@ -124,7 +124,7 @@ def test_a_changed_row_is_told_or_changes_no_number(made, tmp_path, size, tally)
 def test_the_same_command_makes_the_rows_again(made, tmp_path, size, tally):
     chance, folder, counts = random.Random(SEED), tmp_path / "changed", Counter()
     cases = cases_of(made.whole)
-    for name, kind in chance.sample(cases, min(size(2, 60), len(cases))):
+    for name, kind in chance.sample(cases, min(size(1, 40), len(cases))):
         restored(folder, made.whole)
         if changed(folder / name, kind, chance):
             assert made.goes_on(folder), (name, kind)

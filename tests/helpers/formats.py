@@ -154,7 +154,7 @@ def side_by_side(folder: Path, other: bool) -> None:
 
 def one_by_one(folder: Path, other: bool) -> None:
     """Rows in more digits than double has go through `solve`, in processes."""
-    begin_sweep(folder, "1:21:2" if other else "0:20:2", want=("transits", "transit-times"), digits=16)
+    begin_sweep(folder, "1:21:4" if other else "0:20:4", want=("transits", "transit-times"), digits=16)
 
 
 def stored(folder: Path) -> Contents:
