@@ -153,8 +153,7 @@ def _run() -> tuple[str | int | None, str, bool] | None:
         _flush_output()
         if isinstance(error, BrokenPipeError):
             return UNREAD, "", False
-        file = error.filename2 or error.filename or "output"  # of two, the one in whose place another was to come
-        return 2, plain_lines(f"{file}: {error.strerror or error}"), False
+        return 2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"), False
     return None
 
 

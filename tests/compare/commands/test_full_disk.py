@@ -105,9 +105,7 @@ def test_output_that_nobody_reads_ends_with_a_status_of_its_own():
     assert (done.returncode, done.stderr) == (141, "")
 
 
-def test_an_error_that_nobody_expects_names_its_file(foucault, monkeypatch, tmp_path):
-    def fail(*_: object) -> None:
-        raise PermissionError(13, "Permission denied", str(tmp_path / "scenes.toml"))
-
-    monkeypatch.setattr("reference.commands.show.load_scene", fail)
-    assert foucault("show", "paris") == (2, "", f"foucault: {tmp_path / 'scenes.toml'}: Permission denied\n")
+def test_an_error_that_nobody_expects_names_its_file(foucault, tmp_path):
+    journal = tmp_path / "rows.jsonl"
+    journal.symlink_to("nowhere")
+    assert foucault("verify", tmp_path) == (2, "", f"foucault: {journal}: No such file or directory\n")
