@@ -57,7 +57,7 @@ def damaged(path: Path, kind: str, chance: random.Random) -> bool:
 
 def test_damage_of_every_kind_to_every_file_is_told_or_changes_no_number(made, tmp_path, size, tally):
     chance, folder, counts = random.Random(SEED), tmp_path / "damaged", Counter()
-    for _ in range(size(1, 20)):
+    for _ in range(size(1, 5)):
         for kind in DAMAGE:
             for name in files_of(made.whole):
                 restored(folder, made.whole)
@@ -69,7 +69,7 @@ def test_damage_of_every_kind_to_every_file_is_told_or_changes_no_number(made, t
 def test_the_same_command_makes_it_whole_or_says_why_not(made, tmp_path, size, tally):
     chance, folder, counts = random.Random(SEED), tmp_path / "damaged", Counter()
     cases = [(kind, name) for name in files_of(made.whole) for kind in DAMAGE]
-    for kind, name in chance.sample(cases, min(size(2, 40), len(cases))):
+    for kind, name in chance.sample(cases, min(size(2, 20), len(cases))):
         restored(folder, made.whole)
         if damaged(folder / name, kind, chance):
             counts["whole again" if made.goes_on(folder) else "refused"] += 1
@@ -80,7 +80,7 @@ def test_the_same_command_makes_it_whole_or_says_why_not(made, tmp_path, size, t
 def test_a_part_that_is_damaged_after_its_seal_was_checked_is_refused_or_the_same(made, tmp_path, size, tally):
     """Columns are read when they are asked for; the pages of Parquet have checksums of their own."""
     chance, right, counts = random.Random(SEED), made.format.read(made.whole), Counter()
-    for _ in range(size(30, 1000)):
+    for _ in range(size(30, 300)):
         folder = restored(tmp_path / "damaged", made.whole)
         swept = reference.load_sweep(folder)
         name = chance.choice([name for name in files_of(folder) if name.endswith(".parquet")])

@@ -68,7 +68,7 @@ def test_a_file_that_is_none_of_its_folder_is_told(made, tmp_path, tally):
 def test_the_same_command_makes_a_file_again_or_says_what_is_in_the_way(made, tmp_path, size, tally):
     chance, folder, counts = random.Random(SEED), tmp_path / "damaged", Counter()
     cases = [(name, fault) for name in files_of(made.whole) for fault in FAULTS]
-    for name, fault in chance.sample(cases, min(size(2, 40), len(cases))):
+    for name, fault in chance.sample(cases, min(size(2, 20), len(cases))):
         restored(folder, made.whole)
         if damaged(folder, name, fault, made.other):
             counts["whole again" if made.goes_on(folder) else "refused"] += 1

@@ -113,7 +113,7 @@ def cases_of(folder: Path) -> list[tuple[str, str]]:
 @pytest.mark.parametrize("made", [name for name in FORMATS if name != "function"], indirect=True)
 def test_a_changed_row_is_told_or_changes_no_number(made, tmp_path, size, tally):
     chance, folder, counts = random.Random(SEED), tmp_path / "changed", Counter()
-    for name, kind in cases_of(made.whole) * size(1, 20):
+    for name, kind in cases_of(made.whole) * size(1, 5):
         restored(folder, made.whole)
         if changed(folder / name, kind, chance):
             counts["refused" if made.is_told(folder) else "the same numbers"] += 1
@@ -124,7 +124,7 @@ def test_a_changed_row_is_told_or_changes_no_number(made, tmp_path, size, tally)
 def test_the_same_command_makes_the_rows_again(made, tmp_path, size, tally):
     chance, folder, counts = random.Random(SEED), tmp_path / "changed", Counter()
     cases = cases_of(made.whole)
-    for name, kind in chance.sample(cases, min(size(1, 40), len(cases))):
+    for name, kind in chance.sample(cases, min(size(1, 20), len(cases))):
         restored(folder, made.whole)
         if changed(folder / name, kind, chance):
             assert made.goes_on(folder), (name, kind)
