@@ -158,10 +158,10 @@ def one_by_one(folder: Path, other: bool) -> None:
 
 
 def stored(folder: Path) -> Contents:
-    """Return what an interrupted command has done: the parts of a sweep, the lines of a journal."""
+    """Return what an interrupted command has done: the parts of a sweep, the whole lines of a journal."""
     done = {name: data for name, data in contents(folder).items() if name.endswith(".parquet")}
     for path in folder.glob("*.jsonl"):
-        lines = path.read_bytes().splitlines(keepends=True)
+        lines = [line for line in path.read_bytes().splitlines(keepends=True) if line.endswith(b"}\n")]
         done |= {f"line {number}": line for number, line in enumerate(lines, 1)}
     return {name: data for name, data in done.items() if "partial-" not in name}
 
