@@ -21,6 +21,7 @@ from reference.dataset.render import render
 from reference.dataset.sheets import scene_inputs
 from reference.enclosure.printed import check_dataset
 from reference.numbers.precision import fixed_decimal
+from reference.scenes.scene import parse_scene
 
 RUN = {"t_end": "9", "grid_step": "3", "digits": 24, "level": "enclosed"}
 SITE = {"rotation_rate": "0.0123", "equatorial_radius": "6371.1", "altitude": "12.5"}
@@ -180,11 +181,15 @@ def off(text, truth, bound=None):
     return distance > half + fine or (bound is not None and distance > Fraction(bound) + fine)
 
 
+def told(manifest):
+    """Return the exact inputs that a manifest tells of."""
+    return parse_scene({"id": "told", "inputs": manifest["inputs"], **manifest["scene"]}).exact
+
+
 def false_claims(scene, fine, texts):
     """Return what a dataset states wrongly of its scene, given the files of one with far more digits."""
     manifest, bounds, found = json.loads(texts["manifest.json"]), json.loads(texts["manifest.json"])["bounds"], []
-    if (manifest["scene"], manifest["inputs"]) != (scene_inputs(scene), scene.inputs):
-        found.append("the scene")
+    found += ["the scene"] * (told(manifest) != scene.exact)
     grid, transits = rows_of(texts["grid.csv"]), rows_of(texts["transits.csv"])
     kinds = {"x": "position_m", "y": "position_m", "z": "position_m"}
     for row, true in zip(grid, rows_of(fine["grid.csv"]), strict=True):
@@ -254,7 +259,7 @@ def attempt(seed, honest):
         became = "refused"
     try:
         false = bool(false_claims(scene, fine, texts))
-    except (KeyError, ValueError):  # other rows, columns or words than a table has
+    except (KeyError, ValueError, reference.FoucaultError):  # other rows, columns or words than a table has
         false = True
     return fault.__name__, became, false
 
