@@ -214,15 +214,6 @@ def test_a_test_over_scenes_has_to_name_them(tmp_path):
     assert "name scenes with @pytest.mark.foucault_scenes(paris=1e-8)" in done.stdout + done.stderr
 
 
-def test_the_examples_in_the_docstrings_run():
-    import doctest
-
-    import compare.testing
-
-    assert doctest.testmod(compare.testing).failed == 0
-    assert doctest.testmod(compare).failed == 0
-
-
 @pytest.mark.parametrize("columns", [2, 4, 6])
 def test_states_that_stand_in_columns_are_said_to_be_transposed(golden, columns):
     states = np.column_stack([getattr(golden, name)[:50] for name in ("x", "y", "vx", "vy", "z", "vz")[:columns]])
