@@ -1,7 +1,7 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
 #   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
-#   make quick    runs the tests of every day, in one to two minutes
+#   make quick    runs the tests of every day, in about a minute
 #   make atlas    makes every dataset that ships and is missing, and a page over all
 # And `make peers` runs the tests of the methods that want a Fortran compiler, JAX or the GPL, in an environment of its own.
 PYTHON ?= python3
@@ -28,11 +28,13 @@ pytest: .venv/testing
 	@echo "Running the tests: four to nine minutes on two cores"
 	$(PYTEST)
 
-# For every day: model, closed forms, solver with proofs, score; not what takes longest and is seldom touched
-SELDOM := $(patsubst %,tests/reference/solver/test_%.py,confirming extreme_scenes ranges sampled_confirmation sections sensitivity) \
+# For every day, about 100 CPU seconds: model, closed forms, solver with proofs, score; not what takes longest and is
+# seldom touched
+SELDOM := $(patsubst %,tests/reference/solver/test_%.py,confirming extreme_scenes pushed_releases ranges \
+  sampled_confirmation sections sensitivity) \
   $(patsubst %,tests/compare/score/test_%.py,baseline experiments explanation false_causes passages same_words wild)
 quick: .venv/testing
-	@echo "Running the tests of every day: one to two minutes on two cores"
+	@echo "Running the tests of every day: about a minute on two quiet cores"
 	$(PYTEST) tests/reference/numbers tests/reference/model tests/reference/solver tests/compare/score $(addprefix --ignore=,$(SELDOM))
 
 # Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was

@@ -108,14 +108,16 @@ def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
     assert "late.csv disagrees" in typed('foucault score hall --transits late.csv --section "gate 127"', tmp_path)
 
 
-def test_the_page_on_the_oracle_says_of_its_program_what_the_first_notebook_does(tmp_path, typed, monkeypatch):
+def test_the_page_on_the_oracle_says_of_its_program_what_the_first_notebook_does(tmp_path, typed):
     """It is one program, and the notebook's test judges it."""
     write_files(ORACLE, tmp_path)
     printed = [[float(word) for word in row.split(",")] for row in typed("python swing.py", tmp_path).splitlines()[1:]]
     cell, explained, *_ = code_cells(json.loads((GALLERY / "first_verdict.ipynb").read_text("utf-8")))
-    monkeypatch.setattr(compare, "judge", lambda columns, *_, **__: columns)
-    exec("".join(cell["source"]), names := {})
-    assert np.array(printed) == pytest.approx(np.column_stack([*names["first"].values()]), abs=1e-12)
+    program, _, judged = "".join(cell["source"]).partition("first = compare.judge(")
+    names = {}
+    exec(program, names)
+    columns = eval(judged.partition(', "paris"')[0], names)
+    assert np.array(printed) == pytest.approx(np.column_stack([*columns.values()]), abs=1e-12)
     (_, shown), *_ = commands(ORACLE)
     assert shown.partition("\n…\n")[2] == text_of(explained)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from notebooks import NOTEBOOKS, _png, code_cells, outputs, run, text_of
+from notebooks import NOTEBOOKS, code_cells, outputs, run, text_of
 from places import ROOT
 
 MOST_BYTES = 40_000
@@ -35,15 +35,12 @@ LONG = {"error_against_time"}  # `compare.judge` of files by name alone, as in f
 @pytest.mark.parametrize(
     "path", [pytest.param(path, marks=[pytest.mark.long] * (path.stem in LONG), id=path.stem) for path in NOTEBOOKS]
 )
-def test_every_cell_prints_what_the_notebook_keeps(
-    path: Path, size: Callable[[Any, Any], Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_every_cell_prints_what_the_notebook_keeps(path: Path, size: Callable[[Any, Any], Any]) -> None:
     """Pictures, which are not compared, are drawn under --long; test_python.py draws each kind."""
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr("notebooks._png", size(lambda _: b"", _png))
     cells = code_cells(json.loads(path.read_text(encoding="utf-8")))
     for cell, (printed, value) in zip(cells, run(path), strict=True):
-        now = text_of({"outputs": outputs(printed, value)})
+        now = text_of({"outputs": outputs(printed, value, with_pictures=size(False, True))})
         optional = "optional" in cell["metadata"].get("tags", ())
         assert same(text_of(cell), now) or (optional and WITHOUT_FLINT in now), "run: python tests/helpers/notebooks.py"
 

@@ -14,18 +14,15 @@ spec = importlib.util.spec_from_file_location("mutants", ROOT / "tests/mutants.p
 mutants = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(mutants)
 
-FILE = "reference/a_file.py"
-
 
 @pytest.fixture
-def written(monkeypatch, tmp_path):
-    """Write a file of a project of its own; return its mutations as texts without the file's name."""
-    monkeypatch.setattr(mutations, "ROOT", tmp_path)
-    (tmp_path / FILE).parent.mkdir()
+def written(tmp_path):
+    """Write a file; return its mutations as texts without the file's name."""
+    path = tmp_path / "a_file.py"
 
     def write(text):
-        (tmp_path / FILE).write_text(text)
-        return {str(mutation).partition(" ")[2]: mutation for mutation in mutations_of(FILE)}
+        path.write_text(text)
+        return {str(mutation).removeprefix(f"{path} "): mutation for mutation in mutations_of(str(path))}
 
     return write
 

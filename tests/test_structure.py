@@ -64,19 +64,6 @@ def test_no_circle_among_files_nor_among_the_rooms_of_a_folder():
     assert {place: circles for place in folders if (circles := structure.circles(*structure.arrows(ROOT, place)))} == {}
 
 
-def test_the_kernel_that_can_be_taken_out_stays_small():
-    folder = ROOT / "reference" / "engines" / "octet"
-    assert sum(map(structure.code_lines, folder.glob("*.py"))) <= 600  # of code
-
-
-def test_lines_of_code_are_counted_without_words_about_it(tmp_path):
-    path = tmp_path / "some.py"
-    path.write_text(
-        '"""Two\nlines."""\n\nx = (\n    1,\n)  # three\n\n\ndef f():\n    """One."""\n    # none\n    return x\n'
-    )
-    assert structure.code_lines(path) == 5
-
-
 def test_the_measure_of_the_structure_sees_a_circle_and_an_arrow_upwards(tmp_path):
     (tmp_path / "foucault.py").write_text("import reference.a\n")
     for name, text in (("a", "from . import b\n"), ("b", "def late():\n    from .a import something\n"), ("c", "")):

@@ -49,20 +49,29 @@ KINDS = {  # who somebody may want a method from, and the methods that take one 
 SAME_ORDER = 0.9  # Kendall's tau of two rankings that count as the same
 
 
+NOT_SO = "not so: "  # before a sentence that the results do not bear out
+
+
 class NotSoError(Exception):
     """The results do not bear out what the page says."""
 
 
 def so(holds: bool, text: str) -> str:
-    """Return a sentence if what it claims holds."""
-    if not holds:
-        raise NotSoError(text)
-    return text
+    """Return a sentence, marked if what it claims does not hold."""
+    return text if holds else NOT_SO + text
 
 
 def page(kept: Documents) -> str:
-    """Return docs/studies.md."""
-    return "\n".join(map(_wrapped, lines(kept))) + "\n"
+    """Return docs/studies.md.
+
+    Raises:
+        NotSoError: the results do not bear out a sentence.
+    """
+    written = [*lines(kept)]
+    for line in written:
+        if line.startswith(NOT_SO):
+            raise NotSoError(line.removeprefix(NOT_SO))
+    return "\n".join(map(_wrapped, written)) + "\n"
 
 
 def lines(kept: Documents) -> Iterator[str]:

@@ -11,7 +11,7 @@ from small_scenes import make_scene
 
 from compare import judge
 from compare.score.input_floor import floor_of_what_ships
-from compare.truth import _why_solved, by_function, golden_of, shipping, solves, truth_at
+from compare.truth import by_function, golden_of, shipping, solves, truth_at
 from reference import load, load_scene
 from reference.solver.sensitivity import Sensitivity
 from reference.system import cache
@@ -151,34 +151,35 @@ def test_a_cache_that_cannot_be_written_costs_time_only(place, tmp_path, monkeyp
     assert capfd.readouterr().err.count("cannot be written") == 1
 
 
-def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
+def test_the_truth_is_evaluated_once_for_the_same_times(own_cache):
     golden = load("paris")
     times = np.linspace(0, 90, 7)
     first = truth_at(golden, times)
-    monkeypatch.setattr("compare.truth.dense", None)
+    (entry,) = (own_cache / "dense").iterdir()
+    before = entry.stat().st_ino
     again = truth_at(golden, times)
+    assert entry.stat().st_ino == before
     for name in ("t", "states", "low"):
         assert np.array_equal(getattr(first, name), getattr(again, name))
     assert (first.bound_m, first.bound_m_s) == (again.bound_m, again.bound_m_s)
 
 
-def test_the_truth_of_a_scene_that_ships_comes_from_its_function_and_nothing_is_solved(monkeypatch, tmp_path):
-    def refuse(*_, **__):
-        raise AssertionError("solved")
-
-    for place in ("compare.score.judge.golden_of", "reference.solver.solve.run", "reference.solver.sensitivity.run"):
-        monkeypatch.setattr(place, refuse)
+def test_the_truth_of_a_scene_that_ships_comes_from_its_function_and_nothing_is_solved(own_cache):
+    said: list[str] = []
     for name in ("pole", "over_top", "paris"):
         golden = load(f"{name}.binary64")
         end = golden.function.times[-1]
         t = np.append(np.sort(np.random.default_rng(5).uniform(0, end, 300)), end + 1e-9)
         at = golden.function.at(np.minimum(t, end))
-        score = judge({"t": t, "x": at.x, "y": at.y, "z": at.z}, name, transits=golden.transits["t"])
+        columns = {"t": t, "x": at.x, "y": at.y, "z": at.z}
+        score = judge(columns, name, transits=golden.transits["t"], announce=said.append)
         assert score.agrees
         assert score.transits.matched == golden.manifest.counts.transits
         assert score.errors.max_m <= 1e-9 * score.errors.speed_m_s * 1.01
         assert score.golden.path.name == f"{name}.binary64"
         assert "times the input floor" in str(score) or score.at_bound
+    assert said == []
+    assert not own_cache.exists()  # what is solved, evaluated or integrated is kept there
 
 
 def test_where_the_bound_of_the_function_could_change_the_verdict_more_digits_decide():
@@ -213,10 +214,24 @@ def test_a_new_scene_is_solved_no_further_than_the_verdict_needs(own_cache):
     assert said == ["no golden dataset has the problem of mine: solving it to 22 digits"]
 
 
-def test_of_a_scene_that_ships_it_is_said_why_it_is_solved():
-    said = [_why_solved(load_scene(name, ["inputs=binary64"])) for name in ("creeping", "pole")]
-    assert "takes 27 MB" in said[0] and "does not decide" in said[1]
-    assert "no golden dataset" in _why_solved(load_scene("creeping", ["site.latitude=1"]))
+@pytest.mark.parametrize(
+    ("name", "change", "why"),
+    [
+        ("creeping", "inputs=binary64", "takes 27 MB"),
+        ("pole", "inputs=binary64", "does not decide"),
+        ("creeping", "site.latitude=1", "no golden dataset"),
+    ],
+)
+def test_of_a_scene_that_ships_it_is_said_why_it_is_solved(name, change, why):
+    class Enough(Exception):
+        pass
+
+    def stop(message):
+        assert why in message
+        raise Enough
+
+    with pytest.raises(Enough):
+        golden_of(load_scene(name, [change]), announce=stop)
 
 
 @pytest.mark.parametrize("name", ["pole", "near_inverted", "conical", "stability_below", "ten_kilometres", "museum"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from small_scenes import make_scene
@@ -38,9 +38,27 @@ class Case:
     def truth(self):
         return np.array([getattr(self.solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
 
-    def problem(self, name, *, rows=None, formulation=None):
+    def problem(self, name, *, rows=None, formulation=None, kind=Problem):
         word = formulation or suited(self.scene, METHODS[name].formulations)
-        return Problem.of(self.scene, word, self.times[:rows])
+        return kind.of(self.scene, word, self.times[:rows])
+
+
+class Counted(Problem):
+    """A problem that counts the calls of its right-hand side."""
+
+    @cached_property
+    def calls(self):
+        return []
+
+    @cached_property
+    def rates(self):
+        inner = super().rates
+
+        def counting(*arguments):
+            self.calls.append(1)
+            return inner(*arguments)
+
+        return counting
 
 
 @cache

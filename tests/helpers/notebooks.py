@@ -51,15 +51,14 @@ def run(path: Path) -> list[tuple[str, Any]]:
     return found
 
 
-def outputs(printed: str, value: Any) -> list[dict[str, Any]]:
+def outputs(printed: str, value: Any, *, with_pictures: bool = True) -> list[dict[str, Any]]:
     """Return what a notebook keeps of what a cell printed and of its last value: text, or a small picture."""
     kept: list[dict[str, Any]] = []
     if printed:
         kept.append({"name": "stdout", "output_type": "stream", "text": printed.splitlines(keepends=True)})
     if value is not None:
         data: dict[str, Any] = {"text/plain": str(repr(value)).splitlines(keepends=True)}
-        picture = _png(value)
-        if picture:
+        if with_pictures and (picture := _png(value)):
             data["image/png"] = base64.b64encode(picture).decode()
         kept.append({"data": data, "execution_count": None, "metadata": {}, "output_type": "execute_result"})
     return kept

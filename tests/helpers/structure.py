@@ -1,4 +1,4 @@
-"""Measure the structure of the code: rooms, floors, arrows, circles, class names, lines.
+"""Measure the structure of the code: rooms, floors, arrows, circles and class names.
 
     python tests/helpers/structure.py [ROOT]
 
@@ -9,9 +9,7 @@ imports for type checkers included. A room stands one floor above the highest ro
 from __future__ import annotations
 
 import ast
-import io
 import sys
-import tokenize
 from collections import Counter
 from functools import cache
 from pathlib import Path
@@ -131,24 +129,6 @@ def class_names(root: Path) -> dict[str, list[str]]:
     return {name: files for name, files in sorted(places.items()) if len(files) > 1}
 
 
-def code_lines(path: Path, imports: bool = False) -> int:
-    """The lines of a source file that hold code: neither blank, nor comments, nor docstrings; imports on demand."""
-    text, skipped = path.read_text(encoding="utf-8"), {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}
-    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
-    held = {
-        line
-        for token in tokens
-        if tokenize.tok_name[token.type] not in skipped
-        for line in range(token.start[0], token.end[0] + 1)
-    }
-    for node in ast.walk(tree(path)):
-        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node) is not None:
-            held -= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
-        elif isinstance(node, (ast.Import, ast.ImportFrom)) and not imports:
-            held -= set(range(node.lineno, (node.end_lineno or 0) + 1))
-    return len(held)
-
-
 def importers(root: Path) -> dict[Path, list[Path]]:
     """Return for each source file those that import it; what an `__init__` hands on counts as imported by it."""
     found: dict[Path, list[Path]] = {path: [] for path in sources(root)}
@@ -181,13 +161,7 @@ def main(root: Path) -> None:
     single = [path for path, users in importers(root).items() if len(users) == 1 and path.name != "__init__.py"]
     print(f"files that one other file imports: {len(single)}")
     for path in single:
-        print(f"  {len(path.read_text(encoding='utf-8').splitlines()):4} {path.relative_to(root).as_posix()}")
-    for name in PACKAGES:
-        paths = [path for path in files if root / name in path.parents]
-        raw = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in paths)
-        print(f"lines of {name}: {raw}, {sum(map(code_lines, paths))} of them code")
-    tests = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in (root / "tests").rglob("*.py"))
-    print(f"lines of tests: {tests}")
+        print(f"  {path.relative_to(root).as_posix()}")
 
 
 if __name__ == "__main__":

@@ -35,10 +35,6 @@ CONE = parse_scene(
 )
 
 
-def distance(a, b):
-    return np.max(np.linalg.norm(a[:, :3] - b[:, :3], axis=1))
-
-
 def random_state(ctx, rng):
     return tuple(ctx.mpf(rng.uniform(-0.4, 0.4)) for _ in range(4))
 

@@ -39,9 +39,9 @@ def test_the_bits_of_the_papers_program_name_motions():
     assert names == ["mathar_item_2", "mathar_item_1", "mathar_items_1_2"]
 
 
-def test_a_motion_that_comes_to_the_horizontal_comes_to_an_end(monkeypatch):
+@pytest.mark.long  # three million steps
+def test_a_motion_that_comes_to_the_horizontal_comes_to_an_end():
     # without a limit it takes smaller and smaller steps for ever
-    monkeypatch.setattr("reference.engines.trajectory.MAX_STEPS", 20_000)
     scene = load_scene("weightless").with_values(["site.latitude=60"])
     with pytest.raises(IntegrationError, match="only until the bob comes to the horizontal"):
         APPROXIMATIONS["mathar_item_3"].trajectory(scene, [0.0, 60.0])

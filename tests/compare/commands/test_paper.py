@@ -13,7 +13,6 @@ from compare import papers
 from compare.papers.checks import VERDICTS
 
 
-@pytest.mark.usefixtures("few_runs")
 @pytest.mark.parametrize("as_json", [pytest.param(True, marks=pytest.mark.long), False])
 def test_every_formula_is_listed_with_its_verdict(foucault: Any, as_json: bool) -> None:
     pytest.importorskip("numba")

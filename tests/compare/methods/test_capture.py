@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 import numpy as np
-import pytest
 
 import reference
 from compare import assert_agrees, study
-from compare.methods import METHODS, library
-from compare.methods.library import captured, quoted
+from compare.methods import METHODS
 from compare.methods.method import available
 from compare.methods.rhs.problem import Problem
 from reference.scenes.fields import LEVELS
-
-
-@pytest.fixture
-def isolated(monkeypatch):
-    monkeypatch.setattr(library, "isolated", True)
 
 
 def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch, size):
@@ -39,10 +34,19 @@ def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch, size):
     assert redirected == []
 
 
-def test_what_is_written_is_captured_and_quoted_on_one_line(capfd, isolated):
-    with captured() as output:
-        os.write(1, b"a step\n")
-        os.write(2, b"failed\n")
-    os.write(1, b"after\n")
-    assert quoted(output) == "a step failed"
-    assert capfd.readouterr().out == "after\n"
+IN_A_PROCESS_OF_ITS_OWN = """
+import os
+from compare.methods import library
+
+library.isolated = True
+with library.captured() as output:
+    os.write(1, b"a step\\n")
+    os.write(2, b"failed\\n")
+print(library.quoted(output), "was captured", flush=True)
+os.write(1, b"after\\n")
+"""
+
+
+def test_what_is_written_is_captured_and_quoted_on_one_line():
+    done = subprocess.run([sys.executable, "-c", IN_A_PROCESS_OF_ITS_OWN], check=True, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("a step failed was captured\nafter\n", "")

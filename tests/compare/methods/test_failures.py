@@ -10,7 +10,8 @@ import pytest
 from method_cases import case
 from small_scenes import make_scene
 
-from compare.methods import METHODS, gauss_legendre, library
+from compare import study
+from compare.methods import METHODS, gauss_legendre
 from compare.methods.method import external
 from compare.methods.rhs.problem import Problem
 from reference import InputError
@@ -53,12 +54,11 @@ def test_a_tolerance_that_scipy_raises_is_said(installed):
     assert "rtol" in outcome.reason
 
 
-def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd, installed, monkeypatch):
-    monkeypatch.setattr(library, "isolated", True)
-    problem = Problem.of(case("steep").scene, "momentum")
-    outcome = installed("numbalsoda_lsoda").prepare(problem, 1e-17)()
-    assert outcome.status == "gave_up"
-    assert outcome.reason
+def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd, installed):
+    installed("numbalsoda_lsoda")
+    (row,) = study(case("steep").scene, items=[("numbalsoda_lsoda", "momentum", 1e-17)]).rows
+    assert row.status == "gave_up"
+    assert row.reason
     assert capfd.readouterr() == ("", "")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -47,20 +48,26 @@ def part(tmp_path):
     return str(path)
 
 
+class InItsOwnVariables(Problem):
+    """A problem whose rows stay in the variables of its formulation."""
+
+    def cartesian(self, states):
+        return states
+
+
 @needs_compiler
 @pytest.mark.parametrize(
     "formulation",  # those in every run have all that C++ is printed of: square roots, sines and arc tangents
     ["plane", "angles", *(pytest.param(word, marks=pytest.mark.long) for word in ("momentum", "space", "spin"))],
 )
-def test_the_equations_in_cpp_are_those_in_python(formulation, here, part, monkeypatch):
+def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
     lively = make_scene(
         inputs="binary64",
         pendulum={"length": "1", "drag": "0.1"},
         site={"rotation_rate": "0.7", "equatorial_radius": "3"},
         release={"angle": "50", "azimuth": "20", "angle_rate": "40", "azimuth_rate": "100"},
     )
-    problem = Problem.of(lively, formulation, np.arange(9.0))
-    monkeypatch.setattr(Problem, "cartesian", lambda _, states: states)
+    problem = InItsOwnVariables.of(lively, formulation, np.arange(9.0))
     outcome = c_libraries.prepare(problem, 1e-9, here, [part])()
     parameters = list(problem.system.parameters.values())
     rates = python_function(problem.system.program)(*problem.start, *parameters)
@@ -72,13 +79,16 @@ def test_the_equations_in_cpp_are_those_in_python(formulation, here, part, monke
 
 
 @needs_compiler
-def test_a_program_is_compiled_once_and_serves_scenes_with_the_same_terms(here, part, tmp_path, monkeypatch):
+def test_a_program_is_compiled_once_and_serves_scenes_with_the_same_terms(here, part, tmp_path):
     c_libraries.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [part])
-    (kept,) = (tmp_path / "cache" / "native").glob("[0-9a-f]*")
-    monkeypatch.setattr(c_libraries, "workspace", None)  # what compiles needs it
+    programs = tmp_path / "cache" / "native"
+    (kept,) = programs.glob("[0-9a-f]*")
+    before = kept.stat()
     other = c_libraries.prepare(case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part])
     assert other().reason == "as asked"
-    assert kept.is_file()
+    assert [*programs.glob("[0-9a-f]*")] == [kept]
+    after = kept.stat()
+    assert (after.st_ino, after.st_mtime_ns) == (before.st_ino, before.st_mtime_ns)
 
 
 @needs_compiler
@@ -98,13 +108,13 @@ def test_a_program_that_crashes_is_an_outcome(here, tmp_path):
     assert "exit status -6" in outcome.reason
 
 
-def test_a_library_without_headers_says_what_brings_it(monkeypatch):
-    monkeypatch.setattr(library, "include_folders", list)
-    monkeypatch.setattr(library, "compiler", lambda: ["c++"])
-    assert GSL.missing == "not installed: gsl/gsl_odeiv2.h of GSL (apt install libgsl-dev)"
-    assert available(METHODS["gsl_rk8pd"]) == GSL.missing
-    assert "pip install 'foucault-reference[methods-native]'" in (available(METHODS["odeint_rkf78"]) or "")
-    assert GSL.version is None
+@needs_compiler
+def test_a_library_without_headers_says_what_brings_it():
+    absent = replace(GSL, header="gsl/not_here.h")
+    assert absent.missing == "not installed: gsl/not_here.h of GSL (apt install libgsl-dev)"
+    assert available(replace(METHODS["gsl_rk8pd"], native=absent)) == absent.missing
+    assert absent.version is None
+    assert "pip install 'foucault-reference[methods-native]'" in BOOST.brings
 
 
 def test_a_machine_without_a_compiler_says_so(monkeypatch):

@@ -18,7 +18,7 @@ from compare.candidates.read import read_stream
 from compare.commands.papers import pend as command
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
-from compare.papers.foucpend import Transits, lines, parabola_zero, snapshots_of
+from compare.papers.foucpend import BLOCK, Transits, lines, parabola_zero, snapshots_of
 from compare.papers.foucpend_options import DEFAULTS, Options
 from compare.papers.points import paris
 from reference import InputError, IntegrationError, load, load_scene
@@ -139,19 +139,6 @@ def test_a_transit_stands_between_the_snapshots_around_it_and_gives_n_over_two_t
             assert float(hertz) == pytest.approx(int(count) / (2 * float(t)), rel=1e-15)
 
 
-@pytest.mark.parametrize("block", [pytest.param(1, marks=pytest.mark.long), 7, 300, 599, 600])
-def test_the_length_of_a_block_changes_no_line(monkeypatch: pytest.MonkeyPatch, block: int) -> None:
-    from compare.papers import foucpend as module
-
-    options = {**PARIS, "T": "60", "t": "0.1", "s": "7", "R": "4"}
-    whole = output(**options)
-    monkeypatch.setattr(module, "BLOCK", block)
-    parts = output(**options)
-    assert len(whole) == len(parts)
-    assert snapshots(parts) == pytest.approx(snapshots(whole), rel=1e-12, abs=1e-11)
-    assert [t for _, t, _ in transits(parts)] == pytest.approx([t for _, t, _ in transits(whole)], abs=1e-11)
-
-
 # against the reference ---------------------------------------------------------------------------------------------
 def errors(steps: list[float], **switches: str) -> np.ndarray:
     worst = []
@@ -176,12 +163,19 @@ def test_at_ordinary_steps_the_three_schemes_converge_as_the_paper_says(
 
 
 def test_transits_of_the_paper_s_step_are_right_to_ten_nanoseconds() -> None:
-    golden = load("paris").transits["t"]
-    zeros = transits(output(**PARIS, T="600", t="0.01", s="1000", R="6"))
+    """Over 1020 s, so that one block of steps in memory is followed by another."""
+    assert BLOCK * 0.01 < 1001
+    golden = load("paris")
+    printed = output(**PARIS, T="1020", t="0.01", s="100", R="6")
+    zeros = transits(printed)
     times = np.array([t for _, t, _ in zeros])
-    assert len(times) == 73
-    assert np.abs(times - golden[:73]).max() < 1e-8
+    expected = golden.transits["t"][golden.transits["t"] < 1020]
+    assert len(times) == len(expected)
+    assert np.abs(times - expected).max() < 1e-8
     assert round(zeros[1][2], 9) == 0.060843633  # the paper's
+    table = snapshots(printed)
+    assert table[:, 0] == pytest.approx(np.arange(1021), abs=1e-9)
+    assert table[-1, 1:3] == pytest.approx([golden.x[17], golden.y[17]], abs=1e-9)  # a golden row a minute
 
 
 @pytest.mark.parametrize(

@@ -135,10 +135,6 @@ def test_a_gravimeter_shows_what_the_page_says() -> None:
     assert "a gravimeter in Paris shows about 9.809" in PAGE
 
 
-def test_the_page_is_at_most_two_pages_long() -> None:
-    assert len(PAGE.split()) < 1200
-
-
 def test_between_transits_of_the_passage_the_plane_lies_north_south() -> None:
     times = transits("t")
     passage = (pi / 2 + MP.atan2(P.y - rest(P)[1], P.x)) / TURN

@@ -3,38 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from compare.approximations import motions
-from compare.report import approximations as approximation_report
-from compare.studies import approximation_limits
 from foucault import commands
 from reference import InputError
 
 
-def test_the_study_of_approximations_writes_its_page_and_json(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: Callable[..., int]
-) -> None:
-    some = dict([*motions().items()][:: size(5, 1)])
-    monkeypatch.setattr(approximation_report, "motions", lambda: some)
-    monkeypatch.setattr(approximation_report, "OVERS", ("time", "amplitude"))
-    monkeypatch.setattr(approximation_limits, "sweep_values", lambda *_: (1e-3, 1e-2, 1e-1))
-    swept, sweep = list[str](), approximation_limits.sweep
-    monkeypatch.setattr(approximation_limits, "sweep", lambda *words: swept.append(words[2]) or sweep(*words))
+def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path) -> None:
     arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
     result = CliRunner().invoke(commands(), [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     document = json.loads(result.stdout)
     assert {row["t"] for row in document["rows"]} == {20.0, 60.0}
-    assert {row["over"] for row in document["limits"]} == {"time", "amplitude"}
-    assert {row["approximation"] for row in document["rows"]} == {*some}
-    assert swept == ["amplitude"]  # once for the document and the page
+    assert {row["over"] for row in document["limits"]} == {"time", "amplitude", "latitude", "length"}
+    assert {row["approximation"] for row in document["rows"]} == {*motions()}
     page = (tmp_path / "index.html").read_text()
     assert all(row["approximation"] in page for row in document["rows"])
+    assert page.count("<svg") == 5  # errors over time, of the swing plane, and of the three sweeps
 
 
 def test_a_folder_of_somebody_elses_is_refused_before_the_work(tmp_path: Path) -> None:

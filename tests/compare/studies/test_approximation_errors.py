@@ -7,11 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from compare.approximations import APPROXIMATIONS, motions, quantities
-from compare.studies import approximation_limits
+from compare.approximations import APPROXIMATIONS, Motion, motions, quantities
 from compare.studies.approximation_errors import TIMES, ReferenceMotion, error_table, quantity_table
 from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_values, varied
-from compare.studies.approximation_limits import _below as below
 from reference import InputError, load, load_scene, trajectory
 from reference.model.force import rest_position
 from reference.status import Status
@@ -111,19 +109,40 @@ def test_limits_over_time_are_where_the_error_passes_them():
             assert getattr(later, quantity) > limit * 0.999
 
 
-def test_intervals_end_where_the_logarithm_of_the_error_meets_the_limit():
-    values, errors = (1.0, 10.0, 100.0), (1e-5, 1e-3, 1e-1)  # slope 2
-    assert below("amplitude", values, errors, 1e-2) == ((1.0, pytest.approx(10**1.5)),)
-    assert below("amplitude", values, errors[::-1], 1e-2) == ((pytest.approx(10**0.5), 100.0),)
-    assert below("amplitude", values, errors, 1e-6) == ()
-    assert below("amplitude", values, errors, 1.0) == ((1.0, 100.0),)
-    latitudes, dip = (-90.0, -45.0, 0.0, 45.0, 90.0), (1e-8, 1.0, 1e-4, 1.0, 1e-8)
-    assert below("latitude", latitudes, dip, 1e-2) == (
-        (-90.0, pytest.approx(-90 + 45 * 6 / 8)),
-        (pytest.approx(-22.5), pytest.approx(22.5)),
-        (pytest.approx(90 - 45 * 6 / 8), 90.0),
-    )
-    assert below("length", (1.0, 2.0, 4.0), (None, 1e-5, None), 1e-3) == ((2.0, 2.0),)
+def good_to_a_millimetre(over, size_m):
+    """Return where an approximation is good to 1 mm that is the truth moved east by a size in m, scene by scene."""
+
+    class Moved(Motion):
+        def trajectory(self, scene, times):
+            rows = trajectory(scene, times)
+            rows[:, 0] += size_m(float(scene.exact.length), float(scene.exact.latitude))
+            return rows
+
+    moved = Moved(id="moved", title="", where="", drops="", path=lambda *_: None)
+    (row,) = (row for row in limits(PARIS, [moved], over, 1.0) if row.limit == "1 mm")
+    return [tuple(pytest.approx(end, rel=0.01) for end in interval) for interval in row.good]
+
+
+def test_lengths_end_where_the_logarithm_of_the_error_meets_the_limit():
+    def only_at_2_m(length_m, _):
+        if length_m != 2:
+            raise InputError("scene", "another length", "2 m")
+        return 1e-5
+
+    # 1e-6 l² is 1 mm at sqrt(1000) = 31.6 m, and 1 / l² at 31.6 m, too
+    assert good_to_a_millimetre("length", lambda length_m, _: 1e-6 * length_m**2) == [(1.0, 31.6)]
+    assert good_to_a_millimetre("length", lambda length_m, _: 1 / length_m**2) == [(31.6, 200.0)]
+    assert good_to_a_millimetre("length", lambda *_: 0.01) == []
+    assert good_to_a_millimetre("length", lambda *_: 1e-4) == [(1.0, 200.0)]
+    assert good_to_a_millimetre("length", only_at_2_m) == [(2.0, 2.0)]
+
+
+def test_latitudes_may_be_good_in_several_intervals():
+    # 10^-2 m at the equator, and a tenth of that every 22.5 degrees
+    assert good_to_a_millimetre("latitude", lambda _, latitude: 10 ** (-2 - abs(latitude) / 22.5)) == [
+        (-90.0, -22.5),
+        (22.5, 90.0),
+    ]
 
 
 def test_the_amplitude_at_which_the_harmonic_swing_loses_a_millimetre_in_an_hour():
@@ -133,16 +152,14 @@ def test_the_amplitude_at_which_the_harmonic_swing_loses_a_millimetre_in_an_hour
     assert good[0][1] == pytest.approx(expected, rel=0.05)
 
 
-def test_without_rotation_of_the_plane_the_vertical_approximations_are_good_at_the_pole_and_not_between(monkeypatch):
-    monkeypatch.setattr(approximation_limits, "sweep_values", lambda *_: (45.0, 90.0))
+def test_without_rotation_of_the_plane_the_vertical_approximations_are_good_at_the_pole_and_not_between():
     rows = {row.value: row for row in sweep(PARIS, chosen("mathar_item_1"), "latitude", 600.0)}
     assert rows[45.0].error_m > 0.1
     assert rows[90.0].error_m < 1e-5
     assert (rows[45.0].over, rows[45.0].t) == ("latitude", 600.0)
 
 
-def test_limits_of_what_does_not_apply_say_why(monkeypatch):
-    monkeypatch.setattr(approximation_limits, "sweep_values", lambda *_: (1.0, 67.0))
+def test_limits_of_what_does_not_apply_say_why():
     for over in ("time", "length"):
         rows = limits(PARIS, chosen("conical"), over, 20.0)
         assert len(rows) == len(LIMITS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -19,7 +19,8 @@ TIMES = np.linspace(0.0, 60.0, 121)  # s, at which a motion is compared
 EXACT_M, EXACT_RELATIVE = 2e-12, 1e-13  # rounding of a metre-sized motion, and of a measured frequency
 
 
-class Order(NamedTuple):
+@dataclass(frozen=True)
+class Order:
     """A statement of theory: the error is proportional to `against` ** `power`.
 
     Attributes:
@@ -109,10 +110,10 @@ ORDERS = {
     "precession_sine": (Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), 1e-2), SQUARE_AT_POLE),
     "precession_tilted": (Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ON_AXIS, 1e-2), SQUARE_AT_POLE),
     "precession_spherical": (Order("amplitude", 4, (4.0, 8.0, 16.0), AT_POLE),),
-    "rest_equation": (IN_RATE._replace(power=None), Order("length", None, (1, 67, 10000))),
+    "rest_equation": (replace(IN_RATE, power=None), Order("length", None, (1, 67, 10000))),
     **{
         f"rest_series_{terms}": (
-            IN_RATE._replace(power=2 * terms + 2),
+            replace(IN_RATE, power=2 * terms + 2),
             Order("rotation_rate", 2 * terms + 2, (4e-3, 8e-3, 1.6e-2), SMALL_BODY),
         )
         for terms in (1, 2, 3)
@@ -172,7 +173,8 @@ def whole(order):
 
 def of_ends(order):
     """Return the order with the first and the last of its values: two make a slope."""
-    return order._replace(values=(order.values[0], order.values[-1]) if len(order.values) > 1 else order.values)
+    values = order.values if len(order.values) == 1 else (order.values[0], order.values[-1])
+    return replace(order, values=values)
 
 
 def slope(order, errors):

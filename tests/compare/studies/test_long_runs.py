@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from compare.studies import long_runs as module
 from compare.studies.long_runs import laws, long_runs
 from reference import load_scene
 
@@ -44,18 +43,18 @@ def test_what_cannot_run_is_a_row_with_its_reason() -> None:
     assert next(laws([row])).startswith("rk4 (plane): refused")
 
 
-def test_thirty_days_are_paris_with_a_truth_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    requests: list[str] = []
+@pytest.mark.long  # a first run in double over thirty days
+def test_without_a_scene_the_truth_is_solved_for_over_thirty_days(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
 
-    class Asked(Exception):
+    class Enough(Exception):
         pass
 
-    def golden_of(scene, digits, report, level, grid):  # type: ignore[no-untyped-def]
-        report(86400.0)
-        requests.append(f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {digits} {level} {grid}")
-        raise Asked
+    def stop(day: float, days: float) -> None:
+        assert 0 < day < days == 30
+        raise Enough
 
-    monkeypatch.setattr(module, "golden_of", golden_of)
-    with pytest.raises(Asked):
-        long_runs(ITEMS, solving=lambda day, days: requests.append(f"day {day:g} of {days:g}"))
-    assert requests == ["day 1 of 30", "paris_30d binary64 2.592e+06 36 self_consistent True"]
+    with pytest.raises(Enough):
+        long_runs(ITEMS, solving=stop)

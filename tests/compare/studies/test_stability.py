@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import replace
+import shlex
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +15,10 @@ from here import measured_here
 from compare.methods import METHODS
 from compare.methods.rhs.problem import Problem, suited
 from compare.report.stability_page import document_of, headlines, page_text, text_table
-from compare.studies.character import Character
+from compare.studies.character import character
 from compare.studies.long_runs import LongRun, laws
-from compare.studies.row import Row
-from compare.studies.stability import Cell, _Cells, cut, default_scenes, digits_requested, stability
-from reference import load_scene
+from compare.studies.stability import Cell, cut, default_scenes, digits_requested, stability
+from reference import load_scene, trajectory
 from reference.scenes.shipped import data_root
 from reference.status import Status
 
@@ -81,33 +81,81 @@ def test_a_stiff_method_wins_where_it_is_stiff_and_loses_where_it_is_not() -> No
     assert evaluations("scipy_radau", "hard", "5") > 3 * evaluations("scipy_dop853", "hard", "5")
 
 
-def judged(digits: float, magnified: float) -> Cell:
-    """The cell of a run asked for 9 digits that kept so many, on a motion that magnifies an error so many times."""
-    traits = Character(0.4, 0.0, 1.0, magnified, 9.0, 0.001, 0.01, 600.0)
-    row = Row("scipy_dop853", "space", 1e-9, "tolerance", "binary64", Status.OK, "", 0.01 * 10**-digits, load=0.5)
-    return _Cells([], 1.0, {}, {}, 3.0)._judged(("scipy_dop853", "space", 1e-9, "x"), row, traits, 0.01)
+RIGHT_TO_SO_MANY_DIGITS = """
+import sys
+folder, t_end, digits = sys.argv[1:]
+print("t,x,y,z")
+for line in open(f"{folder}/{t_end}.txt"):
+    t, x, y, z, amplitude = map(float, line.split())
+    print(t, x + amplitude * 10 ** -float(digits), y, z, sep=",")
+"""
+CALM = '[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "60"\ngrid_step = "10"\n'
+FROM_THE_TOP = """
+[pendulum]
+length = "1"
+[site]
+rotation_rate = "0"
+[release]
+angle = "179.99"
+azimuth = "20"
+[run]
+t_end = "4"
+grid_step = "0.125"
+"""
 
 
-@pytest.mark.parametrize(
-    ("digits", "magnified", "status"),
-    [
-        (6.1, 1.0, "ok"),
-        (5.9, 1.0, "silently_wrong"),
-        (5.9, 1e3, "silently_wrong"),  # the motion makes 6 digits of 9, and no fewer
-        (5.9, 2e3, "ill_conditioned"),
-        (1.0, 1e8, "ill_conditioned"),
-        (0.9, 1e8, "silently_wrong"),
-        (6.1, 1e13, "ok"),
-    ],
-)
-def test_what_the_motion_magnifies_is_not_the_methods_fault(digits: float, magnified: float, status: str) -> None:
-    cell = judged(digits, magnified)
-    assert (cell.status, cell.setting, cell.kind, cell.load) == (status, 1e-9, "tolerance", 0.5)
-    assert ("magnifies an error at the release" in cell.reason) == (status == "ill_conditioned")
+@pytest.mark.usefixtures("here")
+def test_what_the_motion_magnifies_is_not_the_methods_fault(tmp_path: Path) -> None:
+    """A program is asked for 6 digits and may lose 3; where the motion loses more by itself, as many as that."""
+    lost = {}
+    for word, text in (("calm", CALM), ("from_the_top", FROM_THE_TOP)):
+        path = tmp_path / f"{word}.toml"
+        path.write_text(text)
+        scene = cut(load_scene(path))
+        times = np.array([float(t) for t in scene.exact.grid])
+        states = trajectory(scene, times)
+        traits = character(scene, times, states)
+        lost[str(path)] = traits.digits_lost
+        amplitude_m = np.full(len(times), traits.amplitude * float(scene.exact.length))
+        rows = np.column_stack([times, states[:, :3], amplitude_m])
+        np.savetxt(tmp_path / f"{scene.run.t_end}.txt", rows, fmt="%.17g")
+    calm, from_the_top = lost
+    assert lost[calm] < 1
+    assert 3.2 < lost[from_the_top] < 4.8
+
+    program = tmp_path / "program.py"
+    program.write_text(RIGHT_TO_SO_MANY_DIGITS)
+    command = shlex.join([sys.executable, str(program), str(tmp_path)])
+    programs = {digits: f"{command} {{t_end}} {digits}" for digits in ("3.1", "2.9", "0.9")}
+    cells = {(cell.scene, cell.method): cell for cell in stability([*lost], ["heyoka_double"], programs=programs)}
+    expected = {
+        (calm, "3.1"): Status.OK,
+        (calm, "2.9"): Status.SILENTLY_WRONG,
+        (calm, "0.9"): Status.SILENTLY_WRONG,
+        (from_the_top, "3.1"): Status.OK,
+        (from_the_top, "2.9"): Status.ILL_CONDITIONED,
+        (from_the_top, "0.9"): Status.SILENTLY_WRONG,
+    }
+    for scene in lost:
+        for digits in programs:
+            assert cells[scene, digits].status == expected[scene, digits]
+    assert "magnifies an error at the release" in cells[from_the_top, "2.9"].reason
+    assert "magnifies an error at the release" not in cells[calm, "2.9"].reason
+
+
+def cell_of(status: Status, digits: float) -> Cell:
+    """The cell of a run that was asked for 9 digits and kept so many."""
+    names = ("paris", "scipy_dop853", "double, space")
+    return Cell(*names, status, digits, 9.0, 0.02, "as measured", setting=1e-9, kind="tolerance", load=0.5)
 
 
 def test_the_headline_counts_the_methods_own_failures_only() -> None:
-    cells = [replace(judged(*one), scene="paris") for one in ((9.0, 1.0), (5.0, 1.0), (5.0, 1e5), (1.0, 1e9))]
+    cells = [
+        cell_of(Status.OK, 9.0),
+        cell_of(Status.SILENTLY_WRONG, 5.0),
+        cell_of(Status.ILL_CONDITIONED, 5.0),
+        cell_of(Status.ILL_CONDITIONED, 1.0),
+    ]
     first, _, *_ = lines = headlines(cells)
     assert first.startswith("1 of 4 runs are silently wrong")
     assert any(line.startswith("2 more are as far off because the motion itself magnifies") for line in lines)

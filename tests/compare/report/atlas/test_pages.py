@@ -15,7 +15,6 @@ from forgery import forge
 
 import reference
 from compare import judge
-from compare.report.atlas import pages
 from compare.report.atlas.entry import Entry, StudyResults, entries, kept_studies, studies_folder
 from compare.report.atlas.pages import scene_page
 from reference.scenes.shipped import golden_root
@@ -90,7 +89,8 @@ def test_the_script_beside_a_page_is_the_shipped_function_and_nothing_else(atlas
     assert name == "globalThis.goldenFunction" and made["end"] == 86_400
     assert made["record"] == json.loads((shipped / "function.json").read_text())
     assert base64.b64decode(made["coefficients"], validate=True) == (shipped / "function.f64").read_bytes()
-    assert '"function":null' in (atlas / "paris.html").read_text()
+    page = (atlas / "paris.html").read_text()
+    assert '"function":null' in page and "are in paris.function.js beside this page" in page
 
 
 def test_what_studies_say_of_a_scene(tmp_path):
@@ -165,12 +165,12 @@ def test_the_command_to_score_says_what_differs_from_the_scene(readings):
         (("--out", "mine"), "a new folder, or one that an earlier run wrote"),
     ],
 )
-def test_wrong_folders_are_refused_and_nothing_is_written(
+def test_wrong_folders_are_refused_before_a_dataset_is_read_and_nothing_is_written(
     foucault, tmp_path, tmp_path_factory, monkeypatch, words, said
 ):
-    monkeypatch.setattr("compare.report.atlas.entry.load", lambda path: pytest.fail(f"{path} was read before"))
     some = tmp_path_factory.mktemp("data")
-    (some / "hard").symlink_to(golden_root() / "hard")
+    (some / "hard").mkdir()
+    (some / "hard" / "manifest.json").write_text("no dataset")
     words = [some if word == "SOME" else word for word in words]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine").mkdir()
@@ -335,23 +335,19 @@ def test_a_file_at_any_times_is_judged_and_the_motion_played_beside_it(atlas, ci
 
 
 @browser
-def test_many_coefficients_stand_beside_the_page(circling, monkeypatch, tmp_path):
-    monkeypatch.setattr(pages, "MOST_EMBEDDED", 100)
-    out, alone = tmp_path / "out", tmp_path / "alone"
-    alone.mkdir()
-    sizes = pages.build(circling.path.parent, out, None, "", lambda *_: None)
-    beside = {"conical.function.js", "paris.function.js"}
-    assert {*sizes} == beside | {f"{name}.html" for name in ("conical", "hard", "index", "paris")}
-    page = (out / "conical.html").read_text()
-    assert "are in conical.function.js beside this page" in page
-    assert json.loads(re.search(r'id="truth">(.*?)</script>', page)[1])["function"] is None
-    files = [["right.csv", odd(circling, 1e-9)], ["rows.csv", (circling.path / "grid.csv").read_text()]]
-    told = dropped_on(out / "conical.html", files, out)
+def test_a_page_without_the_coefficients_beside_it_judges_the_rows_alone(atlas, tmp_path):
+    golden = reference.load("paris.binary64")
+    beside, alone = tmp_path / "beside", tmp_path / "alone"
+    for folder in (beside, alone):
+        folder.mkdir()
+    shutil.copy(atlas / "paris.function.js", beside)
+    files = [["right.csv", odd(golden, 1e-9)], ["rows.csv", (golden.path / "grid.binary64.csv").read_text()]]
+    told = dropped_on(atlas / "paris.html", files, beside)
     assert [one[0] for one in told["told"]] == ["agrees", "agrees"] and told["errors"] == []
     assert told["display"] == "none", "no gap stands where nothing is drawn before the first play"
-    told = dropped_on(out / "conical.html", files, alone)
+    told = dropped_on(atlas / "paris.html", files, alone)
     assert [one[0] for one in told["told"]] == ["refused", "agrees"] and told["errors"] == []
-    assert "conical.function.js is not beside this page" in told["told"][1][1]
+    assert "paris.function.js is not beside this page" in told["told"][1][1]
 
 
 @browser
