@@ -12,10 +12,11 @@ from flint import arb, ctx
 from sampled import one_in
 from scipy.integrate import solve_ivp
 
-from reference.enclosure.balls import ball
-from reference.enclosure.bound import Piece, SceneBalls
-from reference.enclosure.enclosed_transits import Scan, Slope, narrowed
-from reference.enclosure.shapes import Covered, Leaf, Tube
+from reference.enclosure.trusted.balls import ball
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.shapes import Covered, Leaf, Tube
+from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.transits import Scan, Slope, narrowed
 from reference.numbers.taylor_step import TaylorStep
 
 
@@ -228,7 +229,7 @@ def test_whatever_is_proposed_the_zero_stays_between(monkeypatch):
         leaves = [Leaf(1, arb(-1), arb("0.25"), slope), Leaf(1, arb("0.25"), arb(1), slope)]
         for _ in range(200):
             times = tuple(1 + arb(rng.choice((-1, 1)) * 10 ** rng.uniform(-4, 1)) for _ in range(2))
-            monkeypatch.setattr("reference.enclosure.enclosed_transits.around_zero", lambda _, times=times: times)
+            monkeypatch.setattr("reference.enclosure.trusted.transits.around_zero", lambda _, times=times: times)
             found = narrowed(leaves, arb(0), arb(2), (-1, 1))
             assert -ROUNDED <= found.lower() <= arb("0.99")
             assert arb("1.01") <= found.upper() <= 2 + ROUNDED

@@ -10,9 +10,11 @@ import pytest
 from enclosure_oracle import cross, dot, lin, scene, unit_step
 from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
-from reference.enclosure.bound import Piece, Radius, Scaled, SceneBalls
-from reference.enclosure.shapes import Sizes
-from reference.enclosure.six_columns import CUT, FINE, Columns, cut, residuals
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.shapes import Sizes
+from reference.enclosure.trusted.six_columns import CUT, FINE, Columns, cut, residuals
+from reference.enclosure.trusted.system import Scaled, SceneBalls
 from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 
@@ -181,7 +183,8 @@ def test_six_columns_are_carried_as_theorem_e_says(monkeypatch):
         bound, step, jump = carried(Columns, rng, K, span, monkeypatch)
         rows = [[10 ** rng.uniform(-2, -1) for _ in range(4)] for _ in range(6)]
         monkeypatch.setattr(
-            "reference.enclosure.six_columns.residuals", lambda *_, rows=rows: [[arb(x) for x in r] for r in rows]
+            "reference.enclosure.trusted.six_columns.residuals",
+            lambda *_, rows=rows: [[arb(x) for x in r] for r in rows],
         )
         rest, z, before = ([10 ** rng.uniform(-2, -1) for _ in range(n)] for n in (6, 6, 36))
         bound.rest, bound.z = [arb(x) for x in rest], [arb(x) for x in z]

@@ -20,8 +20,8 @@ from flint import arb, arb_mat, ctx
 
 from reference.dataset.golden import load
 from reference.enclosure import fit
-from reference.enclosure import function as function_module
-from reference.enclosure.function import CUT, Following, basis, check_function, on_sphere, weights
+from reference.enclosure.trusted import function as function_module
+from reference.enclosure.trusted.function import CUT, Following, basis, check_function, on_sphere, weights
 from reference.numbers.columns import STATE
 from reference.scenes.scene import load_scene
 from reference.scenes.shipped import golden_root

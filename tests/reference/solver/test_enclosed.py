@@ -17,8 +17,8 @@ from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
 from reference.enclosure import prove
-from reference.enclosure.course import FINISHED, Course
 from reference.enclosure.prove import _Run, plan_for
+from reference.enclosure.trusted.course import FINISHED, Course
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
@@ -349,7 +349,7 @@ def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
 
 
 def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):
-    digits = pytest.importorskip("reference.enclosure.digits")
+    digits = pytest.importorskip("reference.enclosure.trusted.digits")
     scene = make_scene(run={**SHORT, "t_end": "30", "digits": 20})
     by_flint = reference.solve(scene, engine="limbs", audit=True)
     assert grid_sheet(by_flint) == grid_sheet(reference.solve(scene, engine="limbs"))

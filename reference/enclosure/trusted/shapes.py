@@ -1,4 +1,4 @@
-"""Data types of the proof: intervals and transits that it gives, bounds inside it. No arithmetic here."""
+"""TRUSTED. Data types of the proof: intervals and transits that it gives, bounds inside it. No arithmetic here."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
-from ..scenes.inputs import Inputs
+from ...scenes.inputs import Inputs
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from flint import arb, fmpz, fmpz_poly
 
-from ..numbers.taylor_step import DIGIT_BITS
-from ..system.machine_code import kept
+from ...numbers.taylor_step import DIGIT_BITS
+from ...system.machine_code import kept
 from .balls import demand
 
 # orders of a factor that are taken at once; rows in which a sum below 2^62 is carried on

@@ -8,7 +8,7 @@ from fractions import Fraction
 from json import loads
 from typing import Any
 
-from ..scenes.inputs import Inputs
+from ...scenes.inputs import Inputs
 from .balls import demand
 from .course import FINISHED
 from .shapes import Interval, Proved

@@ -13,10 +13,13 @@ from typing import Any
 from flint import arb, arb_series, ctx
 
 from .balls import SHORT, Vector, add, ball, cross, demand, interval, size, times, total, upper
-from .bound import Piece, Radius, SceneBalls, tube
 from .course import FINISHED, Course
+from .defect import Piece
 from .printed import RELEASES
+from .radius import Radius
 from .shapes import Box, Covered, ProvedBox, Sizes
+from .system import SceneBalls
+from .tube import tube
 
 PARTS = 16  # of a unit of s, over which a state is bounded at once
 

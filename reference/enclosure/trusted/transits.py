@@ -7,10 +7,11 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
+from ..guess import around_zero
 from .balls import SHORT, Vector, ball, cross, demand, interval
-from .bound import SceneBalls, state
-from .guess import around_zero
 from .shapes import Covered, EnclosedTransit, Leaf
+from .system import SceneBalls
+from .tube import state
 
 MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
 

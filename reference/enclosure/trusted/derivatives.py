@@ -13,13 +13,15 @@ from typing import Any
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
-from .bound import Piece, Radius, output, tube
 from .box import BoxBalls, BoxRadius, Windows, near, on_the_sphere, spread
 from .course import FINISHED
-from .enclosed_transits import Scan
+from .defect import Piece
 from .printed_box import end_of
+from .radius import Radius
 from .shapes import Covered, EnclosedZero, Interval, Led, ProvedDerivatives, Sizes, State, Tangent
 from .six_columns import cut
+from .transits import Scan
+from .tube import output, tube
 
 TINY = arb(2) ** -4096  # more than nothing
 TERMS = 32  # of p and K in the residuals, which are compared with proposals in doubles

@@ -8,12 +8,15 @@ from fractions import Fraction
 from typing import Any
 from weakref import WeakSet
 
-from ..numbers.taylor_step import TaylorStep
+from ...numbers.taylor_step import TaylorStep
 from .balls import demand
-from .bound import Piece, Radius, SceneBalls, output
-from .enclosed_transits import Scan
+from .defect import Piece
+from .radius import Radius
 from .shapes import Proposal, Proved, State
 from .six_columns import Columns
+from .system import SceneBalls
+from .transits import Scan
+from .tube import output
 
 FINISHED = WeakSet[Any]()
 

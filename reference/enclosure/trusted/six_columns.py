@@ -6,8 +6,10 @@ The columns are proposals: integers over 2^FINE, so they are exact whatever floa
 from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, dot, size, times, upper
-from .bound import Carried, Piece, error_rate, tube
+from .defect import Piece
+from .radius import Carried, error_rate
 from .shapes import Covered, Proposal
+from .tube import tube
 
 FINE = 50  # a column's coefficients are integers over 2^FINE
 CUT = 48  # terms of p and K in the residuals, which are multiplied by the small z_j

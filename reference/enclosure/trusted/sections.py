@@ -6,12 +6,13 @@ from typing import Any
 from flint import arb, arb_poly, ctx, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, fixed, size, times, total, upper
-from .bound import SceneBalls, state
 from .course import FINISHED, Course
-from .enclosed_transits import Scan, Slope, sign
 from .printed import check_possible, check_rows, document, lines_of, single_and_other
 from .shapes import Covered, EnclosedPassage, ProvedSections
 from .six_columns import cut
+from .system import SceneBalls
+from .transits import Scan, Slope, sign
+from .tube import state
 
 HEADER, WAYS = "k,t,direction,x,y,z,vx,vy,vz,bound", {"highest": -1, "lowest": 1}
 

@@ -12,8 +12,8 @@ from typing import Any
 from flint import arb, arb_mat, arb_poly, ctx, fmpq_mat, fmpz_poly
 
 from .balls import SHORT, Vector, ball, demand, interval, size, times, total
-from .bound import Piece
 from .course import FINISHED, Course
+from .defect import Piece
 from .printed import document
 from .shapes import Covered, ProvedFunction
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from ..scenes.inputs import Inputs
+from ...scenes.inputs import Inputs
 from .balls import demand
 from .course import FINISHED
 from .printed import DECIMAL, PLAIN, RELEASES, asked, document, lines_of, single_and_other
