@@ -32,9 +32,8 @@ FLOORS = {
     ],
     "reference/engines": [
         ["registry", "trajectory"],
-        ["octet"],
-        [*engine_names()],
-        ["row_zeros", "passages"],
+        [*engine_names(), "octet"],
+        ["row_zeros", "passages", "simd"],
         ["plan", "batch_interface"],
     ],
     "compare": [

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ...numbers.precision import Array
 from .lanes import compiled
-from .limb import Array
 
 HALVINGS = 60  # more than a double has bits
 

@@ -1,8 +1,8 @@
 """How functions are compiled, and SIMD lanes: eight doubles side by side, in any machine's vector registers.
 
-No option lets arithmetic be rearranged, and the same bits come out with and without FMA, on every machine: in limbs
-sums and products are exact (`limb`), so that it makes no difference whether the compiler fuses them (`plus_product`);
-in octet each is rounded once (`fma`).
+No option lets arithmetic be rearranged, and the same bits come out with and without FMA, on every machine. In limbs
+sums and products are exact, so it makes no difference whether the compiler fuses them (`plus_product`); in octet each
+is rounded once (`fma`).
 
 numba optimises a function by itself, and again in its callers, in their callers and so on. So what is called at one
 place, and is large, is `merged` into its caller: a first use takes a third less.
@@ -16,9 +16,12 @@ from functools import partial, wraps
 from typing import Any, TypeVar
 
 import numba.extending
+import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import njit, types
 from numba.core import cgutils
+
+from ...numbers.precision import Array
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -51,6 +54,13 @@ FUSE = ("contract",)
 _extending: Any = numba.extending  # untyped
 _insert: Any = cgutils.get_or_insert_function
 _Type: Any = types.Type
+
+
+def aligned(count: int) -> Array:
+    """Return zeros that start on a cache line, so that each row fills one."""
+    room = np.zeros(count + LANES)
+    start = -room.ctypes.data // room.itemsize % LANES
+    return room[start : start + count]
 
 
 class _Lanes(_Type):  # type: ignore[misc]
