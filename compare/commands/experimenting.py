@@ -18,8 +18,8 @@ from ..candidates.candidate import Candidate
 from ..candidates.external import SETTING, STEPS, arguments, run_program
 from ..candidates.names import Naming
 from ..candidates.read import read_stream
+from ..diagnosis.experiments.findings import MOST_RUNS, Experiment, possible
 from ..report.folder import json_text, write_file
-from ..score.experiments.findings import MOST_RUNS, Experiment, possible
 from ..score.verdict import Score
 
 DOCUMENT, GIVEN = "experiments.json", "as_given"  # in the folder
@@ -76,7 +76,7 @@ class Runnable:
 
     def experimented(self, score: Score, naming: Naming) -> Score:
         """Return a score with what experiments measure, which are made now."""
-        from ..score.experiments.laboratory import UNSOLVED, Laboratory
+        from ..diagnosis.experiments.laboratory import UNSOLVED, Laboratory
 
         assert score.explanation is not None
         made, kept = 0, "what the program has printed is kept" if self.out else "nothing was written"

@@ -17,8 +17,8 @@ import numpy as np
 from reference import InputError
 from reference.system.documents import json_document
 
+from ..diagnosis.since import Since, changes, left_of, unexplained_m
 from .document import document, explained
-from .since import Since, changes, left_of, unexplained_m
 from .verdict import REFUSED, WHOLE, Score
 
 SHARE = 0.1  # of a change: what is smaller is no part of it
@@ -99,7 +99,7 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
     if changed and explains and new.candidate.positions:
         files = [(score.candidate, score.scene) for score in (new, old) if score is not None]
-        from .explanation.explain import explain
+        from ..diagnosis.explain import explain
 
         both = [explain(file.t, file.columns, scene, allowed) for file, scene in files]
         now, then = explained(both[0], []), baseline if old is None else explained(both[1], [])

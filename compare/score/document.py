@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from ..candidates.candidate import Deviation
-from .explanation.case import BEGIN, Explanation
-from .since import Since
+from ..diagnosis.case import BEGIN, Explanation
+from ..diagnosis.since import Since
 from .verdict import REFUSED, Outcome, Score
 
 

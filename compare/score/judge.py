@@ -148,7 +148,7 @@ def judge(
     if candidate.positions and (scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])):
         result = replace(result, candidate=replace(candidate, conventions=(*candidate.conventions, scale)))
     if explain and result.off_path and candidate.positions and result.covered:
-        from .explanation.explain import explain as explained  # heyoka too
+        from ..diagnosis.explain import explain as explained  # heyoka too
 
         result = replace(result, explanation=explained(candidate.t, candidate.columns, problem, result.allowed_m))
     if baseline is None:

@@ -10,7 +10,7 @@ import pytest
 
 import compare
 from compare import assert_agrees
-from compare.score.explanation.case import Explanation
+from compare.diagnosis.case import Explanation
 from reference import InputError, load, load_scene, trajectory
 
 TWO_ROWS = [0.0, 60.0], [[0.3, 0.4], [-0.17632673290555428, -0.4158676877474455]]
@@ -48,7 +48,7 @@ def test_a_scene_of_ones_own_will_do(golden, states):
 
 def test_a_failure_tells_time_component_expected_got_difference_and_allowed(golden, states, monkeypatch):
     # that one row names no mistake takes long to find; the next test is of one that is named
-    monkeypatch.setattr("compare.score.explanation.explain.explain", lambda *_: Explanation())
+    monkeypatch.setattr("compare.diagnosis.explain.explain", lambda *_: Explanation())
     wrong = states[:50, :3].copy()
     wrong[30, 1] += 1e-3
     with pytest.raises(AssertionError) as caught:
@@ -180,11 +180,11 @@ def test_a_file_is_judged_by_path_and_id(golden, states, tmp_path):
 
 QUIET = """
 import pytest
-from compare.score.explanation.case import Explanation
+from compare.diagnosis.case import Explanation
 
 @pytest.fixture(autouse=True)
 def nothing_is_explained(monkeypatch):
-    monkeypatch.setattr("compare.score.explanation.explain.explain", lambda *_: Explanation())
+    monkeypatch.setattr("compare.diagnosis.explain.explain", lambda *_: Explanation())
 """  # which mistake it is takes long to find; the tests above are of that
 OTHERS = """
 def test_right(assert_agrees):

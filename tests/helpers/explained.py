@@ -20,8 +20,8 @@ from mistakes import case
 from places import ROOT
 from wild_programs import TRUE, read_in, said
 
-from compare.score.explanation.case import Explanation
-from compare.score.explanation.explain import explain
+from compare.diagnosis.case import Explanation
+from compare.diagnosis.explain import explain
 
 # kernels of OpenBLAS that other processors use: with them sums and factorisations round otherwise
 OTHER_KERNEL = {"x86_64": "Prescott", "aarch64": "ARMV8"}.get(platform.machine(), "Prescott")

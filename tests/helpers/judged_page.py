@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import wild_programs as programs
 from places import ROOT
 
-from compare.score.explanation.case import AS_IF
-from compare.score.explanation.fitted import MODELS
+from compare.diagnosis.case import AS_IF
+from compare.diagnosis.fitted import MODELS
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from reference import load_scene

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from small_scenes import make_scene
 
-from compare.score.explanation.case import Explanation
+from compare.diagnosis.case import Explanation
 from reference import Scene
 
 SAME = {"effective_gravity": "no_centrifugal", "decimals": "digits", "single_precision": "digits"}

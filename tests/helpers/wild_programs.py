@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from places import ROOT
 
-from compare.score.explanation.case import Explanation
+from compare.diagnosis.case import Explanation
 from reference import Scene, load_scene
 
 FOLDER = ROOT / "tests" / "compare" / "score" / "wild"

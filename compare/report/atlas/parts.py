@@ -23,9 +23,9 @@ from reference.status import Status
 
 from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
+from ...diagnosis import conventions
 from ...score import judge
 from ...score.errors import swing_rate
-from ...score.explanation import conventions
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
 from ..page import Html, Table, facts, text

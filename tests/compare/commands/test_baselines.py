@@ -14,8 +14,8 @@ import pytest
 from sampled import one_in
 
 from compare import assert_agrees, judge
+from compare.diagnosis.case import Explanation
 from compare.score.document import document
-from compare.score.explanation.case import Explanation
 from compare.testing import SceneCase
 from reference import InputError, load_scene, solve, trajectory
 
@@ -237,7 +237,7 @@ def test_a_suite_is_compared_with_an_earlier_one(foucault, suites, kind):
 
 def test_other_peoples_tests_have_a_baseline_too(rows, monkeypatch):
     # why it is off is looked for as without a baseline, which tests/compare/test_testing.py holds, and takes long
-    monkeypatch.setattr("compare.score.explanation.explain.explain", lambda *_: Explanation())
+    monkeypatch.setattr("compare.diagnosis.explain.explain", lambda *_: Explanation())
     scene = load_scene(rows / "mine.toml")
     t, *columns = np.loadtxt(rows / "wrong.csv", delimiter=",", skiprows=1).T
     states = np.column_stack(columns)

@@ -16,8 +16,8 @@ from places import MISTAKEN_C
 from scipy.integrate import solve_ivp
 
 from compare.candidates.candidate import Candidate
+from compare.diagnosis.since import Since
 from compare.score.judge import judge
-from compare.score.since import Since
 from reference import load_scene, trajectory
 
 COMPILER = shutil.which("cc")

@@ -8,8 +8,8 @@ from itertools import product
 import numpy as np
 from scipy.special import ellipj, ellipk
 
-from compare.score.explanation.case import Rows
-from compare.score.explanation.conventions import unit_of_time
+from compare.diagnosis.case import Rows
+from compare.diagnosis.conventions import unit_of_time
 
 
 def test_no_wide_swing_counts_time_in_another_unit(size):

@@ -23,7 +23,7 @@ from compare.candidates.external import placeholders
 from compare.candidates.names import Naming
 from compare.commands.experimenting import Runnable
 from compare.commands.judging import Judging
-from compare.score.experiments.findings import MOST_RUNS
+from compare.diagnosis.experiments.findings import MOST_RUNS
 from compare.score.verdict import Score
 from reference import load_scene
 

@@ -29,12 +29,12 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
+from compare.diagnosis.case import Explanation, Rows
+from compare.diagnosis.explain import KnownScene, explain
+from compare.diagnosis.families import fits_of
+from compare.diagnosis.fitted import readers_of
+from compare.diagnosis.slips import _sentence, falls, slip
 from compare.score.document import diagnosis
-from compare.score.explanation.case import Explanation, Rows
-from compare.score.explanation.explain import KnownScene, explain
-from compare.score.explanation.families import fits_of
-from compare.score.explanation.fitted import readers_of
-from compare.score.explanation.slips import _sentence, falls, slip
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from foucault import commands
@@ -406,7 +406,7 @@ def test_steps_that_no_cause_accounts_for_are_read_once(monkeypatch: pytest.Monk
         reader = SimpleNamespace(right=SimpleNamespace(kind="sphere"))
         return SimpleNamespace(program=case.right, reader=reader, causes=())
 
-    monkeypatch.setattr("compare.score.explanation.stepped.best_of", poor)
+    monkeypatch.setattr("compare.diagnosis.stepped.best_of", poor)
     explain(t, dict(zip("xy", rows.T, strict=False)), scene, 7e-7)
     assert len(read) == 2  # one for each length of a step that is likely
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.candidate import Candidate
-from compare.score.explanation.case import Explanation
+from compare.diagnosis.case import Explanation
 from compare.score.judge import judge
 from reference import Scene, load_scene, trajectory
 

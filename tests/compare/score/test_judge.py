@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.read import read
-from compare.score.explanation.case import Explanation, Model
+from compare.diagnosis.case import Explanation, Model
 from compare.score.judge import (
     _amplitude,
     _beyond_the_cord,
@@ -147,7 +147,7 @@ def test_without_a_diagnosis_nothing_is_claimed_about_one(foucault, tmp_path, go
     noise = 1e-3 * np.random.default_rng(1).standard_normal(len(golden.t))
     path = off_by(tmp_path, golden, states, "y", noise)
     # that it finds nothing is held by test_explanation.py, and takes long
-    monkeypatch.setattr("compare.score.explanation.explain.explain", lambda *_: Explanation())
+    monkeypatch.setattr("compare.diagnosis.explain.explain", lambda *_: Explanation())
     assert "No mistake" not in foucault("score", "paris", path, "--no-diagnosis")[1]
     assert "No mistake" in foucault("score", "paris", path)[1]
 

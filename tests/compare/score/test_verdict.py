@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from compare.candidates.candidate import Deviation
+from compare.diagnosis.case import Explanation, Model
+from compare.diagnosis.since import Since
 from compare.score.document import document
 from compare.score.errors import Worst
-from compare.score.explanation.case import Explanation, Model
-from compare.score.since import Since
 from compare.score.transit_matching import TransitErrors
 from compare.score.verdict import lines, percent
 

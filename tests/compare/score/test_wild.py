@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from wild_programs import FOLDER, SETTINGS, TRUE, UNTOLD, read_in, said
 
-from compare.score.explanation.case import Explanation, Rows, largest
-from compare.score.explanation.explain import KnownScene, explain
-from compare.score.explanation.formulas import of_formula
+from compare.diagnosis.case import Explanation, Rows, largest
+from compare.diagnosis.explain import KnownScene, explain
+from compare.diagnosis.formulas import of_formula
 from compare.score.judge import judge
 from reference import load_scene
 

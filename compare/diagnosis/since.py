@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .explanation.case import AS_IF
+from .case import AS_IF
 
 STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
 SAME = 1e-9  # relative difference of two inputs that count as one

@@ -18,7 +18,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import best_change, by_differences, gauss_newton
+from ..observed.least_squares import best_change, by_differences, gauss_newton
 from .case import Case, first_least
 from .causes import Cause
 from .families import Fit

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from ...candidates.candidate import Deviation
+from ..candidates.candidate import Deviation
 from .case import AS_IF
 from .causes import shortest_decimal
 from .readings import SAME

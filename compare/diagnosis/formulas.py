@@ -18,7 +18,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import gauss_newton, solved
+from ..observed.least_squares import gauss_newton, solved
 from .case import Case, Explanation, Rows
 from .causes import NAMED, causes_of
 from .families import Fit, windows

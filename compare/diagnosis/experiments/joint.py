@@ -20,15 +20,15 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
-from ..explanation.case import Case, Explanation, largest
-from ..explanation.causes import Cause, causes_of, fitted_number
-from ..explanation.explain import KnownScene
-from ..explanation.families import Fit, fits_of
-from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
-from ..explanation.gate import Evidence, supported_causes
-from ..explanation.programs import Program
-from ..explanation.readings import Reading
-from ..explanation.stepped import LONGEST, Steps, step_cause
+from ..case import Case, Explanation, largest
+from ..causes import Cause, causes_of, fitted_number
+from ..explain import KnownScene
+from ..families import Fit, fits_of
+from ..fitted import MODELS, clean_share, polished, ranked, readers_of, sized
+from ..gate import Evidence, supported_causes
+from ..programs import Program
+from ..readings import Reading
+from ..stepped import LONGEST, Steps, step_cause
 
 # how a cause follows the scene
 RULE, TYPED, FACTOR = "", ", whatever it is given", ", in proportion to what it is given"

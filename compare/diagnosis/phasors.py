@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import gauss_newton, solved
+from ..observed.least_squares import gauss_newton, solved
 
 ComplexArray = npt.NDArray[np.complex128]
 STEPS = 30  # Gauss-Newton steps at most

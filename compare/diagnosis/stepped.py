@@ -21,8 +21,8 @@ from reference.model.constants import Constants
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
-from ...candidates.candidate import Deviation
-from ...observed.least_squares import best_change
+from ..candidates.candidate import Deviation
+from ..observed.least_squares import best_change
 from .case import AS_IF, Case, Explanation, largest, rms
 from .causes import FITTED
 from .families import fit_pendulum

@@ -11,8 +11,8 @@ from reference import FoucaultError, Scene
 from reference.engines.trajectory import Variants
 from reference.numbers.precision import Array
 
-from ...approximations import APPROXIMATIONS, Motion
-from ...candidates.candidate import Deviation
+from ..approximations import APPROXIMATIONS, Motion
+from ..candidates.candidate import Deviation
 from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest
 from .causes import NAMED
 from .conventions import ROUGHLY, axes, clock, digits, heights, other_conventions, rounded_clock, shifted, unit_of_time

@@ -20,7 +20,7 @@ from reference.model.constants import Constants
 from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
-from ...observed.least_squares import by_differences
+from ..observed.least_squares import by_differences
 from .phasors import Method, Phasors
 
 NAMES = (

@@ -14,7 +14,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import best_change
+from ..observed.least_squares import best_change
 from .case import EQUAL, Case, first_least, rms
 from .phasors import ComplexArray, Phasors, as_angles, fit_phasors
 from .programs import NAMES, Pendulum, Program, phasors_of, theta_of

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...candidates.candidate import Deviation
+from ..candidates.candidate import Deviation
 from .phasors import sinc
 from .programs import NAMES, Pendulum, Program
 

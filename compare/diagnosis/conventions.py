@@ -16,8 +16,8 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...candidates.candidate import Deviation
-from ...candidates.names import LENGTHS, LONG_NAMES, TIMES
+from ..candidates.candidate import Deviation
+from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from .case import Rows, largest
 from .phasors import as_angles, fit_phasors, sinc
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...candidates.candidate import Deviation
+from ..candidates.candidate import Deviation
 from .case import AS_IF, EQUAL, HARMLESS, Case, Explanation, Model, largest, rms
 from .causes import Cause, causes_of
 from .families import Fit, fits_of

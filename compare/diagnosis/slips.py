@@ -18,7 +18,7 @@ from reference.model.constants import Constants, constants_in_double
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import solved
+from ..observed.least_squares import solved
 from .case import Rows
 from .programs import Program
 

@@ -12,11 +12,11 @@ from reference import FoucaultError, Scene
 
 from ...candidates.candidate import Candidate, Deviation
 from ...candidates.external import SETTING
-from ..explanation.case import UNCORRECTED, Explanation, largest
-from ..explanation.explain import RENAMED, KnownScene
-from ..explanation.fitted import readers_of
-from ..explanation.gate import loose
-from ..explanation.stepped import Steps, likely_steps
+from ..case import UNCORRECTED, Explanation, largest
+from ..explain import RENAMED, KnownScene
+from ..fitted import readers_of
+from ..gate import loose
+from ..stepped import Steps, likely_steps
 from .findings import Experiment, Experiments, Finding
 from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
 
