@@ -71,33 +71,54 @@ def _known(document: Document) -> Iterator[Document]:
         yield {"id": "slip", "text": f"your program has a slip ({document['slip'].rstrip('.')})", "size_m": 0.0}
 
 
-def left_of(document: Document, error_m: float) -> float:
-    """Return what the causes of a document leave in m; all of its error where none is known."""
-    return float((document["corrected"] or {"max_error_m": error_m})["max_error_m"])
+@dataclass(frozen=True)
+class Version:
+    """A version of a program: what explains its file, and its largest position error in m.
+
+    Attributes:
+        document: of its score, or the part of that which its explanation fills.
+        error_m: over the span that both versions have.
+    """
+
+    document: Document
+    error_m: float
+
+    @property
+    def left_m(self) -> float:
+        """What its causes leave of its error, in m; all of it where none is known."""
+        return float((self.document["corrected"] or {"max_error_m": self.error_m})["max_error_m"])
 
 
-def unexplained_m(then: Document, now: Document) -> float:
+def explain_change(old: Version, new: Version, most_m: float) -> tuple[tuple[str, ...], float | None]:
+    """Return what came and what went, and what that leaves of both errors, in m; None where nothing is known.
+
+    Args:
+        old: the baseline.
+        new: the candidate.
+        most_m: how far in m a cause may move the bob that came or went.
+    """
+    texts = tuple(_changes(old, new, most_m))
+    if not texts:
+        return (), None
+    return texts, max(old.left_m, new.left_m) + _unexplained_m(old.document, new.document)
+
+
+def _unexplained_m(then: Document, now: Document) -> float:
     """Return how far in m numbers that only one of two documents has may move the bob, their cause not known."""
     here, there = ([cause for cause in document["causes"] if cause["id"].startswith(AS_IF)] for document in (then, now))
     pairs = [(cause, there) for cause in here] + [(cause, here) for cause in there]
     return float(sum(cause["size_m"] for cause, causes in pairs if not any(_is_same(cause, other) for other in causes)))
 
 
-def changes(then: Document, now: Document, left: tuple[float, float], most: float) -> Iterator[str]:
-    """Yield what came and what went; a number that changed has come.
-
-    Args:
-        then: the document of the baseline.
-        now: that of the candidate.
-        left: what the causes of each leave in m: a smaller one may be hidden in it.
-        most: how far in m a cause may move the bob.
-    """
-    before, after = list(_known(then)), list(_known(now))
+def _changes(old: Version, new: Version, most_m: float) -> Iterator[str]:
+    """Yield what came and what went; a number that changed has come."""
+    before, after = list(_known(old.document)), list(_known(new.document))
     came = [deviation for deviation in after if not any(_is_same(deviation, other) for other in before)]
     went = [deviation for deviation in before if _kind(deviation) not in map(_kind, after)]
-    for when, deviations, hidden in (("now", came, left[0]), ("no longer", went, left[1])):
+    for when, deviations, hidden in (("now", came, old.left_m), ("no longer", went, new.left_m)):
         for deviation in deviations:
-            if 0 < deviation["size_m"] <= hidden or deviation["size_m"] > most:
+            # a smaller one may be hidden in what the causes of the other version leave
+            if 0 < deviation["size_m"] <= hidden or deviation["size_m"] > most_m:
                 continue
             if deviation["id"] == "off_the_sphere" and STEP in map(_kind, deviations):
                 continue  # a step takes the bob off the sphere

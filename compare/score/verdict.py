@@ -19,9 +19,7 @@ from reference.status import Status
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
-from ..diagnosis.case import Explanation
-from ..diagnosis.experiments.findings import Experiments
-from ..diagnosis.since import Since
+from ..diagnosis import Experiments, Explanation, Since
 from .errors import SwingErrors, TrajectoryErrors, Worst, entry
 from .input_floor import input_floor
 from .transit_matching import TransitErrors
