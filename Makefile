@@ -32,7 +32,7 @@ pytest: .venv/testing
 # seldom touched
 SELDOM := $(patsubst %,tests/reference/solver/test_%.py,confirming extreme_scenes pushed_releases ranges \
   sampled_confirmation sections sensitivity) \
-  $(patsubst %,tests/compare/score/test_%.py,baseline experiments explanation false_causes passages same_words wild)
+  $(patsubst %,tests/compare/score/test_%.py,baseline passages)
 quick: .venv/testing
 	@echo "Running the tests of every day: about a minute on two quiet cores"
 	$(PYTEST) tests/reference/numbers tests/reference/model tests/reference/solver tests/compare/score $(addprefix --ignore=,$(SELDOM))

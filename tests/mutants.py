@@ -40,14 +40,14 @@ ENCLOSURE = "tests/reference/enclosure/test_"
 FORMULAS = f"{ENCLOSURE}primitives.py {ENCLOSURE}identities.py {ENCLOSURE}formulas.py"
 HOLDS = f"{ENCLOSURE}mutations.py::test_the_module_as_it_is_passes_every_check"  # of that very module
 TESTS = {  # files by folder, and what tests them, the quick ones first
-    "reference/enclosure: sections": f"{HOLDS}[sections]",
-    "reference/enclosure: box": f"{HOLDS}[box]",
-    "reference/enclosure: derivatives": f"{HOLDS}[derivatives]",
-    "reference/enclosure: balls bound six_columns": FORMULAS,
-    "reference/enclosure: enclosed_transits": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
-    "reference/enclosure: function": f"{ENCLOSURE}function.py",
-    "reference/enclosure: printed": f"{ENCLOSURE}printed.py",
-    "reference/enclosure: printed_box": f"{ENCLOSURE}printed.py {DATASET}ranges_files.py",
+    "reference/enclosure/trusted: sections": f"{HOLDS}[sections]",
+    "reference/enclosure/trusted: box": f"{HOLDS}[box]",
+    "reference/enclosure/trusted: derivatives": f"{HOLDS}[derivatives]",
+    "reference/enclosure/trusted: balls system defect radius tube six_columns": FORMULAS,
+    "reference/enclosure/trusted: transits": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
+    "reference/enclosure/trusted: function": f"{ENCLOSURE}function.py",
+    "reference/enclosure/trusted: printed": f"{ENCLOSURE}printed.py",
+    "reference/enclosure/trusted: printed_box": f"{ENCLOSURE}printed.py {DATASET}ranges_files.py",
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
     "reference/dataset/checks: scene_check": f"{LIMITS} {TIGHT} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
     "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION} {SOLVER}sections.py",

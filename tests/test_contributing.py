@@ -31,8 +31,10 @@ def output(covered: Covered, time: Fraction) -> State:
 # what is done to each file that the recipe names
 EDITS = {
     "reference/numbers/columns.py": lambda text: re.sub("^GRID = STATE", 'GRID = (*STATE, "ax")', text, flags=re.M),
-    "reference/enclosure/bound.py": lambda text: text + BALL,
-    "reference/enclosure/printed.py": lambda text: re.sub('^GRID, TRANSITS = "t,x.*?vz', r"\g<0>,ax", text, flags=re.M),
+    "reference/enclosure/trusted/tube.py": lambda text: text + BALL,
+    "reference/enclosure/trusted/printed.py": lambda text: re.sub(
+        '^GRID, TRANSITS = "t,x.*?vz', r"\g<0>,ax", text, flags=re.M
+    ),
     "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace('"t,x,y,z,vx,vy,vz"', "its header"),
 }
 HEADER = "t,x,y,z,vx,vy,vz,ax"

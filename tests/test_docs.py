@@ -33,7 +33,7 @@ from places import ROOT
 
 import compare
 import reference
-from compare.score.explanation import conventions
+from compare.diagnosis import conventions
 from foucault import commands as commands_of_foucault
 from reference.scenes.scene import Scene
 from reference.scenes.shipped import golden_root
@@ -142,7 +142,7 @@ def test_the_table_of_golden_functions_is_that_of_the_files():
 
 def test_the_table_of_causes_is_that_of_the_code():
     assert causes_page.page() == causes_page.PAGE.read_text("utf-8"), "run: python tests/helpers/causes_page.py"
-    source = (ROOT / "compare/score/explanation/conventions.py").read_text(encoding="utf-8")
+    source = (ROOT / "compare/diagnosis/conventions.py").read_text(encoding="utf-8")
     words = set(re.findall(r'Deviation\("(\w+)"', source)) | {
         word for word, _ in conventions.AXES_SAID.values() if word
     }

@@ -32,9 +32,8 @@ FLOORS = {
     ],
     "reference/engines": [
         ["registry", "trajectory"],
-        ["octet"],
-        [*engine_names()],
-        ["row_zeros", "passages"],
+        [*engine_names(), "octet"],
+        ["row_zeros", "passages", "simd"],
         ["plan", "batch_interface"],
     ],
     "compare": [
@@ -42,7 +41,7 @@ FLOORS = {
         ["testing", "papers"],
         ["report"],
         ["studies", "score"],
-        ["methods"],
+        ["methods", "diagnosis"],
         ["approximations", "truth"],
         ["candidates", "observed"],
     ],
@@ -94,6 +93,12 @@ DOORS = {
     "pyarrow": "reference/sweeps/parquet.py",
     "distributed": "reference/sweeps/cluster.py",
 }
+
+
+def test_what_is_behind_the_doors_of_the_diagnosis_is_imported_by_nobody_else():
+    inside = ROOT / "compare/diagnosis"
+    outside = [path for path in SOURCES if inside not in path.parents]
+    assert [path for path in outside for target in structure.imported(path, ROOT) if inside in target.parents] == []
 
 
 def test_a_library_has_one_door():

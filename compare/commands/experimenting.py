@@ -18,8 +18,8 @@ from ..candidates.candidate import Candidate
 from ..candidates.external import SETTING, STEPS, arguments, run_program
 from ..candidates.names import Naming
 from ..candidates.read import read_stream
+from ..diagnosis import MOST_RUNS, Experiment, experiment, possible
 from ..report.folder import json_text, write_file
-from ..score.experiments.findings import MOST_RUNS, Experiment, possible
 from ..score.verdict import Score
 
 DOCUMENT, GIVEN = "experiments.json", "as_given"  # in the folder
@@ -76,27 +76,25 @@ class Runnable:
 
     def experimented(self, score: Score, naming: Naming) -> Score:
         """Return a score with what experiments measure, which are made now."""
-        from ..score.experiments.laboratory import UNSOLVED, Laboratory
-
         assert score.explanation is not None
         made, kept = 0, "what the program has printed is kept" if self.out else "nothing was written"
         with stoppable(kept), progress() as show:
             move = show("experiments", MOST_RUNS, "runs")
 
-            def run(experiment: Experiment, scene: Scene) -> Candidate:
+            def run(chosen: Experiment, scene: Scene) -> Candidate:
                 nonlocal made
-                move(made, item=experiment.title)
+                move(made, item=chosen.title)
                 made += 1
-                output, *_ = run_program(self.words(scene, finer=experiment.finer), self.timeout)
+                output, *_ = run_program(self.words(scene, finer=chosen.finer), self.timeout)
                 with output:
-                    self.keep(output, experiment.id)
-                    return read_stream(output, experiment.title, naming=naming)
+                    self.keep(output, chosen.id)
+                    return read_stream(output, chosen.title, naming=naming)
 
-            try:
-                laboratory = Laboratory(score.candidate, score.scene, score.allowed_m, score.explanation, run)
-            except UNSOLVED:
+            all_of_them = possible(score.scene, self.command)
+            measured = experiment(run, score.explanation, score.candidate, score.scene, score.allowed_m, all_of_them)
+            if measured is None:
                 return score
-            experiments, explanation = laboratory.measured(possible(score.scene, self.command))
+            experiments, explanation = measured
             move(MOST_RUNS)
         if self.out is not None:
             write_file(self.out / DOCUMENT, json_text(experiments.document()), "--out")

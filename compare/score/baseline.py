@@ -17,8 +17,8 @@ import numpy as np
 from reference import InputError
 from reference.system.documents import json_document
 
-from .document import document, explained
-from .since import Since, changes, left_of, unexplained_m
+from ..diagnosis import Since, Version, diagnose, explain_change, explanation_document
+from .document import document
 from .verdict import REFUSED, WHOLE, Score
 
 SHARE = 0.1  # of a change: what is smaller is no part of it
@@ -98,16 +98,16 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
     texts, left_m = tuple[str, ...](), None
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
     if changed and explains and new.candidate.positions:
-        files = [(score.candidate, score.scene) for score in (new, old) if score is not None]
-        from .explanation.explain import explain
-
-        both = [explain(file.t, file.columns, scene, allowed) for file, scene in files]
-        now, then = explained(both[0], []), baseline if old is None else explained(both[1], [])
-        left = left_of(then, before), left_of(now, after)
-        texts = tuple(changes(then, now, left, math.inf if old is None else WOBBLE * apart))
-        left_m = max(left) + unexplained_m(then, now) if texts else None
+        now = Version(_explained(new, allowed), after)
+        then = Version(baseline if old is None else _explained(old, allowed), before)
+        texts, left_m = explain_change(then, now, math.inf if old is None else WOBBLE * apart)
     name, complete = str(baseline["candidate"]), left_m is not None and left_m <= allowed
     return Since(name, before, after, apart if changed else 0.0, worse, gains, texts, left_m, complete)
+
+
+def _explained(score: Score, allowed_m: float) -> dict[str, Any]:
+    """Return the document of an explanation down to a distance in m."""
+    return explanation_document(diagnose(score.candidate, score.scene, allowed_m))
 
 
 def _until(score: Score, end: float) -> float:

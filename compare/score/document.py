@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..candidates.candidate import Deviation
-from .explanation.case import BEGIN, Explanation
-from .since import Since
+from ..diagnosis import Explanation, Since, explanation_document
 from .verdict import REFUSED, Outcome, Score
 
 
@@ -53,7 +51,7 @@ def document(score: Score) -> dict[str, Any]:
         "transits": None if transits is None else transits.document(score.allowed_m),
         "reference": {"level": score.golden.level, "bound_m": errors.bound_m},
         "grade": score.grade,
-        **explained(score.explanation or Explanation(), readings),
+        **explanation_document(score.explanation or Explanation(), readings),
         "baseline": None if score.since is None else _changed(score.since),
         "problem": score.problem,
         "notes": list(score.notes),
@@ -65,46 +63,5 @@ def document(score: Score) -> dict[str, Any]:
     return fields
 
 
-def explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
-    corrected = explanation.corrected_m
-    return {
-        "conventions": [*readings, *(_as_document("your file", convention) for convention in explanation.conventions)],
-        "model": None if explanation.model is None else vars(explanation.model),
-        "causes": [_as_document("your program", cause) | _fitted(cause) for cause in explanation.causes],
-        "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
-        "slip": explanation.slip or None,
-        "diagnosis": diagnosis(explanation),
-    }
-
-
-def diagnosis(explanation: Explanation) -> dict[str, Any] | None:
-    """Return the cause that matters most, a simpler model before all, and what all causes say; None if none is known.
-
-    Beside its id stand the share of the root mean square error that is gone with all causes, how far a fitted input is
-    off in its unit, and the ids of the other causes.
-    """
-    known = sorted(explanation.known, key=lambda cause: -cause.size_m)
-    if not known:
-        return None
-    first = next((cause for cause in known if cause.stage == "model"), known[0])
-    return {
-        "id": first.id,
-        "explained": explanation.explained,
-        "text": f"{BEGIN} {'; it '.join(cause.text for cause in known)}.",
-        "shift": first.shift,
-        "also": tuple(cause.id for cause in known if cause is not first),
-    }
-
-
 def _changed(since: Since) -> dict[str, Any]:
     return vars(since) | {"better": since.better, "text": since.text}
-
-
-def _as_document(subject: str, deviation: Deviation) -> dict[str, Any]:
-    return {"id": deviation.id, "text": f"{subject} {deviation.text}", "size_m": deviation.size_m}
-
-
-def _fitted(cause: Deviation) -> dict[str, float | None]:
-    numbers = {"value": cause.value, "shift": cause.shift, "uncertainty": cause.uncertainty}
-    return {name: number for name, number in numbers.items() if math.isfinite(number or 0.0)}

@@ -34,6 +34,7 @@ from ..candidates.clock import shown
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import named, read
+from ..diagnosis import diagnose
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
@@ -148,9 +149,7 @@ def judge(
     if candidate.positions and (scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])):
         result = replace(result, candidate=replace(candidate, conventions=(*candidate.conventions, scale)))
     if explain and result.off_path and candidate.positions and result.covered:
-        from .explanation.explain import explain as explained  # heyoka too
-
-        result = replace(result, explanation=explained(candidate.t, candidate.columns, problem, result.allowed_m))
+        result = replace(result, explanation=diagnose(candidate, problem, result.allowed_m))
     if baseline is None:
         return result
     if isinstance(baseline, str | Path):

@@ -19,11 +19,9 @@ from reference.status import Status
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
+from ..diagnosis import Experiments, Explanation, Since
 from .errors import SwingErrors, TrajectoryErrors, Worst, entry
-from .experiments.findings import Experiments
-from .explanation.case import Explanation
 from .input_floor import input_floor
-from .since import Since
 from .transit_matching import TransitErrors
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged

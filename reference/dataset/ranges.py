@@ -180,7 +180,7 @@ def _intervals(cells: Sequence[str]) -> tuple[Ends, ...]:
 
 def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
     """Return in a sentence what does not hold what was proved, found by trusted code."""
-    from ..enclosure.printed_box import check_ranges
+    from ..enclosure.trusted.printed_box import check_ranges
 
     try:
         check_ranges(texts, ranges.proof.proved)

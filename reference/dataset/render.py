@@ -72,17 +72,17 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
         return
     if ALWAYS[0] not in contents:
         contents = {**render(solution, manifest["id"]), **contents}
-    from ..enclosure.printed import check_dataset
+    from ..enclosure.trusted.printed import check_dataset
 
     enclosure, files = solution.proof and solution.proof.enclosure, dict[str, Any](contents)
     try:
         check_dataset(files, enclosure and enclosure.proved)
         if enclosure and FUNCTION[1] in files:
-            from ..enclosure.function import check_function
+            from ..enclosure.trusted.function import check_function
 
             check_function(files[FUNCTION[0]], files[FUNCTION[1]], enclosure.function, enclosure.proved)
         if enclosure and manifest.get("sections"):
-            from ..enclosure.sections import check_sections
+            from ..enclosure.trusted.sections import check_sections
 
             check_sections(files, enclosure.sections, enclosure.proved)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:

@@ -14,8 +14,8 @@ from typing import Any
 from flint import ctx, fmpz, fmpz_poly
 
 from ..numbers.taylor_step import EARTH, TaylorStep
-from .balls import dot, fixed
-from .bound import SceneBalls, scaled
+from .trusted.balls import dot, fixed
+from .trusted.system import SceneBalls, scaled
 
 AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
 GRAIN = 64  # step sizes are rescaled by multiples of 1/GRAIN

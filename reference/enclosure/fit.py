@@ -16,11 +16,11 @@ from flint import arb
 from ..numbers.precision import double_below
 from ..numbers.taylor_step import TaylorStep
 from .approximant import GRAIN, rescaled
-from .balls import add, dot, size, times
-from .bound import SceneBalls
-from .course import Course
-from .function import CUT, Following, position
-from .shapes import ProvedFunction
+from .trusted.balls import add, dot, size, times
+from .trusted.course import Course
+from .trusted.function import CUT, Following, position
+from .trusted.shapes import ProvedFunction
+from .trusted.system import SceneBalls
 
 SHALLOW = 0.96  # of the length: a bob that stays so deep, within 16 degrees, has no series of z
 SHARE = 1 / 3  # of the errors that are there anyway: what leaving out coefficients may add

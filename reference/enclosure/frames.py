@@ -13,8 +13,8 @@ import numpy as np
 from flint import arb, fmpz_poly
 
 from ..numbers.taylor_step import TaylorStep
-from .bound import SceneBalls
-from .six_columns import FINE
+from .trusted.six_columns import FINE
+from .trusted.system import SceneBalls
 
 ORDER = 27  # of the columns' polynomials
 ILL = 13  # condition number (Frobenius) above which the frame is made orthogonal

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from flint import arb, arb_poly, ctx
 
-from .balls import SHORT
-from .shapes import Leaf
-
+SHORT = 64  # bits in which Newton's method begins
 ORDERS = 40  # of the Taylor series, enough for this: a coefficient is about a quarter of the one before
 POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
 NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
@@ -14,8 +15,12 @@ NEGLIGIBLE = arb(2) ** -12  # part of what xdot is uncertain by
 MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
 
-def around_zero(leaves: list[Leaf]) -> tuple[arb, arb]:
-    """Return exact times between which p'_x has a zero, about: proposals, which prove nothing."""
+def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
+    """Return exact times between which p'_x has a zero, about: proposals, which prove nothing.
+
+    Args:
+        leaves: neighbouring `Leaf`s, of which the middle one is taken.
+    """
     leaf = leaves[len(leaves) // 2]
     slope, s = leaf.slope, ((leaf.low + leaf.high) / 2).mid()
     (f, off), (g, _) = slope.forms

@@ -21,11 +21,11 @@ from ..errors import UnreachableError
 from ..model.sections import gate_without_rest
 from ..numbers.precision import log2
 from ..numbers.taylor_step import TaylorStep
-from .bound import SceneBalls
-from .course import Course
 from .frames import ColumnSource
-from .shapes import Proved, ProvedFunction, ProvedSections, State
 from .sums_checked import SumsChecked
+from .trusted.course import Course
+from .trusted.shapes import Proved, ProvedFunction, ProvedSections, State
+from .trusted.system import SceneBalls
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
 COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
@@ -161,7 +161,7 @@ class _Run:
         fit, steps, count, known, sections, spent = None, chain([first], steps), 0, 0, None, 0.0
         # a proof rests on the code of sections, or of a function, only where it has some
         if self.sections:
-            from .sections import Sections
+            from .trusted.sections import Sections
 
             sections = Sections(course, self.sections)
         if self.function:
@@ -219,7 +219,7 @@ def demand_rest_positions(balls: SceneBalls, words: tuple[str, ...]) -> None:
         InputError: it names the gate.
     """
     if words:
-        from .sections import form
+        from .trusted.sections import form
 
     for word in words:
         try:

@@ -11,10 +11,10 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
-from .balls import interval, times
-from .box import BoxBalls, Windows
 from .prove import SCENE_GUARD_BITS, demand_rest_positions, plan_for, until
-from .shapes import Box, Interval, ProvedBox, ProvedDerivatives
+from .trusted.balls import interval, times
+from .trusted.box import BoxBalls, Windows
+from .trusted.shapes import Box, Interval, ProvedBox, ProvedDerivatives
 
 LOOK_BITS = 192  # in which a box is looked at
 BOX_BITS = 12  # the approximant is off by this part of the box at most
@@ -77,8 +77,8 @@ def enclose_box(
         # the rate at which Theorem C's radius grows, in 1/s
         growth = float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * float(balls.w0))
         if halves and (derivatives or growth * float(latest) > GROWTH):
-            from .derivatives import Derivatives
             from .tangents import TangentSource, scales_of
+            from .trusted.derivatives import Derivatives
 
             follower = Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             source = TangentSource(windows.balls, follower.bound.ways)

@@ -8,7 +8,7 @@ from typing import Any
 from flint import arb
 
 from ..numbers.taylor_step import Digits
-from .shapes import Covered
+from .trusted.shapes import Covered
 
 
 class SumsChecked:
@@ -17,7 +17,7 @@ class SumsChecked:
     def advance(self, covered: Covered) -> None:
         """Raise ArithmeticError unless sums of a step's digits are FLINT's."""
         if isinstance(covered.piece.rows, Digits):
-            from .digits import norms
+            from .trusted.digits import norms
 
             compare(covered.piece, norms)
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..numbers.taylor_step import TaylorStep
-from .box import BoxBalls
-from .derivatives import Way
 from .frames import ORDER, ColumnSource, hats
+from .trusted.box import BoxBalls
+from .trusted.derivatives import Way
 
 FINE = 50  # bits of a coefficient beyond the largest
 

@@ -115,9 +115,9 @@ def solve_ranges(
         UnreachableError: the box is too wide, and it tells up to which time it holds.
     """
     need_proof()
-    from ..enclosure.printed_box import end_of
     from ..enclosure.prove_box import enclose_box
-    from ..enclosure.shapes import Box
+    from ..enclosure.trusted.printed_box import end_of
+    from ..enclosure.trusted.shapes import Box
 
     widths = widths_of(scene, uncertain)
     inputs, times = scene.exact, times or scene.exact.grid

@@ -19,7 +19,7 @@ pytest.importorskip("flint")
 import reference
 from reference.dataset.render import render
 from reference.dataset.sheets import scene_inputs
-from reference.enclosure.printed import check_dataset
+from reference.enclosure.trusted.printed import check_dataset
 from reference.numbers.precision import fixed_decimal
 from reference.scenes.scene import parse_scene
 

@@ -13,11 +13,12 @@ from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb, fmpq
 
-import reference.enclosure.derivatives
+import reference.enclosure.trusted.derivatives
 from reference.enclosure.approximant import pair
-from reference.enclosure.bound import Piece, SceneBalls
 from reference.enclosure.prove import until
-from reference.enclosure.shapes import Sizes
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.shapes import Sizes
+from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import EARTH, TaylorStep
 
 BITS, UNIT = 96, 1 << 96
@@ -179,7 +180,7 @@ def runs_hold(module, names=SHORT_RUNS):
 
 def chain_rule_holds(module, names=derivative_truths.RUNS):
     """What derivatives are made of, by derivatives as they are."""
-    derivative_truths.runs_hold(reference.enclosure.derivatives, names, ("box", "point"), module.Windows)
+    derivative_truths.runs_hold(reference.enclosure.trusted.derivatives, names, ("box", "point"), module.Windows)
 
 
 def all_hold(module, long):

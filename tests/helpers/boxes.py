@@ -14,7 +14,7 @@ from enclosure_oracle import scene
 from passages import plumb
 
 from reference.enclosure.prove_box import enclose_box
-from reference.enclosure.shapes import Box, ProvedBox
+from reference.enclosure.trusted.shapes import Box, ProvedBox
 from reference.engines.plan import Run
 from reference.engines.registry import engines
 from reference.engines.registry import run as limbs_run

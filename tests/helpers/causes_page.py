@@ -9,11 +9,11 @@ from typing import Any
 
 from places import ROOT
 
-from compare.score.explanation import conventions
-from compare.score.explanation.causes import causes_of
-from compare.score.explanation.fitted import MODELS
-from compare.score.explanation.gate import LOOSE
-from compare.score.explanation.programs import Program
+from compare.diagnosis import conventions
+from compare.diagnosis.causes import causes_of
+from compare.diagnosis.fitted import MODELS
+from compare.diagnosis.gate import LOOSE
+from compare.diagnosis.programs import Program
 
 PAGE, BEFORE = ROOT / "docs/oracle.md", "## All causes\n"
 FAMILIES = ("gravity_", "integrator_", "frame_")  # of whose words one line speaks

@@ -12,11 +12,11 @@ from enclosure_recurrence import Recurrence
 from flint import arb, arb_poly, ctx
 
 from reference.enclosure.approximant import pair
-from reference.enclosure.bound import SceneBalls
-from reference.enclosure.box import Windows
 from reference.enclosure.prove import until
-from reference.enclosure.shapes import Box, Covered, Interval, Sizes, Tube
 from reference.enclosure.tangents import TangentSource, scales_of
+from reference.enclosure.trusted.box import Windows
+from reference.enclosure.trusted.shapes import Box, Covered, Interval, Sizes, Tube
+from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.columns import GRID
 
 BITS = 96

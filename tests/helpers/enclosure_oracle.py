@@ -12,10 +12,13 @@ import numpy as np
 from enclosure_recurrence import Recurrence
 
 from reference.enclosure.approximant import pair
-from reference.enclosure.bound import Piece, Radius, SceneBalls, output
-from reference.enclosure.enclosed_transits import Scan
 from reference.enclosure.frames import ColumnSource
-from reference.enclosure.six_columns import Columns
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.six_columns import Columns
+from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.transits import Scan
+from reference.enclosure.trusted.tube import output
 from reference.numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 from reference.scenes.inputs import Inputs
 
@@ -193,7 +196,7 @@ def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first
 
 def in_digits(step: TaylorStep) -> TaylorStep:
     """The same step, its coefficients as digits over the next power of two that these have."""
-    from reference.enclosure.digits import split  # needs numba
+    from reference.enclosure.trusted.digits import split  # needs numba
 
     count = -(-(step.bits + 1) // DIGIT_BITS)
     up, orders = DIGIT_BITS * count - 1 - step.bits, max(map(len, step.coefficients))

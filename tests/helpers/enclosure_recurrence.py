@@ -10,9 +10,9 @@ from flint import ctx, fmpz_poly
 
 from reference.enclosure import Enclosure, enclose
 from reference.enclosure.approximant import GRAIN, pair, stretched
-from reference.enclosure.balls import cross, fixed
-from reference.enclosure.bound import SceneBalls
 from reference.enclosure.prove import SCENE_GUARD_BITS
+from reference.enclosure.trusted.balls import cross, fixed
+from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import TaylorStep
 from reference.scenes.inputs import Inputs
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import wild_programs as programs
 from places import ROOT
 
-from compare.score.explanation.case import AS_IF
-from compare.score.explanation.fitted import MODELS
+from compare.diagnosis.case import AS_IF
+from compare.diagnosis.fitted import MODELS
 from compare.score.judge import judge
 from compare.score.verdict import Score
 from reference import load_scene
@@ -63,7 +63,7 @@ are left out: what counts is which mistakes are made.
 - **not named**: what reading the program shows besides.
 
 To judge a program of your own, begin with the [tutorial](tutorial.md). `python tests/helpers/judged_page.py`
-writes this page from the trajectories in `tests/compare/score/`; a test holds it.
+writes this page from the trajectories in `tests/compare/diagnosis/`; a test holds it.
 
 | | language | cord, span | model | digits | named | then | not named |
 |---|---|---|---|---|---|---|---|

@@ -7,13 +7,12 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from reference.engines.limbs.lanes import LANES
-from reference.engines.limbs.limb import Array
 from reference.engines.limbs.run import Integration
 from reference.engines.limbs.size import LIMB_BITS
 from reference.engines.plan import Plan
+from reference.engines.simd.lanes import LANES
 from reference.errors import InputError
-from reference.numbers.precision import NumberType
+from reference.numbers.precision import Array, NumberType
 from reference.scenes.inputs import Inputs
 
 STATES_BITS = 93  # the precision that five limbs hold of a swing of half a metre below 67 m

@@ -30,7 +30,7 @@ Operator = Callable[[ast.AST, ast.AST | None], Iterator[Replacement]]  # of a no
 
 # ------------------------------------------------------------------------------------------------ operators
 
-SUMS = {"add"}  # of vectors, in reference/enclosure/balls.py
+SUMS = {"add"}  # of vectors, in reference/enclosure/trusted/balls.py
 PRODUCTS = {"times"}  # of a number and a vector, there as well
 COMMUTATIVE = {"add", "dot", "min", "max", "demand"}  # of two arguments; `demand` of the other one is no demand
 LATTICE = {"min", "max", "union", "intersection"}  # which choose among what they are given

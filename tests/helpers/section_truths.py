@@ -20,11 +20,12 @@ from passages import WAYS, form, value
 import reference
 from reference.dataset.render import render
 from reference.enclosure.approximant import pair
-from reference.enclosure.balls import ball
-from reference.enclosure.bound import Piece, SceneBalls
-from reference.enclosure.course import Course
 from reference.enclosure.prove import until
-from reference.enclosure.shapes import Covered, Tube
+from reference.enclosure.trusted.balls import ball
+from reference.enclosure.trusted.course import Course
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.shapes import Covered, Tube
+from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import EARTH, TaylorStep
 
 BITS = 128

@@ -1,6 +1,6 @@
 """Public simulators: 30 trajectories of real programs, run at their own parameters, and their true causes.
 
-The causes were found by reading the programs. `tests/compare/score/wild/` holds what they wrote, and nothing of the
+The causes were found by reading the programs. `tests/compare/diagnosis/wild/` holds what they wrote, and nothing of the
 programs.
 """
 
@@ -13,7 +13,7 @@ from places import ROOT
 
 from reference import Scene, load_scene
 
-FOLDER = ROOT / "tests" / "compare" / "score" / "wild"
+FOLDER = ROOT / "tests" / "compare" / "diagnosis" / "wild"
 G_EFFECTIVE = "g is the effective one"
 FORMAT = {"decimals", "digits"}
 SAME = {"no_centrifugal": G_EFFECTIVE, "effective_gravity": G_EFFECTIVE}  # they differ by less than the tolerance

@@ -23,9 +23,9 @@ from reference.status import Status
 
 from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
+from ...diagnosis import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from ...score import judge
 from ...score.errors import swing_rate
-from ...score.explanation import conventions
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
 from ..page import Html, Table, facts, text
@@ -180,9 +180,9 @@ def vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
     reading = names, text_reader, header, clock, read, candidate
     tables = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
-    sentences = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
+    sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID}
     limits = {name: getattr(judge, name) for name in ("TOLERANCE", "SUBTRACT", "FINER", "FAR", "SAME", "SMALL")}
-    axes = [[*order, *signs, text] for (order, signs), (_, text) in conventions.AXES_SAID.items()]
+    axes = [[*order, *signs, text] for (order, signs), (_, text) in AXES_SAID.items()]
     return tables | sentences | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .lanes import LANES, compiled, load, merged, occupied, plus_product, shuffled, spread, store
-from .limb import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, divide, double_of
+from ...numbers.precision import Array
+from ..simd.lanes import LANES, compiled, load, merged, occupied, plus_product, shuffled, spread, store
+from .limb import DOUBLED, RADIX, UNIT, add_product, carry, carry_scalar, divide, double_of
 from .series import TENSION, VM, VX, M, Series, Step, X, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products
 

@@ -15,14 +15,11 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from ...numbers.precision import to_fraction
+from ...numbers.precision import Array, to_fraction
 from ...numbers.taylor_step import whole
-from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
+from ..simd.lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
 from .size import LIMB_BITS, fraction_bits
-
-Array = npt.NDArray[np.float64]
 
 RADIX = 2.0**LIMB_BITS
 INVERSE = 2.0**-LIMB_BITS
@@ -130,10 +127,3 @@ def double_of(limbs: Array, limb_count: int, first: int = 0, stride: int = 1) ->
     for q in range(limb_count - 1, -1, -1):
         value = (value + limbs[first + stride * q]) * INVERSE
     return DOUBLED * value
-
-
-def aligned(count: int) -> Array:
-    """Return zeros that start on a cache line, so that each row fills one."""
-    room = np.zeros(count + LANES)
-    start = -room.ctypes.data // room.itemsize % LANES
-    return room[start : start + count]

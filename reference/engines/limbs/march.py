@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numbers.precision import Array
 from ...system.machine_code import kept
+from ..simd.lanes import LANES, OPTIONS, aligned, load, merged, store
 from .dense_output import divide_place, evaluate, to_cartesian, xdot_of
-from .lanes import LANES, OPTIONS, load, merged, store
-from .limb import DOUBLED, Array, aligned, double_of
+from .limb import DOUBLED, double_of
 from .recurrence import taylor_coefficients
 from .series import Counts, LinearTerms, Step, X, empty_series
 from .step import (

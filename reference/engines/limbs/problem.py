@@ -15,10 +15,10 @@ import numpy as np
 
 from ...model.algebra import add, cross
 from ...model.start import Start
-from ...numbers.precision import GUARD_BITS
+from ...numbers.precision import GUARD_BITS, Array
 from ...scenes.inputs import Inputs
 from ..plan import MOST_TURN
-from .limb import Array, rows_of
+from .limb import rows_of
 from .series import LinearTerms
 from .size import MOST_PREC, highest_prec, limb_count_for
 from .step import GRAINS, MOST_GRAINS, Model

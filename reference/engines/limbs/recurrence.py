@@ -15,7 +15,8 @@ lack its products with order 0, which the recurrence adds itself, as it needs th
 
 from __future__ import annotations
 
-from .lanes import (
+from ...numbers.precision import Array
+from ..simd.lanes import (
     LANES,
     at_least,
     compiled,
@@ -29,7 +30,7 @@ from .lanes import (
     spread,
     store,
 )
-from .limb import DOUBLED, LARGEST, Array, carry_scalar, divide
+from .limb import DOUBLED, LARGEST, carry_scalar, divide
 from .series import (
     PLANES,
     SPIN,

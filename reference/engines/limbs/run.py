@@ -16,12 +16,13 @@ import numpy as np
 from ...errors import InputError, IntegrationError
 from ...model.start import xdot_vanishes, zero_at_release
 from ...numbers.columns import RUN
+from ...numbers.precision import Array
 from ...numbers.table import Table
 from ...numbers.taylor_step import Digits, TaylorStep
 from ...system.machine_code import prepare
 from ..plan import AT_REST, Pace, Plan, Report, Run
-from .lanes import LANES
-from .limb import Array, aligned, joined, split
+from ..simd.lanes import LANES, aligned
+from .limb import joined, split
 from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
 from .problem import limb_problem
 from .series import TENSION, M, W, X

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .lanes import LANES, shuffled
-from .limb import Array, aligned
+from ...numbers.precision import Array
+from ..simd.lanes import LANES, aligned, shuffled
 
 X, M, W, VX, VM, VW, TENSION, SPIN = range(LANES)
 PLANES = 4  # x, m, w and the tension λ, each limb's coefficients one after another; those of sums are λ x, λ m, λ w, w²

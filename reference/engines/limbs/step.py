@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
-from .limb import DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, divide, double_of
+from ...numbers.precision import Array
+from ..simd.lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
+from .limb import DOUBLED, INVERSE, RADIX, UNIT, carry, carry_scalar, divide, double_of
 from .series import SPIN, TENSION, LinearTerms, Series, positions
 from .size import LIMB_BITS
 

@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...numbers.precision import Array
+from ..simd.lanes import LANES, compiled, merged
+from ..simd.polynomial import CONVEX, FREE, UNDECIDED, classify, crossing
 from .dense_output import evaluate, xddot_of, xdot_at
-from .lanes import LANES, compiled, merged
-from .limb import Array, add_double, double_of, set_double
-from .polynomial import CONVEX, FREE, UNDECIDED, classify, crossing
+from .limb import add_double, double_of, set_double
 from .series import Counts, Series, Step, X
 from .size import LIMB_BITS
 from .step import Model

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..limbs.lanes import LANES, at_least, compiled, fma, inlined, larger, load, magnitude, spread, store, where
-from ..limbs.limb import Array, aligned
-from ..limbs.polynomial import FREE, MONOTONE, classify, crossing, value_and_slope
+from ...numbers.precision import Array
+from ..simd.lanes import LANES, aligned, at_least, compiled, fma, inlined, larger, load, magnitude, spread, store, where
+from ..simd.polynomial import FREE, MONOTONE, classify, crossing, value_and_slope
 from .series import MOST_ORDER, Series
 
 NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding

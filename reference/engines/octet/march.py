@@ -10,10 +10,23 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ...numbers.precision import Array
 from ...system.machine_code import kept
 from ..batch_interface import DOUBTFUL, LEAST_BEND, STOPPED
-from ..limbs.lanes import LANES, OPTIONS, at_least, compiled, larger, load, magnitude, occupied, spread, store, where
-from ..limbs.limb import Array, aligned
+from ..simd.lanes import (
+    LANES,
+    OPTIONS,
+    aligned,
+    at_least,
+    compiled,
+    larger,
+    load,
+    magnitude,
+    occupied,
+    spread,
+    store,
+    where,
+)
 from . import rows
 from .lane_zeros import (
     CONVERGED,

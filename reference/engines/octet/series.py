@@ -15,8 +15,21 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..limbs.lanes import LANES, compiled, exp2_of, fma, inlined, larger, load, log2_of, magnitude, spread, store
-from ..limbs.limb import Array, aligned
+from ...numbers.precision import Array
+from ..simd.lanes import (
+    LANES,
+    aligned,
+    compiled,
+    exp2_of,
+    fma,
+    inlined,
+    larger,
+    load,
+    log2_of,
+    magnitude,
+    spread,
+    store,
+)
 from .rows import FORM, PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
 
 MOST_ORDER = 24  # even, as two orders are computed at a time

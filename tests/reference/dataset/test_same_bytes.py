@@ -106,7 +106,7 @@ def replace_level(scene, level):
 
 def test_another_processor_gives_the_bytes_that_ship(tmp_path, size):
     """Its instructions are made of what numba keeps for this one; under --long all is compiled from the source."""
-    from reference.enclosure.digits import sums
+    from reference.enclosure.trusted.digits import sums
     from reference.engines.limbs.march import march as limbs
     from reference.engines.octet.march import march as octet
 

@@ -11,10 +11,13 @@ import pytest
 from enclosure_oracle import PARIS, FailingStep, carry, in_digits, scene, steps, unit_step
 from flint import arb
 
-from reference.enclosure.bound import Piece, Radius, SceneBalls, output, tube
-from reference.enclosure.course import Course
-from reference.enclosure.enclosed_transits import MOST_LEAVES, Scan
-from reference.enclosure.shapes import Covered, Tube
+from reference.enclosure.trusted.course import Course
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.shapes import Covered, Tube
+from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.transits import MOST_LEAVES, Scan
+from reference.enclosure.trusted.tube import output, tube
 from reference.numbers.taylor_step import Digits
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]

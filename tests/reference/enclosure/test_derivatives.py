@@ -9,9 +9,9 @@ from boxes import BOXES, box_of, check_runs, drawn, inputs_of, outside, proof_of
 from enclosure_oracle import scene
 from flint import fmpz_poly
 
-from reference.enclosure.derivatives import within
 from reference.enclosure.prove_box import enclose_box
-from reference.enclosure.shapes import Box, Interval
+from reference.enclosure.trusted.derivatives import within
+from reference.enclosure.trusted.shapes import Box, Interval
 from reference.solver.proof_steps import Feed
 
 # by position with drag, by angles with all inputs at once, above the horizontal, with effective gravity,

@@ -11,9 +11,10 @@ from flint import fmpz_poly
 
 pytest.importorskip("numba")
 
-from reference.enclosure.bound import Piece, SceneBalls, polynomials
-from reference.enclosure.digits import check, norms, split
 from reference.enclosure.sums_checked import compare
+from reference.enclosure.trusted.defect import Piece, polynomials
+from reference.enclosure.trusted.digits import check, norms, split
+from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 MOST = 1 << (DIGIT_BITS - 1)

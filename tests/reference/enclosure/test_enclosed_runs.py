@@ -11,8 +11,8 @@ from sampled import one_in
 
 from reference.enclosure import enclose, turned
 from reference.enclosure.approximant import pair
-from reference.enclosure.balls import fixed
-from reference.enclosure.bound import SceneBalls
+from reference.enclosure.trusted.balls import fixed
+from reference.enclosure.trusted.system import SceneBalls
 from reference.errors import UnreachableError
 from reference.numbers.taylor_step import LOCAL, TaylorStep
 

@@ -9,9 +9,11 @@ import pytest
 from enclosure_oracle import cross, dot, lin, scene, unit_step
 from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
-from reference.enclosure.balls import ball
-from reference.enclosure.bound import Piece, Radius, Scaled, SceneBalls
-from reference.enclosure.six_columns import CUT, FINE, Columns, cut, residuals
+from reference.enclosure.trusted.balls import ball
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.six_columns import CUT, FINE, Columns, cut, residuals
+from reference.enclosure.trusted.system import Scaled, SceneBalls
 from reference.numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 
 

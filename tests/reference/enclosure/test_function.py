@@ -21,10 +21,10 @@ pytest.importorskip("flint")
 from flint import arb, arb_mat, ctx
 
 from reference.dataset.golden import load
-from reference.enclosure.bound import SceneBalls
-from reference.enclosure.course import Course
 from reference.enclosure.fit import Fit, on_doubles
-from reference.enclosure.function import CUT, Following, basis, check_function, on_sphere, weights
+from reference.enclosure.trusted.course import Course
+from reference.enclosure.trusted.function import CUT, Following, basis, check_function, on_sphere, weights
+from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.columns import STATE
 from reference.numbers.function import GoldenFunction
 from reference.scenes.scene import load_scene

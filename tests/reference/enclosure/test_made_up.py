@@ -9,10 +9,11 @@ from enclosure_oracle import scene, truth, unit_step
 from enclosure_recurrence import prove
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from reference.enclosure.balls import ball
-from reference.enclosure.bound import Piece, SceneBalls
-from reference.enclosure.enclosed_transits import Scan
-from reference.enclosure.shapes import Covered, Tube
+from reference.enclosure.trusted.balls import ball
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.shapes import Covered, Tube
+from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.transits import Scan
 from reference.numbers.taylor_step import TaylorStep
 
 BITS = 200

@@ -7,9 +7,12 @@ import pytest
 from enclosure_oracle import acceleration, constants, scene, start, truth
 from flint import arb, ctx, fmpz, fmpz_poly
 
-from reference.enclosure.balls import ball, fixed, interval, size, total, upper
-from reference.enclosure.bound import Piece, Radius, SceneBalls, output
-from reference.enclosure.shapes import Covered, Tube
+from reference.enclosure.trusted.balls import ball, fixed, interval, size, total, upper
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.shapes import Covered, Tube
+from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.tube import output
 from reference.numbers.taylor_step import TaylorStep
 
 WIDE = arb(1, 0.5)  # all of [1/2, 3/2]

@@ -20,7 +20,7 @@ pytest.importorskip("flint")
 import reference
 from reference.dataset.render import render
 from reference.dataset.sheets import scene_inputs
-from reference.enclosure.printed import asked, check_dataset
+from reference.enclosure.trusted.printed import asked, check_dataset
 from reference.errors import DatasetError, FoucaultError
 from reference.scenes.scene import parse_scene
 from reference.scenes.shipped import scene_ids

@@ -28,12 +28,15 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from reference.enclosure.approximant import pair
-from reference.enclosure.balls import add, ball, cross
-from reference.enclosure.bound import Piece, Radius, SceneBalls, output
-from reference.enclosure.course import Course
-from reference.enclosure.enclosed_transits import Scan
 from reference.enclosure.frames import ColumnSource
-from reference.enclosure.six_columns import Columns
+from reference.enclosure.trusted.balls import add, ball, cross
+from reference.enclosure.trusted.course import Course
+from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.six_columns import Columns
+from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.transits import Scan
+from reference.enclosure.trusted.tube import output
 from reference.engines.registry import engines, run
 from reference.numbers.columns import STATE, TRANSITS
 from reference.numbers.taylor_step import Digits

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reference.enclosure.shapes import Interval
+from reference.enclosure.trusted.shapes import Interval
 from reference.numbers.columns import GRID, KINDS, RUN, TRANSITS, UNITS
 from reference.numbers.table import FixedPoint, Table, decimals_of, integers, resolved
 

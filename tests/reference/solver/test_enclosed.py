@@ -22,7 +22,7 @@ from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
 from reference.enclosure import enclose
-from reference.enclosure.course import FINISHED
+from reference.enclosure.trusted.course import FINISHED
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
 from reference.errors import InputError, IntegrationError, UnreachableError
@@ -317,7 +317,7 @@ def test_a_proof_that_another_engine_has_to_make_is_the_one_that_this_engine_mak
 
 
 def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):
-    digits = pytest.importorskip("reference.enclosure.digits")
+    digits = pytest.importorskip("reference.enclosure.trusted.digits")
     scene = make_scene(run={**SHORT, "t_end": "30", "digits": 20})
     by_flint = reference.solve(scene, engine="limbs", audit=True)
     assert grid_sheet(by_flint) == grid_sheet(reference.solve(scene, engine="limbs"))

@@ -12,7 +12,7 @@ from mutations import loaded, named
 from sampled import one_in
 
 import reference
-from reference.enclosure.shapes import Box
+from reference.enclosure.trusted.shapes import Box
 from reference.engines.plan import Run
 from reference.engines.trajectory import Variants
 from reference.solver.uncertain import UNCERTAIN, widths_of

@@ -14,9 +14,9 @@ import reference
 from compare import judge
 from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
+from compare.diagnosis.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from compare.report.atlas.pages import source
 from compare.report.atlas.parts import embedded, function_made, plain
-from compare.score.explanation.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from reference import InputError
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -158,7 +158,7 @@ def test_trajectories_are_judged_as_score_does(reading, tmp_path, size):
     assert found["wrong"] == [] == found["right"]
 
 
-SAID = {  # of a wrong file, in the words of compare/score/explanation
+SAID = {  # of a wrong file, in the words of compare/diagnosis
     "exchanged": f"Your file {AXES_SAID[(1, 0), (1, 1)][1]}",
     "turned": f"Your file {AXES_SAID[(1, 0), (-1, 1)][1]}",
     "centimetres": f"Your file {LENGTHS_SAID['cm']}",

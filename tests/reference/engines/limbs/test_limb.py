@@ -13,18 +13,9 @@ pytest.importorskip("numba")
 
 import numba
 
-from reference.engines.limbs.lanes import LANES
-from reference.engines.limbs.limb import (
-    add_product,
-    aligned,
-    carry,
-    divide,
-    joined,
-    nearest_whole,
-    rows_of,
-    split,
-)
+from reference.engines.limbs.limb import add_product, carry, divide, joined, nearest_whole, rows_of, split
 from reference.engines.limbs.size import LIMB_BITS, fraction_bits
+from reference.engines.simd.lanes import LANES, aligned
 from reference.numbers.precision import context
 
 LIMB_COUNT = 7

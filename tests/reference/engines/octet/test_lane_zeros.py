@@ -14,9 +14,9 @@ pytest.importorskip("flint")
 import flint
 import numba
 
-from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.lane_zeros import CONVERGED, all_zeros, refine, seek
 from reference.engines.octet.march import empty_march
+from reference.engines.simd.lanes import LANES
 
 ORDER = 24
 

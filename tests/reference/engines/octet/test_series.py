@@ -15,11 +15,11 @@ from random_rows import KINDS, random_inputs, rows_of
 from sampled import one_in
 
 from reference.engines.batch_interface import RunOptions
-from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.march import empty_march
 from reference.engines.octet.rows import UNIT, packed
 from reference.engines.octet.series import taylor_coefficients
 from reference.engines.registry import engines
+from reference.engines.simd.lanes import LANES
 from reference.model.start import Start
 from reference.numbers.precision import to_fraction
 from reference.numbers.taylor_step import EARTH

@@ -1,0 +1,270 @@
+"""A file that is to be explained, and what explains it: rows and truth, causes, and the lines that say so."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference.numbers.precision import Array
+
+from ..candidates.candidate import Deviation
+from .phasors import sinc
+from .programs import NAMES, Pendulum, Program
+
+EXACT = 1e-14  # of the cord: two numbers that differ by less are one
+CONVENTION = 0.3  # decades that a convention has to explain
+HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
+UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
+AS_IF = "as_if"  # stage of a number that no person typed: the motion is like that, the cause is not known
+BEGIN = "It seems that your program"
+EQUAL = 1.01  # ratio of two residuals that may be one: fits of the same motion end a little apart
+HARM = 3.0  # times a column's own error: an explanation that leaves more of it is refuted by the file
+FINEST = 1e-2  # of the tolerance: smaller residuals are rounding and steps of a program's own, or ours
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a file, made right: times in s, positions in m (x, y and perhaps z), half a unit of its last digit.
+
+    Attributes:
+        times: increasing, in s, shape (rows,).
+        positions: x, y and perhaps z in m, shape (rows, 2 or 3).
+        noise: rounding of the numbers, in m.
+        conventions: what was changed.
+        starts: whether row 0 is the release.
+        cord: mean distance from the suspension in m, where the rows do not keep it; else None.
+    """
+
+    times: Array
+    positions: Array
+    noise: float
+    conventions: tuple[Deviation, ...] = ()
+    starts: bool = True
+    cord: float | None = None
+
+    @property
+    def plane(self) -> Array:
+        """x and y in m, shape (rows, 2)."""
+        return self.positions[:, :2]
+
+    @property
+    def relative(self) -> bool:
+        """Whether smaller numbers are rounded by less: single precision, or a number of digits."""
+        return any(convention.id in ("single_precision", "digits") for convention in self.conventions)
+
+    def changed(self, convention: Deviation, **fields: object) -> Rows:
+        """Return the rows with some fields replaced, and what is to be said of that."""
+        return replace(self, conventions=(*self.conventions, convention), **fields)  # type: ignore[arg-type]
+
+
+def largest(difference: Array) -> float:
+    """Return the largest distance in m that differences of rows make."""
+    return float(np.linalg.norm(difference, axis=1).max())
+
+
+def rms(difference: Array) -> float:
+    """Return the root mean square distance in m that they make."""
+    return float(np.linalg.norm(difference)) / math.sqrt(len(difference))
+
+
+def first_least(residuals: Sequence[float], resolution: float = 0.0) -> int:
+    """Return the index of the first of the least residuals; those below a resolution are equal.
+
+    So rounding errors, which are others on another processor, choose between no two fits.
+    """
+    enough = EQUAL * max(min(residuals), resolution)
+    return next(i for i, residual in enumerate(residuals) if residual <= enough)
+
+
+@dataclass(frozen=True)
+class Model:
+    """A named simplification that the file is exact within.
+
+    Attributes:
+        id: a stable word.
+        text: its name.
+        exact_to_m: the largest distance in m between the file and it.
+        costs_m: the largest distance in m between it and the full Lagrangian.
+    """
+
+    id: str
+    text: str
+    exact_to_m: float
+    costs_m: float
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Reasons for an error, and how much of it they explain.
+
+    Attributes:
+        conventions: of the rows.
+        causes: in the order gravity, model, inputs, release, frame, clock, integrator.
+        model: the simplification that the file is exact within, if it is.
+        corrected_m: the largest error in m that is left after all of these.
+        slip: where none is known, which part of the force is off: a sentence.
+        explained: share of the root mean square error that is gone with them.
+        score: decades, as in `readings`: of two explanations the lower one is the better.
+        allowed_m: distance in m that counts as agreement.
+    """
+
+    conventions: tuple[Deviation, ...] = ()
+    causes: tuple[Deviation, ...] = ()
+    model: Model | None = None
+    corrected_m: float = math.nan
+    slip: str = ""
+    explained: float = 0.0
+    score: float = 0.0
+    allowed_m: float = math.inf
+
+    @property
+    def known(self) -> list[Deviation]:
+        """The causes but those that the motion is merely like."""
+        return [cause for cause in self.causes if cause.stage != AS_IF]
+
+    def lines(self) -> Iterator[str]:
+        """Yield what is known, line by line, for people."""
+        for convention in self.conventions:
+            yield f"Your file {convention.text}."
+        listed = self.model is not None or len(self.causes) > 1
+        if self.model is not None:
+            exact = f"As that model it is exact to {self.model.exact_to_m:.2g} m"
+            yield f"{exact}; against the full Lagrangian it is {self.model.costs_m:.3g} m off:"
+        elif listed:
+            yield f"{BEGIN} (largest effect first)"
+        for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
+            yield f"{'-' if listed else BEGIN} {cause.text}: {cause.size_m:.3g} m"
+        if self.slip:
+            yield self.slip
+        enough = self.corrected_m <= self.allowed_m  # which the rounding of a file, say, may be by itself
+        mended = self.causes or any(enough or convention.id not in UNCORRECTED for convention in self.conventions)
+        if mended and math.isfinite(self.corrected_m):
+            these = "this" if len(self.causes or self.conventions) == 1 else "all this"
+            share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
+            # a smaller rest is rounding, and not the same on every processor
+            left = f"{self.corrected_m:.2g}" if self.corrected_m > rounding else f"less than {rounding:.1g}"
+            beyond = f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
+            yield f"With {these} put right, {left} m are left{beyond}."
+        elif not self.slip:
+            yield "No mistake known to foucault explains the error."
+
+
+@dataclass(frozen=True)
+class Case:
+    """A file that is to be explained.
+
+    Attributes:
+        rows: of the file, conventions put right.
+        truth: the positions of the full model at their times in m, shape (rows, 2 or 3).
+        right: what a right program computes with.
+        pendulum: runs a program.
+        frequency: of the scene's swing in rad/s.
+        allowed_m: distance in m that counts as agreement.
+        intervals: between the rows of the whole file, from the release on; 0 if it begins later.
+    """
+
+    rows: Rows
+    truth: Array
+    right: Program
+    pendulum: Pendulum
+    frequency: float
+    allowed_m: float
+    intervals: int = 0
+
+    @property
+    def error(self) -> float:
+        """Root mean square error of the rows in m."""
+        return rms(self.rows.positions - self.truth)
+
+    @property
+    def floor(self) -> float:
+        """Root mean square in m below which no error needs a cause."""
+        return max(self.rows.noise, self.allowed_m / 3)
+
+    @property
+    def resolution(self) -> float:
+        """Root mean square in m below which residuals are rounding, and equal."""
+        return max(self.rows.noise, FINEST * self.allowed_m)
+
+    @property
+    def enough(self) -> float:
+        """Largest error in m that may be left."""
+        return max(self.allowed_m, 1.5 * self.rows.noise)
+
+    @property
+    def released(self) -> bool:
+        """True if row 0 is the release to its last digit, so that neither its place nor its time is off."""
+        off = np.abs(self.rows.positions[0, :2] - (self.right.x, self.right.y)).max()
+        return bool(self.rows.times[0] == 0 and off <= 2 * self.rows.noise + EXACT * self.right.length)
+
+    @property
+    def pull(self) -> float:
+        """Gravity over the length in 1/s², or what stands for it where there is none."""
+        return self.right.g / self.right.length or abs(float(self.right.theta()[5]))
+
+    @property
+    def scales(self) -> Array:
+        """Sizes of the numbers of theta, in the order of `NAMES`."""
+        length, rate, swing = self.right.length, max(abs(self.right.rate), 1e-6), math.sqrt(self.pull)
+        return np.array([*[rate] * 3, *[self.pull] * 3, swing, *[length] * 2, *[length * swing] * 2, length, 1.0, 1.0])
+
+    def part(self, count: int) -> Case:
+        """Return the case of the first `count` rows."""
+        rows = replace(self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count])
+        return replace(self, rows=rows, truth=self.truth[:count])
+
+    def tested(self, causes: tuple[Deviation, ...], residuals: Array, price: float) -> Explanation:
+        """Return the explanation that some causes make up; the one without causes where they spoil a column.
+
+        A cause that leaves a column worse than the file has it is refuted by the file.
+
+        Args:
+            causes: as in `Explanation`.
+            residuals: what they leave in m, shape (rows, 2 or 3).
+            price: as of `explanation`.
+        """
+        errors = self.rows.positions - self.truth
+        own = np.maximum(np.abs(errors).max(axis=0), self.resolution)
+        if causes and (np.abs(residuals).max(axis=0) > HARM * own).any():
+            return self.explanation((), largest(errors), self.error, 0.0)
+        return self.explanation(causes, largest(residuals), rms(residuals), price)
+
+    def explanation(self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float) -> Explanation:
+        """Return the explanation that some causes make up.
+
+        Args:
+            causes: as in `Explanation`.
+            corrected_m: the largest error in m that they leave.
+            rest: the root mean square in m that they leave.
+            price: decades that they have to explain, as conventions have.
+        """
+        # what is within the tolerance speaks against no explanation
+        left = rest if corrected_m > self.enough else 0.0
+        score = math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions) + price
+        explained = 1 - rest / self.error if self.error else 0.0
+        return Explanation(self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m)
+
+    def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
+        """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
+        theta = program.theta()
+        theta[NAMES.index("gradient")] = program.gradient * program.pace**2
+        return replace(self.pendulum, square=program.gradient_square), theta
+
+    def positions(self, program: Program) -> Array:
+        """Return what a program writes, in the rows' columns, shape (rows, 2 or 3)."""
+        times, columns = self.rows.times, self.rows.positions.shape[1]
+        if program.kind == "sphere":
+            pendulum, theta = self.pendulum_of(program)
+            return pendulum.rows(theta, times, columns)
+        plane = program.phasors().at(times)
+        if program.kind == "angle":
+            plane = plane * sinc(np.abs(plane) / program.length)
+        below = np.maximum(program.length**2 - np.abs(plane) ** 2, 0)
+        return np.column_stack([plane.real, plane.imag, -np.sqrt(below)])[:, :columns]
+
+    def left(self, program: Program) -> Array:
+        """Return what a program leaves of the rows in m, shape (rows, 2 or 3)."""
+        return self.rows.positions - self.positions(program)

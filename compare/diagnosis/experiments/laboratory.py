@@ -1,0 +1,171 @@
+"""Run a program again with other numbers in its placeholders, until one explanation of all its files is left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from reference import FoucaultError, Scene
+
+from ...candidates.candidate import Candidate, Deviation
+from ...candidates.external import SETTING
+from ..case import UNCORRECTED, Explanation, largest
+from ..explain import RENAMED, KnownScene
+from ..fitted import readers_of
+from ..gate import loose
+from ..stepped import Steps, likely_steps
+from .findings import Experiment, Experiments, Finding
+from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
+
+WAYS = TYPED, FACTOR  # how a step follows {setting}
+SAME_MOTION = {"turn": "coriolis"}  # Ω upwards alone, and a plane turned by hand, may be one motion
+LEAST_RUNS = 2  # by which a cause is measured
+UNSOLVED = (FoucaultError, ArithmeticError, np.linalg.LinAlgError)  # no program solves such a scene, or fits its rows
+Run = Callable[[Experiment, Scene], Candidate]
+
+
+class Laboratory:
+    """The runs of a program so far, and what they show."""
+
+    def __init__(
+        self, candidate: Candidate, scene: Scene, allowed_m: float, explanation: Explanation, run: Run
+    ) -> None:
+        """Begin with the first run.
+
+        Args:
+            candidate: its output as it was given.
+            scene: that it was given, in the reading that it was scored in.
+            allowed_m: distance in m that counts as agreement.
+            explanation: of its one file.
+            run: runs it for an experiment in a scene; raises a FoucaultError.
+        """
+        self._problem, self._allowed_m, self._run, self._explanation = KnownScene.of(scene), allowed_m, run, explanation
+        self._rename = any(convention.id in RENAMED for convention in explanation.conventions)  # axes as they were read
+        self._reach = 0.0
+        self._findings: list[Finding] = []
+        self._likely: list[tuple[Steps, str]] | None = None
+        self._runs = [self._trial(self._problem, candidate, 1.0)]
+
+    def measured(self, possible: Sequence[Experiment]) -> tuple[Experiments, Explanation]:
+        """Make experiments until one explanation is left, and return what they found, and that explanation."""
+        explanations: list[Explanation] = []
+        with np.errstate(all="ignore"):
+            for experiment in possible:
+                if self._make(experiment) and len(self._runs) > LEAST_RUNS:
+                    explanations = self._explanations()
+                    if len(explanations) < 2:  # what does not make these files makes no more of them
+                        break
+            if 1 < len(self._runs) <= LEAST_RUNS:  # the program is fit for no more
+                explanations = self._explanations()
+            known = bool(explanations)
+            explanations = explanations or self._of_integrator()
+        texts = ["; it ".join(cause.text for cause in explanation.causes) for explanation in explanations]
+        files = f"the {len(self._runs)} files"
+        text = f"Measured: {'one explanation makes' if known else 'an integrator is at fault, say'} {files}."
+        if len(explanations) > 1:
+            text = f"Cannot be told apart by these experiments: your program {', or '.join(texts)}."
+        elif not explanations:
+            text = f"No known mistake makes {files}: nothing is named."
+        ids = tuple(tuple(cause.id for cause in explanation.causes) for explanation in explanations)
+        unknown = replace(self._explanation, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
+        best = explanations[0] if len(explanations) == 1 else unknown
+        same = _ids(self._explanation) == set().union(*ids)
+        best = replace(best, conventions=self._explanation.conventions, model=self._explanation.model if same else None)
+        return Experiments(tuple(self._findings), ids, text), self._explanation if len(self._runs) == 1 else best
+
+    def _explanations(self) -> list[Explanation]:
+        """Return what makes the files of all runs; where nothing does, with the steps of a method on the sphere."""
+        try:
+            case = JointCase.of(self._runs)
+            explanations = _explanations_of(case)
+            if self._likely is None and not explanations:
+                self._likely = [(steps, way) for steps in likely_steps(self._runs[0].case, None) for way in WAYS]
+            while not explanations and self._likely:  # what does not make these files makes no more of them
+                steps, way = self._likely[0]
+                near = case.without_steps(steps, way)[0].readings(math.inf)
+                explanations = _explanations_of(*case.without_steps(steps, way, near[0])) if near else []
+                self._likely = self._likely[not explanations :]
+            return explanations
+        except UNSOLVED:
+            return []
+
+    def _of_integrator(self) -> list[Explanation]:
+        """Return that an integrator is too loose, where another step shows it, or every file's drift does."""
+        first = self._runs[0]
+        for run in self._runs:
+            if run.setting != 1 and len(run.case.rows.times) == len(first.case.rows.times):
+                changed = largest(run.case.rows.positions - first.case.rows.positions)
+                if changed > first.case.enough:
+                    return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
+        try:
+            read = [(run.case, readers_of(run.case, list(run.fits.values()))) for run in self._runs]
+        except UNSOLVED:
+            return []
+        spheres = [(case, reader) for case, readers in read for reader in readers if reader.right.kind == "sphere"]
+        drifting = {id(case) for case, reader in spheres if reader.drifts(case, reader.right)}
+        error_m = _error_m(first)
+        explanation = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
+        return [explanation] if len(drifting) == len(self._runs) > LEAST_RUNS else []
+
+    def _make(self, experiment: Experiment) -> bool:
+        """Make a run; return whether its file is read as the first was."""
+        scene = self._problem.scene
+        problem, changes = KnownScene.of(experiment.changed(scene)), experiment.values(scene)
+        if experiment.finer > 1:
+            changes[SETTING] = f"1/{experiment.finer} of the first"
+        trial, conclusion = None, "its file is read in another way than the first; nothing follows from it"
+        try:
+            candidate = self._run(experiment, problem.scene)
+            trial = self._trial(problem, candidate, 1 / experiment.finer) if candidate.positions else None
+        except UNSOLVED as error:
+            conclusion = f"{str(error).rstrip('.')}; nothing follows from it"
+        error_m = None
+        if trial is not None and _conventions(trial) == _conventions(self._runs[0]):
+            self._runs.append(trial)
+            error_m = _error_m(trial)
+            gone = error_m <= trial.case.enough
+            conclusion = f"what is wrong is {experiment.where}" if gone else f"it is not {experiment.where} alone"
+            conclusion = conclusion if experiment.where else ""
+        self._findings.append(Finding(experiment.id, experiment.title, changes, error_m, conclusion))
+        return error_m is not None
+
+    def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
+        """Return a trial of x and y; what may be left of them is as large a part of the swing as of the first."""
+        rows = problem.rows(candidate.t, candidate.columns, self._rename)
+        rows = replace(rows, positions=np.ascontiguousarray(rows.plane), cord=None)
+        case = problem.case(rows, self._allowed_m)
+        reach = largest(case.truth)
+        self._reach = self._reach or reach
+        return Trial(problem, replace(case, allowed_m=self._allowed_m * reach / self._reach), setting)
+
+
+def _explanations_of(case: JointCase, *step: Deviation) -> list[Explanation]:
+    """Return the explanations of a case, beside a step, the likeliest first; of those of the same groups one."""
+    explanations: list[Explanation] = []
+    explained: list[set[str]] = []
+    for reading in case.readings():
+        explanation = case.explanation_of(reading, *step)
+        groups = {SAME_MOTION.get(cause.group, cause.group) for cause in reading.causes}
+        ids = _ids(explanation)
+        same = groups in explained or any(_ids(likelier) <= ids for likelier in explanations)
+        least = explanations[0].score if explanations else explanation.score
+        if ids and not same and explanation.score <= least + EQUAL:
+            explanations.append(explanation)
+            explained.append(groups)
+    sets = [_ids(explanation) for explanation in explanations]
+    return [explanations[i] for i, ids in enumerate(sets) if not any(fewer < ids for fewer in sets)]
+
+
+def _ids(explanation: Explanation) -> set[str]:
+    return {cause.id for cause in explanation.causes}
+
+
+def _error_m(trial: Trial) -> float:
+    return largest(trial.case.rows.positions - trial.case.truth)
+
+
+def _conventions(trial: Trial) -> list[str]:
+    return [convention.id for convention in trial.case.rows.conventions if convention.id not in UNCORRECTED]

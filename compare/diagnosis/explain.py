@@ -1,0 +1,195 @@
+"""Explain a disagreement: conventions, then the family of models, then the causes that its numbers show."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference import FoucaultError, Scene
+from reference.engines.trajectory import Variants
+from reference.numbers.precision import Array
+
+from ..approximations import APPROXIMATIONS, Motion
+from ..candidates.candidate import Deviation
+from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest
+from .causes import NAMED
+from .conventions import ROUGHLY, axes, clock, digits, heights, other_conventions, rounded_clock, shifted, unit_of_time
+from .fitted import MODELS, best_of, explanation_of
+from .formulas import of_formula
+from .gate import SHARE
+from .programs import Pendulum, Program
+from .slips import falls, growth, slip
+from .stepped import of_steps
+
+RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
+FAST = 20.0  # times faster than the scene: nothing is run
+ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
+LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
+CLOSELY = 0.01  # of the error that an approximation may leave
+PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
+
+
+def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
+    """Return what is known of the reasons for an error; empty where nothing is.
+
+    Args:
+        times: of the rows, in s.
+        columns: x, y and perhaps z in m.
+        scene: in the reading that the file was scored in.
+        allowed_m: distance in m that counts as agreement.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            return _explained(times, columns, scene, allowed_m)
+    except (FoucaultError, ArithmeticError, np.linalg.LinAlgError):  # no program solves such a scene, or fits it
+        return Explanation()
+
+
+@dataclass(frozen=True)
+class KnownScene:
+    """A scene as the explanation of a file wants it.
+
+    Attributes:
+        scene: in the reading that the file was scored in.
+        model: runs it.
+        start: x, y, z, vx, vy, vz at the release in m and m/s.
+        right: what a right program computes with.
+    """
+
+    scene: Scene
+    model: Variants
+    start: Array
+    right: Program
+
+    @classmethod
+    def of(cls, scene: Scene) -> KnownScene:
+        """Return the problem of a scene."""
+        model = Variants()
+        start = model.states(scene.exact, np.zeros(1))[0]
+        return cls(scene, model, start, Program.of(scene.exact, start))
+
+    @property
+    def frequency(self) -> float:
+        """The frequency of its swing in rad/s."""
+        return math.sqrt(abs(self.right.theta()[5]))
+
+    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True) -> Rows:
+        """Return the rows of a file in the scene's conventions.
+
+        Args:
+            times: as in the file.
+            columns: x, y and perhaps z as in the file.
+            rename: whether the horizontal axes may have each other's names, or point the other way.
+            late: whether the clock may be off.
+        """
+        start, length, frequency = self.start, self.right.length, self.frequency
+        positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
+        rows = heights(digits(Rows(times, positions, 0.0)), length)
+        rows = clock(axes(rows, start, length, rename), start)
+        rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
+        return rows if rows.starts or not late else shifted(rows, start, frequency, length)
+
+    def case(self, rows: Rows, allowed_m: float) -> Case:
+        """Return what is to be explained of rows, of which some are taken."""
+        chosen = _sample(len(rows.times))
+        rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
+        since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
+        truth = self.model.states(self.scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
+        right, frequency = self.right, self.frequency
+        pendulum = Pendulum(self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate)))
+        intervals = round(float(rows.times[-1] / rows.times[1])) if rows.times[0] == 0 < rows.times[-1] else 0
+        return Case(rows, truth, right, pendulum, frequency, allowed_m, intervals)
+
+
+def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
+    problem = KnownScene.of(scene)
+    rows = problem.rows(times, columns)
+    best = first_good_explanation(problem.case(rows, allowed_m), scene)
+    alternatives = list(other_conventions(rows, problem.start)) if best.corrected_m > allowed_m else []
+    if any(convention.id in RENAMED for convention in rows.conventions):
+        # the release may be at fault, and not the names
+        alternatives.append(problem.rows(times, columns, rename=False))
+    for alternative in alternatives:
+        explanation = first_good_explanation(problem.case(alternative, allowed_m), scene)
+        if explanation.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in explanation.causes):
+            best, rows = min((best, rows), (explanation, alternative), key=lambda pair: pair[0].score)
+    shifts = [convention.size_m for convention in best.conventions if convention.id in ("rows_early", "rows_late")]
+    if shifts and not best.known and shifts[0] < SHARE * best.corrected_m:  # what is left may look like it
+        rows = problem.rows(times, columns, late=False)
+        best = first_good_explanation(problem.case(rows, allowed_m), scene)
+    simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
+    unknown = simple and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
+    if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
+        wrong_term = slip(rows, scene)
+        if wrong_term:  # one term of a formula, as no integrator changes it
+            return Explanation(best.conventions, slip=wrong_term)
+        if not best.known:
+            return replace(best, slip=falls(rows, problem.right) or growth(rows))
+    return best
+
+
+def first_good_explanation(case: Case, scene: Scene) -> Explanation:
+    """Return the first explanation that is good enough, in the order in which one would believe them."""
+    if case.error <= case.floor:
+        return _plain(case)
+    reading = best_of(case)
+    named = None if reading is None else explanation_of(case, reading)
+    if named is not None and named.corrected_m <= case.enough:
+        untyped = any(cause.stage == AS_IF for cause in named.causes)
+        simple = _of_approximation(case, scene, None) if untyped else None
+        return simple if simple is not None and simple.corrected_m <= case.enough else named
+    linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
+    second = None if linear and case.rows.cord is None else of_steps(case, reading)
+    second = second or of_formula(case)
+    return second or _of_approximation(case, scene, named) or named or _plain(case)
+
+
+def _plain(case: Case) -> Explanation:
+    """Return the explanation that has no cause."""
+    return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
+
+
+def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Explanation | None:
+    """Return the approximation of the source papers that leaves next to nothing, of equal ones the first.
+
+    None if there is none, or causes explain the rows as well.
+    """
+    rows, truth = case.rows, case.truth
+    count = rows.positions.shape[1]
+    if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
+        return None
+    best: tuple[Deviation, Model, Array] | None = None
+    least = max(CLOSELY * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5)
+    for word, motion in APPROXIMATIONS.items():
+        if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
+            continue
+        positions = motion.trajectory(scene, rows.times)[:, :count]
+        left = rows.positions - positions
+        rest = float(np.linalg.norm(left))
+        if rest < (least if best is None else least / 2):
+            least, costs = rest, largest(positions - truth)
+            text = f"solves {motion.title} ({motion.where}) instead of the full equations"
+            best = Deviation(word, text, costs, "model"), Model(word, motion.title, largest(left), costs), left
+    if best is None or (named is not None and best[1].exact_to_m > PLAINLY * named.corrected_m):
+        return None
+    cause, model, left = best
+    corrected = model.exact_to_m
+    exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
+    explanation = case.tested((cause,), left, NAMED)
+    return replace(explanation, model=model) if exact and explanation.causes else explanation
+
+
+def _is_mirrored(cause: Deviation) -> bool:
+    """Return whether a release is the scene's but for its sign, which is an axis that points the other way."""
+    if not cause.id.endswith(("release.x", "release.y")) or cause.value is None or cause.shift is None:
+        return False
+    scene = cause.value - cause.shift
+    return abs(cause.value + scene) < ROUGHLY * abs(scene)
+
+
+def _sample(count: int) -> Array:
+    even = np.linspace(0, count - 1, min(ROWS // 2, count))
+    crowded = np.geomspace(1, count, min(ROWS // 2, count)) - 1
+    return np.unique(np.concatenate([even, crowded, np.arange(min(count, ROWS // 4))]).astype(np.int64))

@@ -1,0 +1,262 @@
+"""Read a fit: find the fewest causes whose program has the numbers that the file shows.
+
+Every combination of causes is a point in the space of `theta`; its distance from the fitted point, weighed by how the
+rows answer to each number, is the root mean square in m that it would leave. The search keeps the best combinations of
+one, two, … causes. A cause counts only if it lowers what is left by its cost, so that of two that explain as much the
+one that contains the other loses.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from reference.numbers.precision import Array
+
+from ..observed.least_squares import best_change, by_differences, gauss_newton
+from .case import Case, first_least
+from .causes import Cause
+from .families import Fit
+from .programs import Program
+
+ENOUGH = 5000  # combinations that are tried
+BEAM = 20  # combinations that are kept of each size
+ASIDE = 5  # and beside them, of those that leave least
+MOST = 5  # causes at most
+SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
+PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
+BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
+NEWTON = 6  # steps that fit the free numbers of a combination
+GAIN = 0.99  # of what was left: a step that leaves more is not taken
+SMALLEST = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-5, "late": 1.0, "altitude": 100.0}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A combination of causes.
+
+    Attributes:
+        causes: of different groups.
+        program: the right one with them, fitted numbers in place.
+        rest: root mean square in m that it would leave.
+        score: less is better.
+        reader: what the combination was held against.
+    """
+
+    causes: tuple[Cause, ...]
+    program: Program
+    rest: float
+    score: float
+    reader: Reader
+
+    def value(self, cause: Cause) -> float:
+        """Return the fitted number of a cause."""
+        return float(getattr(self.program, cause.free))
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Holds combinations of causes against a fit.
+
+    Attributes:
+        right: what a right program computes with, with the family's kind.
+        fit: the free fit of that family.
+        floor: root mean square in m below which no error needs a cause.
+        least: root mean square in m that the best fit of any family leaves.
+        joint: whether it is of several runs: then fits follow bent valleys, which in one run lead to numbers that are
+            not there, and no name is put in place of a number, which may follow the scene.
+    """
+
+    right: Program
+    fit: Fit
+    floor: float
+    least: float
+    joint: bool = False
+
+    def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[Reading]:
+        """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
+        nothing = self._judged((), self.right)
+        best, beam = [nothing], [nothing]
+        seen: set[frozenset[int]] = set()
+        least, tried = min(nothing.score, most), 0
+        bound = self.scored((), self.right, self.fit.rest).score  # no combination leaves less than the fit
+        for _ in range(MOST):
+            longer: list[Reading] = []
+            for reading in beam:
+                groups = {cause.group for cause in reading.causes}
+                cost = bound + sum(cause.cost for cause in reading.causes)
+                for cause in causes:
+                    key = frozenset((*map(id, reading.causes), id(cause)))
+                    if cost + cause.cost > least or cause.group in groups or key in seen:
+                        continue
+                    tried += 1
+                    if tried > ENOUGH:
+                        break
+                    if cause.stage != "integrator":  # whose first step depends on the program before it
+                        seen.add(key)
+                    extended = None if _clash(reading.causes, cause) else self._with(reading, cause)
+                    if extended is not None:
+                        longer.append(extended)
+                        least = min(least, extended.score)
+            longer.sort(key=lambda reading: reading.score)
+            best += longer[:BEAM]
+            # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
+            beam = [*longer[:BEAM], *sorted(longer[BEAM:], key=lambda reading: reading.rest)[:ASIDE]]
+            if not beam:
+                break
+        best.sort(key=lambda reading: reading.score)
+        first = self._exchanged(best[0], causes)
+        named = first if self.joint else self._exactly_named(first, causes)
+        return [named, *(reading for reading in best if reading is not first)]
+
+    def _exchanged(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+        """Return the best reading that comes from one by leaving causes out, or taking others of their groups."""
+        readings = [reading]
+        for cause in reading.causes:
+            fewer = self.without(reading, [cause])
+            same_group = [other for other in causes if other.group == cause.group and other is not cause]
+            exchanged = [self._with(fewer, other) for other in same_group if not _clash(fewer.causes, other)]
+            readings += [fewer, *filter(None, exchanged)]
+        best = readings[first_least([10**other.score for other in readings])]
+        return best if best is reading else self._exchanged(best, causes)
+
+    def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+        """Put a named cause in place of a fitted number that is as good as equal to its own: that is no accident."""
+        for cause in reading.causes:
+            if not cause.free or cause.stage == "integrator":
+                continue
+            value = reading.value(cause)
+            if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
+                sign = next(other for other in causes if other.id == "coriolis_sign")
+                together = tuple(sign if other is cause else other for other in reading.causes)
+                return self._judged(together, sign.change(reading.program.changed(rate=self.right.rate)))
+            for other in causes:
+                if other.free or other.group != cause.group:
+                    continue
+                program = other.change(reading.program)
+                exact = float(getattr(program, cause.free))
+                if exact != value and abs(exact - value) <= SAME * abs(value):
+                    together = tuple(other if before is cause else before for before in reading.causes)
+                    return self._judged(together, program)
+        return reading
+
+    def _with(self, reading: Reading, cause: Cause) -> Reading | None:
+        program = cause.change(reading.program)
+        if not program.sensible:
+            return None
+        together = (*reading.causes, cause)
+        free = [part.free for part in together if part.free]
+        if not free:
+            return self._judged(together, program)
+        if len(free) > 3:
+            return None
+        if program.method is not None and not program.step:
+            theta = reading.program.theta()
+            omega = math.sqrt(abs(theta[5])) or 1.0
+            square, drag = self._shown(reading.program)
+            guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
+            tried = [self._judged(together, program.changed(step=step)) for step in guesses if step > 0]
+            program = tried[first_least([reading.rest for reading in tried])].program
+        goal = np.zeros(len(self._triangle))
+        fitted, _ = adjusted(program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint)
+        return self._judged(together, fitted)
+
+    def _shown(self, program: Program) -> tuple[float, float]:
+        """Return ω² and the drag that the rows ask of a program, its release free: other numbers may stand for them."""
+        theta, free = program.theta(), list(self.fit.free)
+        columns = [free.index(i) for i in (5, 6, 9, 10) if i in free]
+        change = best_change(self._triangle[:, columns], self._off(program))
+        return -float(theta[5] + change[0]), float(theta[6] + change[1])
+
+    def drifts(self, case: Case, program: Program) -> bool:
+        """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
+        columns, free = len(self.fit.slopes) // len(case.rows.times), list(self.fit.free)
+        off = (case.left(program)[:, :columns] / math.sqrt(len(case.rows.times))).ravel()
+        pull, drag, enough = free.index(5), free.index(6), math.hypot(self.floor, self.fit.rest)
+
+        def left(*numbers: int) -> float:
+            slopes = self.fit.slopes[: len(off), numbers]
+            return float(np.linalg.norm(off - slopes @ best_change(slopes, off)))
+
+        return left(pull, drag) <= enough < min(left(pull), left(drag))
+
+    def uncertainty(self, reading: Reading, cause: Cause, resolution: float) -> float:
+        """Return by how much a fitted number may be off: the residual over how the rows answer to it.
+
+        A residual below the resolution, in m, is rounding and says nothing.
+        """
+        value = reading.value(cause)
+        nudge = _nudge(reading.program, cause.free)
+        moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(reading.program)
+        answer = float(np.linalg.norm(moved)) / nudge
+        return max(reading.rest, resolution) / answer if answer else math.inf
+
+    def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
+        off = float(np.linalg.norm(self._off(program)))
+        return self.scored(together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf)
+
+    def without(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+        """Return a reading without some of its causes, the other fitted numbers as they were."""
+        program = self.right
+        together = tuple(cause for cause in reading.causes if cause not in causes)
+        for cause in together:
+            program = cause.change(program)
+            if cause.free:
+                program = program.changed(**{cause.free: reading.value(cause)})
+        return self._judged(together, program)
+
+    def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:
+        """Return a combination that leaves `rest`, a root mean square in m, with its score."""
+        low = max(1.2 * self.least, 1e-3 * self.floor)
+        score = math.inf
+        if math.isfinite(rest):
+            score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(max(rest, low) / low)
+        return Reading(together, program, rest, score + sum(cause.cost for cause in together), self)
+
+    def _off(self, program: Program) -> Array:
+        """Return the vector whose length is the root mean square, in m, between a program and the fit."""
+        change = self.fit.theta - program.theta()
+        return np.asarray(self._triangle @ change[list(self.fit.free)])
+
+    @cached_property
+    def _triangle(self) -> Array:
+        """The slopes with as many rows as there are numbers: products with it are as long as with them."""
+        slopes = self.fit.slopes
+        return np.asarray(np.linalg.qr(slopes, mode="r")) if np.isfinite(slopes).all() else slopes
+
+
+def adjusted(
+    program: Program, names: Sequence[str], rows_of: Callable[[Program], Array], goal: Array, **options: Any
+) -> tuple[Program, float]:
+    """Return a program, some of its numbers moved to where the rows it makes come nearest to a goal, and the distance.
+
+    Further arguments are those of `gauss_newton`.
+    """
+
+    def rows_with(values: Array) -> Array:
+        moved = program.with_inputs(names, values)
+        return (rows_of(moved) if moved.sensible else np.full_like(goal, np.nan)).ravel()
+
+    start = np.array([float(getattr(program, name)) for name in names])
+    nudges = np.array([_nudge(program, name) for name in names])
+    values, left = gauss_newton(by_differences(rows_with, goal.ravel(), nudges), start, **options)
+    return program.with_inputs(names, values), left
+
+
+def _nudge(program: Program, name: str) -> float:
+    """Return a change of a number that is small for it."""
+    return 1e-6 * max(abs(float(getattr(program, name))), SMALLEST.get(name, 1e-3))
+
+
+def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
+    """Return whether a cause would undo another: no rotation leaves nothing to be said of the Coriolis force."""
+    words = {part.id for part in (*together, cause)}
+    groups = {part.group for part in (*together, cause)}
+    if "no_rotation" in words:
+        return bool(groups & {"latitude", "frame", "coriolis", "turn"})
+    return "no_coriolis" in words and bool(groups & {"frame", "turn"})

@@ -1,0 +1,170 @@
+"""TRUSTED. Sections of a motion: zeros of affine forms of position and velocity (THEOREM.md, section 13)."""
+
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, arb_poly, ctx, fmpz_poly
+
+from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, fixed, size, times, total, upper
+from .course import FINISHED, Course
+from .printed import check_possible, check_rows, document, lines_of, single_and_other
+from .shapes import Covered, EnclosedPassage, ProvedSections
+from .six_columns import cut
+from .system import SceneBalls
+from .transits import Scan, Slope, sign
+from .tube import state
+
+HEADER, WAYS = "k,t,direction,x,y,z,vx,vy,vz,bound", {"highest": -1, "lowest": 1}
+
+
+def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
+    """Return the form a·r + b·v - d of a section's word, in the axes of the proof."""
+    kind, _, azimuth = word.partition(" ")
+    zero, (sin, cos) = [arb(0)] * 3, ball(Fraction(azimuth.removesuffix("@0") or 0) / 180).sin_cos_pi()
+    along, rest = balls.turned([cos, sin, arb(0)], 1), [UNIT] * 3
+    if kind != "gate":
+        return zero, along if kind == "turn" else times(-1, balls.c), arb(0)
+    if azimuth.endswith("@0"):
+        return balls.turned([-sin, cos, arb(0)], 1), zero, arb(0)
+    for _ in range(balls.prec):
+        pull = add(balls.c, times(-1, cross(balls.turning, cross(balls.turning, rest))))
+        demand(dot(pull, pull) > 0, "so fast a rotation singles out no rest position, which the gate goes through")
+        rest = times(1 / dot(pull, pull).sqrt(), pull)
+    return (across := cross(along, balls.c)), zero, dot(across, rest)
+
+
+def vanishes_at_release(balls: SceneBalls, word: str) -> bool:
+    """Return whether exact zeros of the inputs show that F(0) = 0, for every pendulum (Lemma 13.2)."""
+    kind, _, azimuth = word.partition(" ")
+    (x, y, _), (vx, vy, _) = balls.release
+    if kind in WAYS:
+        # c has no component to the east
+        return bool(balls.level and (balls.upright or vy.is_zero()))
+    sin, cos = ball(Fraction(azimuth.removesuffix("@0")) / 180).sin_cos_pi()
+    if kind == "turn":
+        return bool((vx * cos + vy * sin).is_zero())
+    return azimuth.endswith("@0") and (y * cos - x * sin).is_zero()
+
+
+class Form(Slope):
+    """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'.
+
+    `slow` says that the form is exactly 0 at the release.
+    """
+
+    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
+        piece = covered.piece
+        eta, u, bend = covered.tube
+        h, bits = piece.k.h, piece.step.bits
+        # integers over 2^bits stand for h a, b and h d; by how much they miss these, the radii of the balls included
+        a_whole, a_miss = fixed(times(h, a), bits)
+        b_whole, b_miss = fixed(b, bits)
+        d_whole, d_miss = fixed([h * d], bits)
+        self.covered, self.piece = covered, piece
+        self.centre, self.unit = ball(piece.step.centre), piece.unit**2
+        self.slow, self.flat = slow, False
+
+        # Lemma 13.1: |p| <= P, |p'| <= K, |p''| <= O K
+        position, speed = piece.sizes.p, piece.sizes.k
+        bending = max(map(len, piece.p)) * speed
+        self.lost = a_miss * position + b_miss * speed + d_miss, a_miss * speed + b_miss * bending
+
+        terms = zip([*a_whole, *b_whole, *d_whole], [*piece.p, *piece.v, fmpz_poly([-piece.unit])], strict=True)
+        f = arb_poly(sum((n * g for n, g in terms if n), fmpz_poly()))
+        a_size, b_size = h * size(a), size(b)
+        self.hold(f, a_size * eta + b_size * u, a_size * u + b_size * bend)
+
+    def hold(self, f: Any, *offs: arb) -> None:
+        """Take f, and what it and f' miss; both in few bits and orders as well, which are enough for most signs."""
+        both = zip((f, f.derivative()), offs, self.lost, strict=True)
+        self.forms = [(g, arb(0, upper(off + lost))) for g, off, lost in both]
+        with ctx.workprec(SHORT):
+            self.short = [cut(g * (1 / arb(self.unit)), SHORT // 2) + off for g, off in self.forms]
+
+    def at(self, n: int, s: arb) -> Any:
+        """Return a ball that contains the form (n = 0) or its rate (n = 1) on the ball `s`."""
+        plain = self.short[n](s) if ctx.prec == SHORT else super().at(n, s)
+        # about the middle where the series about 0 shows no sign, and there may be one: both ends have the same
+        if ctx.prec == SHORT and not sign(plain) and self.short[n](s.lower()) * self.short[n](s.upper()) > 0:
+            return self.short[n](arb_poly([s.mid(), 1]))(s - s.mid())
+        return plain
+
+    def row(self, s: arb) -> Vector:
+        """Return the state over the length."""
+        turned, (r, v) = self.piece.balls.turned, state(self.covered, s)
+        return [*turned(r, -1), *turned(times(1 / self.piece.k.h, v), -1)]
+
+
+class Apsis(Form):
+    """The form of highest and lowest points, b·v, by bounds of second order: v is along the sphere (Lemma 13.4)."""
+
+    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
+        super().__init__(covered, a, b, d, slow)
+        piece, (eta, u, bend), long = self.piece, covered.tube, size(b)
+        miss, bits = dot(piece.p, piece.v), piece.step.bits
+        x = [f(UNIT) / piece.unit for f in (*piece.p, *piece.v, *(f.derivative() for f in piece.v))]
+        aside, low, most, lost = size(cross(x[:3], b)), dot(x[:3], b).abs_lower(), size(x[3:6]), miss.derivative()
+        if low > 0:
+            first = aside * u + long * (eta * (most + u) + total(miss, 2 * bits))
+            second = eta * (size(x[6:]) + bend) + u * (2 * most + u) + total(lost, 2 * bits)
+            self.hold(self.forms[0][0], long / low * first, long / low * (aside * bend + long * second))
+
+    def row(self, s: arb) -> Vector:
+        """Return the state over the length, about the middle of `s`."""
+        piece, (eta, u, _), (middle, off) = self.piece, self.covered.tube, (arb_poly([s.mid(), 1]), s - s.mid())
+        x = [arb_poly(f)(middle)(off) / piece.unit for f in (*piece.p, *piece.v)]
+        r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
+        return [*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)]
+
+
+class Sections:
+    """Scans a course for the passages of sections."""
+
+    def __init__(self, course: Course, words: tuple[str, ...], apsis: Any = Form) -> None:
+        self.course, self.words, self.apsis = course, words, apsis
+        self.scans = [self.scan(course.balls, word) for word in words]
+        course.followers.append(self)
+
+    def scan(self, balls: SceneBalls, word: str) -> Scan:
+        """Return a scan for the passages of a section."""
+        with ctx.workprec(balls.prec):
+            f, kind = form(balls, word), self.apsis if word in WAYS else Form
+            slow = vanishes_at_release(balls, word)
+        return Scan(balls, lambda covered: kind(covered, *f, slow), EnclosedPassage, WAYS.get(word, 0))
+
+    def advance(self, covered: Covered) -> None:
+        """Take the next step's tube."""
+        demand(not self.course.open, "a tube comes from the course alone, while it takes a step")
+        for scan in self.scans:
+            scan.advance(covered)
+
+    def finish(self, proved: Any) -> ProvedSections:
+        """Return the passages in the course, whose result is `proved`."""
+        right = proved in FINISHED and proved.times is self.course.times
+        demand(right and {scan.time for scan in self.scans} == {proved.times[-1]}, "the proof is of another course")
+        found = zip(self.words, self.scans, strict=True)
+        FINISHED.add(sections := ProvedSections(proved, {word: tuple(scan.finish()) for word, scan in found}))
+        return sections
+
+
+def check_sections(texts: Any, sections: Any, proved: Any) -> None:
+    """Demand that sections.csv and the manifest state the passages that were proved, of just these sections."""
+    manifest = document(texts["manifest.json"])
+    said, words = manifest["sections"], [*sections.passages]
+    right = sections in FINISHED and sections.proved is proved
+    right &= "; ".join(words) == manifest["scene"]["run"]["sections"]
+    demand(right and [*said["counts"]] == [*said["possible"]] == words, "misprint: other sections")
+
+    rows, names = list[Any](), list[str]()
+    for word, zeros in sections.passages.items():
+        ones, others = single_and_other(zeros)
+        rows += [[k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)]
+        names += [word] * len(ones)
+        check_possible(others, said["possible"][word], proved.times[-1])
+        demand(said["counts"][word] == len(ones), "misprint: the count of passages")
+
+    header, *lines = lines_of(texts["sections.csv"])
+    demand([line[0] for line in lines] == names and header[0] == "section", "misprint: other sections")
+    text = "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
+    least = {name: Fraction(bound) for name, bound in said["bounds"].items()}
+    check_rows(text, HEADER, rows, least, said["decimals"])

@@ -1,0 +1,170 @@
+"""TRUSTED. Data types of the proof: intervals and transits that it gives, bounds inside it. No arithmetic here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from flint import arb
+
+from ...scenes.inputs import Inputs
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A closed interval with exact endpoints."""
+
+    low: Fraction
+    high: Fraction
+
+
+State = tuple[Interval, ...]  # x, y, z in m, vx, vy, vz in m/s
+
+
+@dataclass(frozen=True, slots=True)
+class EnclosedZero:
+    """A single zero of xdot or of a section's form ("one"), or an interval that may hold zeros ("possible")."""
+
+    parity: str  # "one"; of possible zeros "odd" (so at least one), "even" or "unknown"
+    direction: int  # +1 where it goes from - to +, 0 if not known
+    t: Interval
+    x: Interval
+    y: Interval
+    z: Interval
+
+    @property
+    def kind(self) -> str:
+        """Kind of transit: "one" where it is proved to be a single zero, else "possible"."""
+        return "one" if self.parity == "one" else "possible"
+
+
+@dataclass(frozen=True, slots=True)
+class EnclosedTransit(EnclosedZero):
+    """A zero of xdot; SI units."""
+
+    vy: Interval
+    ax: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class EnclosedPassage(EnclosedZero):
+    """A zero of a section's form; SI units."""
+
+    vx: Interval
+    vy: Interval
+    vz: Interval
+
+
+@dataclass(frozen=True, eq=False)
+class Proved:
+    """The result of a proof: for these inputs, intervals of the state at each of `times` and of every transit."""
+
+    inputs: Inputs
+    times: tuple[Fraction, ...]
+    states: tuple[State, ...]
+    transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or `still`
+    still: bool  # xdot is identically zero
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedFunction:
+    """A golden function as it was bounded."""
+
+    proved: Proved  # in the same run
+    facts: dict[str, Any]  # what function.json says of its coefficients
+    bounds: dict[str, Fraction]  # of what it evaluates to, in m and m/s
+    data: bytes  # function.f64
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedSections:
+    """The passages of each section, by its word."""
+
+    proved: Proved  # in the same run
+    passages: dict[str, tuple[EnclosedPassage, ...]]
+
+
+class Box(NamedTuple):
+    """A scene's inputs, and the least and the largest of each of them."""
+
+    inputs: Inputs
+    low: Inputs
+    high: Inputs
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedBox:
+    """Proved for all inputs of a box: states at `times`, and each zero that may come up to the last of them."""
+
+    box: Box
+    times: tuple[Fraction, ...]
+    states: tuple[State, ...]
+    transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or xdot is identically zero
+    sections: dict[str, tuple[EnclosedPassage, ...]]  # by their words
+
+
+class Led(NamedTuple):
+    """A zero in the scene's own motion, or None, and its derivatives to each input, or nothing."""
+
+    own: Any
+    times: tuple[Interval, ...] = ()
+    azimuths: tuple[Interval, ...] = ()  # about the plumb line, in degrees, at highest and lowest points
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedDerivatives:
+    """Derivatives to `names`, for all inputs of a box: of the states at its times, of the times of transits."""
+
+    proved: ProvedBox
+    names: tuple[str, ...]
+    states: tuple[tuple[State, ...], ...]  # per time, per name
+    transits: tuple[Led, ...]
+    passages: dict[str, tuple[Led, ...]]  # of highest and lowest points, by word
+
+
+class Tangent(NamedTuple):
+    """Polynomials near the derivative of the position on a step, over `unit`; what they and their rates miss."""
+
+    rows: list[Any]
+    unit: Any
+    error: arb
+    rate: arb
+
+
+class Sizes(NamedTuple):
+    """Sup norms on |s| <= 1: the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
+
+    d1: arb
+    d2: arb
+    p: arb
+    k: arb
+    tau: arb
+    d1_rate: arb
+
+
+class Tube(NamedTuple):
+    """Bounds of |r - p|, |r' - p'|, |r'' - p''| on a step."""
+
+    eta: arb
+    u: arb
+    a: arb
+
+
+class Covered(NamedTuple):
+    """A step's piece with the tube that the motion stays in: what `advance` returns, and output and scan take."""
+
+    piece: Any
+    tube: Tube
+
+
+Proposal = list[list[list[int]]]  # six columns of six polynomials of integers
+
+
+class Leaf(NamedTuple):
+    """A part of a step where xdot may be 0: `bend` is the sign of xddot (M, monotone), or 0 (R, undecided)."""
+
+    bend: int
+    low: arb
+    high: arb
+    slope: Any

@@ -1,0 +1,1 @@
+"""SIMD lanes, and polynomials in double precision: shared by the engines limbs and octet."""

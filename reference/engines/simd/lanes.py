@@ -1,0 +1,245 @@
+"""How functions are compiled, and SIMD lanes: eight doubles side by side, in any machine's vector registers.
+
+No option lets arithmetic be rearranged, and the same bits come out with and without FMA, on every machine. In limbs
+sums and products are exact, so it makes no difference whether the compiler fuses them (`plus_product`); in octet each
+is rounded once (`fma`).
+
+numba optimises a function by itself, and again in its callers, in their callers and so on. So what is called at one
+place, and is large, is `merged` into its caller: a first use takes a third less.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from functools import partial, wraps
+from typing import Any, TypeVar
+
+import numba.extending
+import numpy as np
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba import njit, types
+from numba.core import cgutils
+
+from ...numbers.precision import Array
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}  # no reference counting: arrays come from the caller
+_CALLEE = OPTIONS | {"no_cfunc_wrapper": True}  # C does not call it
+
+
+def compiled(function: Function) -> Function:
+    """Compile with numba, to be called from compiled functions."""
+    callee: Function = numba.extending.register_jitable(**_CALLEE)(function)
+    return callee
+
+
+def inlined(function: Function) -> Function:
+    """Compile into its callers: for small parts of innermost loops, where a call would cost more than the work."""
+    callee: Function = numba.extending.register_jitable(forceinline=True, **_CALLEE)(function)
+    return callee
+
+
+def merged(function: Function) -> Function:
+    """Take the place of the only call, before anything is compiled."""
+    callee: Function = njit(inline="always", **OPTIONS)(function)
+    return callee
+
+
+LANES = 8
+VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+ZERO = ir.Constant(VECTOR, [0.0] * LANES)
+FUSE = ("contract",)
+_extending: Any = numba.extending  # untyped
+_insert: Any = cgutils.get_or_insert_function
+_Type: Any = types.Type
+
+
+def aligned(count: int) -> Array:
+    """Return zeros that start on a cache line, so that each row fills one."""
+    room = np.zeros(count + LANES)
+    start = -room.ctypes.data // room.itemsize % LANES
+    return room[start : start + count]
+
+
+class _Lanes(_Type):  # type: ignore[misc]
+    """The type of eight doubles."""
+
+
+Lanes: Any = _Lanes(name="Lanes")
+
+
+@_extending.register_model(_Lanes)
+class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, lanes_type: Any) -> None:
+        super().__init__(manager, lanes_type, VECTOR)
+
+
+def instruction(generator: Any) -> Any:
+    """Register a generator of LLVM instructions as a compiled function; untyped for a type checker."""
+    return _extending.intrinsic(generator)
+
+
+_BLANK, _FIRST = ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.IntType(32), 0)
+_EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+
+
+def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
+    """Return what LLVM's function of this name makes of vectors."""
+    function = _insert(builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64")
+    return builder.call(function, vectors)
+
+
+def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+    """Return the pointer to eight elements of a flat array, from `index` on."""
+    data = context.make_array(array_type)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
+
+
+def lanewise(write: Callable[..., Any], taken: Any = Lanes, result: Any = Lanes) -> Any:
+    """Register `write(builder, *vectors)`, which makes eight doubles of one or more eights, as a compiled function.
+
+    Args:
+        write: makes the instructions.
+        taken: the type of what it takes, where that is not eights.
+        result: the type of what it makes, likewise.
+    """
+
+    @wraps(write)
+    def typed(_: Any, *vectors: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return write(builder, *arguments)
+
+        return result(*[taken] * len(vectors)), generate
+
+    return instruction(typed)
+
+
+@instruction
+def load(_: Any, array: Any, index: Any) -> Any:
+    """Return eight elements of a flat array from `index` on."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        vector = builder.load(address(context, builder, signature.args[0], *arguments))
+        vector.align = 8
+        return vector
+
+    return Lanes(array, types.intp), generate
+
+
+@instruction
+def store(_: Any, array: Any, index: Any, value: Any) -> Any:
+    """Write eight elements of a flat array from `index` on."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        write = builder.store(arguments[2], address(context, builder, signature.args[0], *arguments[:2]))
+        write.align = 8
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, Lanes), generate
+
+
+@partial(lanewise, taken=types.float64)
+def spread(builder: Any, value: Any) -> Any:
+    """Return the same double in every lane."""
+    return builder.shuffle_vector(builder.insert_element(_BLANK, value, _FIRST), _BLANK, _EVERYWHERE)
+
+
+@lanewise
+def plus_product(builder: Any, total: Any, a: Any, b: Any) -> Any:
+    """Return total + a b in each lane, where both operations are exact: the compiler may fuse them."""
+    return builder.fadd(total, builder.fmul(a, b, flags=FUSE), flags=FUSE)
+
+
+@lanewise
+def fma(builder: Any, total: Any, a: Any, b: Any) -> Any:
+    """Return total + a b in each lane, rounded once, also where the processor has no such instruction."""
+    return _by_name(builder, "fma", a, b, total)
+
+
+@lanewise
+def nearest(builder: Any, a: Any) -> Any:
+    """Return each lane rounded to the nearest integer."""
+    return _by_name(builder, "rint", a)
+
+
+@partial(lanewise, result=types.boolean)
+def occupied(builder: Any, a: Any) -> Any:
+    """Return true if any lane is not zero."""
+    whole = builder.bitcast(builder.fcmp_unordered("!=", a, ZERO), ir.IntType(LANES))
+    return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
+
+
+@lanewise
+def at_least(builder: Any, a: Any, b: Any) -> Any:
+    """Return 1 in each lane where a >= b, else 0."""
+    return builder.uitofp(builder.fcmp_ordered(">=", a, b), VECTOR)
+
+
+@lanewise
+def magnitude(builder: Any, a: Any) -> Any:
+    """Return |a| in each lane."""
+    return _by_name(builder, "fabs", a)
+
+
+@lanewise
+def larger(builder: Any, a: Any, b: Any) -> Any:
+    """Return the larger of a and b in each lane, b where one is not a number."""
+    return builder.select(builder.fcmp_ordered(">", a, b), a, b)
+
+
+@lanewise
+def where(builder: Any, truth: Any, a: Any, b: Any) -> Any:
+    """Return a in each lane where `truth` is not zero, else b."""
+    return builder.select(builder.fcmp_unordered("!=", truth, ZERO), a, b)
+
+
+_WHOLES = ir.VectorType(ir.IntType(64), LANES)
+_SCALE, _BIAS = 2.0**52, 1023.0
+
+
+@lanewise
+def log2_of(builder: Any, a: Any) -> Any:
+    """Return log2 of positive numbers, off by at most 0.09: exact for powers of two, linear between them."""
+    whole = builder.sitofp(builder.bitcast(a, _WHOLES), VECTOR)
+    scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
+    return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
+
+
+@lanewise
+def exp2_of(builder: Any, a: Any) -> Any:
+    """Return the inverse of `log2_of`, for numbers between -1022 and 1023."""
+    raised = builder.fadd(a, ir.Constant(VECTOR, [_BIAS] * LANES))
+    scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
+    return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
+
+
+def shuffled(order: tuple[int, ...], name: str) -> Any:
+    """Return a compiled function that takes lane order[i] to lane i; lane i becomes 0 where order[i] is negative."""
+    places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order])
+
+    def shuffle(builder: Any, a: Any) -> Any:
+        return builder.shuffle_vector(a, ZERO, places)
+
+    shuffle.__name__ = shuffle.__qualname__ = name
+    return lanewise(shuffle)
+
+
+def _binary(operation: Any, name: str) -> None:
+    @lanewise
+    def apply(builder: Any, a: Any, b: Any) -> Any:
+        return getattr(builder, name)(a, b)
+
+    # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
+    @_extending.overload(operation, jit_options=OPTIONS | {"forceinline": True})
+    def choose(a, b):  # type: ignore[no-untyped-def]
+        if isinstance(a, _Lanes) and isinstance(b, _Lanes):
+            return lambda a, b: apply(a, b)  # noqa: PLW0108
+        return None
+
+
+_binary(operator.add, "fadd")
+_binary(operator.sub, "fsub")
+_binary(operator.mul, "fmul")
+_binary(operator.truediv, "fdiv")
