@@ -57,7 +57,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: errors": f"{SCORE}errors.py",
     "compare/score: verdict judge": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING}",
     "compare/score: document input_floor": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py",
-    "compare/score: since": f"{SCORE}verdict.py {SCORE}baseline.py",
+    "compare/diagnosis: document since": f"{SCORE}verdict.py {SCORE}baseline.py",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
     "reference/engines: passages": f"{PASSAGES} {SOLVER}sections.py",
     "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
