@@ -846,7 +846,7 @@ TRUE_BUT_WIDER = {"ranges: a digit fewer": AGAIN}
 
 
 def ranges_of(scene):
-    return reference.solve(SCENES[scene], uncertain=BOX, engine="limbs")
+    return reference.prove_ranges(SCENES[scene], widths=BOX, engine="limbs")
 
 
 @pytest.fixture(scope="module")

@@ -244,11 +244,11 @@ def test_what_a_proof_and_ranges_are_asked_for_is_handed_on_and_else_refused(mon
     scene, *others = reference.solve(paris, level="enclosed", engine="limbs", **wishes)
     assert (scene.run.level, others) == ("enclosed", ["limbs", None, True, "sampled", True])
     for level in (None, "enclosed"):
-        scene, *others = reference.solve(paris, level=level, engine="limbs", uncertain=wide)
+        scene, *others = reference.prove_ranges(paris, level=level, engine="limbs", widths=wide)
         assert (scene.run.level, others) == ("enclosed", [wide, "limbs", None, {"derivatives": False}])
     for wish in (*wishes.items(), ("digits", 12), ("level", "confirmed")):
         with pytest.raises(InputError, match="together with uncertain"):
-            reference.solve(paris, uncertain=wide, **dict([wish]))
+            reference.prove_ranges(paris, widths=wide, **dict([wish]))
     for wish in wishes.items():
         with pytest.raises(InputError, match="the level enclosed"):
             reference.solve(paris, **dict([wish]))
