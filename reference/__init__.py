@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .solver.ranges import Ranges as Ranges
     from .solver.solution import Solution as Solution
     from .solver.solve import solve as solve
+    from .solver.uncertain import prove_ranges as prove_ranges
     from .sweeps.sweep import Swept as Swept
     from .sweeps.sweep import load_sweep as load_sweep
     from .sweeps.sweep import sweep as sweep
@@ -58,6 +59,7 @@ __getattr__, __dir__, __all__ = lazy(
         "solver.ranges": "Intervals Ranges",
         "solver.solution": "Solution",
         "solver.solve": "solve",
+        "solver.uncertain": "prove_ranges",
         "sweeps.sweep": "Swept load_sweep sweep",
     },
 )

@@ -180,7 +180,7 @@ PYTHON = {
     'reference.integrate(["a"], lambda *_: ["x"], [1], [0, 1])': "a list of rates, numbers or expressions",
     'reference.integrate(["a"], DECAY, [1], [0, 1], number="double")': "DOUBLE, LONG_DOUBLE or real(BITS)",
     "reference.write(SOLVED, 3)": "folder: got '3', expected the folder to write to",
-    'reference.solve("paris", uncertain="length=±0.001")': "a mapping such as {'pendulum.length': '±0.001'}",
+    'reference.prove_ranges("paris", widths="length=±0.001")': "a mapping such as {'pendulum.length': '±0.001'}",
     'reference.sweep("paris", {"site.latitude": [0]}, level="sure")': "There are computed, self_consistent",
 }
 

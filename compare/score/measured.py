@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from reference import InputError, Ranges
+from reference import InputError, Ranges, prove_ranges
 from reference.errors import counted
 from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
-from reference.solver.uncertain import solve_ranges
 
 from ..candidates.candidate import Candidate
 from ..candidates.clock import shown
@@ -188,7 +187,7 @@ def _proved(
     grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if wanted or not last else [])})
     sought = {"run.transits": str(wanted and not section).lower(), "run.sections": section or ""}
     box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
-    return solve_ranges(ranges.scene.with_values(sought), box, report=report, times=grid)
+    return prove_ranges(ranges.scene.with_values(sought), box, times=grid, report=report)
 
 
 def _fit(times: Sequence[Fraction], end: Fraction) -> bool:

@@ -126,7 +126,9 @@ def command(
     scene = load_scene(scene_word, replacements(set_, options))
     if widths := widths_by_name(uncertain, scene):
         refuse({"--digits": digits, **proving}, BESIDE_RANGES)
-        _generate_ranges(scene, level, widths, engine, out, as_json)
+        if level not in (None, "enclosed"):
+            raise InputError("--level", level, "enclosed, together with uncertain inputs", "Ranges are always proved.")
+        _generate_ranges(scene, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder
     from ..dataset.record import making_of
@@ -175,9 +177,7 @@ def command(
     typer.echo(f"CPU {solution.cpu_s:.2f} s: {told}")
 
 
-def _generate_ranges(
-    scene: Scene, level: str | None, widths: dict[str, str], engine: str, out: Path | None, as_json: bool
-) -> None:
+def _generate_ranges(scene: Scene, widths: dict[str, str], engine: str, out: Path | None, as_json: bool) -> None:
     """Prove intervals for uncertain inputs and write them.
 
     Raises:
@@ -187,13 +187,13 @@ def _generate_ranges(
     from ..dataset.place import GOLDEN, RANGES
     from ..dataset.ranges import period_texts, ranges_id, write_ranges
     from ..dataset.write import check_target
-    from ..solver.solve import solve
+    from ..solver.uncertain import prove_ranges
 
     if out is not None:
         check_target(out, RANGES)
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        ranges = solve(scene, uncertain=widths, level=level, engine=engine, report=report)
+        ranges = prove_ranges(scene, widths, engine=engine, report=report)
     folder = out or Path(GOLDEN, ranges_id(ranges))
     with stoppable("nothing half was written"):
         write_ranges(ranges, folder)

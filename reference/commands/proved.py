@@ -11,7 +11,7 @@ from ..numbers.precision import rounded_up
 from ..scenes.scene import Scene, unit_of
 from ..solver.solve import solve
 from ..solver.swing import Swing, left_out, left_out_texts
-from ..solver.uncertain import exact_texts, widths_of
+from ..solver.uncertain import exact_texts, prove_ranges, widths_of
 from ..system.workers import Emit
 
 FIRST = 3  # transits, and passages of each section, that are printed for uncertain inputs
@@ -61,7 +61,7 @@ def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
     scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
     texts = exact_texts(widths_of(scene, widths))
     with in_background(True, _send_limits, scene, texts) as limits:  # it takes as long as the intervals do
-        ranges = solve(scene, uncertain=widths, derivatives=True, sections=[*dict.fromkeys((*words, "highest"))])
+        ranges = prove_ranges(scene, widths, derivatives=True, sections=[*dict.fromkeys((*words, "highest"))])
         tables = {"transit": ranges.transits, **{word: ranges.sections[word].table for word in words}}
         first = {word: [list(ends(*t)) for t in table.exact("t")[:FIRST]] for word, table in tables.items()}
         return {
@@ -83,7 +83,7 @@ def _send_limits(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
     With it go the derivatives of period and precession to the input, as intervals.
     """
     closer = {name: f"±{width}e-{CLOSER}" for name, width in uncertain.items()}
-    near = solve(scene, uncertain=closer, derivatives=True, sections="highest")
+    near = prove_ranges(scene, closer, derivatives=True, sections="highest")
     limits = {}
     for name, (far, share) in near.shares().items():
         derivative, moves = near.derivative(name), {"moves_period_s": rounded_up(far * 10**CLOSER), "share": share}

@@ -17,7 +17,7 @@ from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..scenes.scene import parse_scene
 from ..solver.ranges import Ends, Intervals, Ranges
 from ..solver.solution import Passages, exact_decimals
-from ..solver.solve import solve
+from ..solver.uncertain import prove_ranges
 from ..system.documents import json_document
 from .files import LINE_ENDS
 from .manifest import differences, text_of
@@ -41,7 +41,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
     """Write ranges: `ranges.json`, which says the scene, the box and the proof, and the tables; whole or not at all.
 
     Args:
-        ranges: what `solve(…, uncertain=…)` returned.
+        ranges: what `prove_ranges` returned.
         folder: older ranges there are replaced.
 
     Raises:
@@ -49,7 +49,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
         DatasetError: a table does not hold what was proved; nothing is written then.
     """
     if not isinstance(ranges, Ranges):
-        raise InputError("ranges", ranges, "what solve(…, uncertain=…) returns", "A Solution is written by write.")
+        raise InputError("ranges", ranges, "what prove_ranges returns", "A Solution is written by write.")
     folder = checked_path("folder", folder, "the folder to write to")
     check_target(folder, RANGES)
     texts = _texts(ranges)
@@ -89,12 +89,8 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
         printed, texts = _read(folder)
     except DatasetError as error:
         return error.problems
-    again = solve(
-        printed.scene,
-        uncertain=printed.uncertain,
-        engine=printed.engine,
-        derivatives=printed.derivatives,
-        report=report,
+    again = prove_ranges(
+        printed.scene, printed.uncertain, engine=printed.engine, derivatives=printed.derivatives, report=report
     )
     problems = [*_misprints(texts, again), *_other_facts(texts, again)]
     if recompute and not problems:

@@ -190,7 +190,7 @@ class Ranges:
         """
         derivatives, name = getattr(self.proof, "derivatives", None), full_name(name)
         if derivatives is None:
-            advice = "reference.solve(…, uncertain=…, derivatives=True)"
+            advice = "reference.prove_ranges(…, derivatives=True)"
             raise InputError("derivative", name, "ranges that were solved with derivatives", f"Write {advice}.")
         names = derivatives.names
         if name not in names:

@@ -8,57 +8,23 @@ finer run. For `computed` there is one run only, and for `enclosed` a proof (`en
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
-from ..model.sections import form_of
-from ..model.start import Start
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.fields import CONFIRMATIONS, Confirmation
-from ..scenes.scene import AnyScene, Scene, as_scene
+from ..scenes.scene import AnyScene, Scene
 from .agreement import Agreement, with_passage_errors, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import MAX_PREC, MAX_RAISES, Pace, Pilot, check_reach, out_of_reach
+from .request import requested_scene
 from .solution import CrossCheck, Passages, Solution, Source
-
-if TYPE_CHECKING:
-    from .ranges import Ranges
-
-
-class _Options(TypedDict, total=False):
-    """Options of `solve`, whether the inputs of a scene are certain or not."""
-
-    level: str | None
-    t_end: str | float | None
-    transits: bool | None
-    sections: str | Sequence[str] | None
-    engine: str | None
-    report: Report | None
-    derivatives: bool
-
-
-class _CertainOptions(_Options, total=False):
-    """Options where all inputs are certain."""
-
-    digits: int | None
-    audit: bool
-    confirm: Confirmation
-    function: bool
-
-
-@overload
-def solve(scene: AnyScene, *, uncertain: Mapping[str, Any], **options: Unpack[_Options]) -> Ranges: ...
-
-
-@overload
-def solve(scene: AnyScene, *, uncertain: None = None, **options: Unpack[_CertainOptions]) -> Solution: ...
 
 
 def solve(
@@ -74,9 +40,7 @@ def solve(
     confirm: Confirmation = "none",
     function: bool = False,
     report: Report | None = None,
-    uncertain: Mapping[str, Any] | None = None,
-    derivatives: bool = False,
-) -> Solution | Ranges:
+) -> Solution:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
 
     Args:
@@ -94,45 +58,26 @@ def solve(
             or "none".
         function: at the level enclosed, make the golden function as well: the motion at any time, `Solution.at`.
         report: called with the simulated time reached, in s.
-        uncertain: half of the width of inputs that are not known exactly, by name: {"pendulum.length": "±0.001"}. Then
-            intervals are proved that hold for every value of each of them, at the level enclosed; digits do not matter.
-        derivatives: with `uncertain`, prove derivatives to these inputs too: `Ranges.derivative`. It takes longer.
 
     Returns:
-        A `Solution`: binary64 arrays, exact values, and a bound on every number. With `uncertain` a `Ranges`: proven
-        intervals.
+        A `Solution`: binary64 arrays, exact values, and a bound on every number. Where inputs are known to intervals
+        only, `prove_ranges` returns intervals.
 
     Raises:
         InputError: a field of the scene is wrong.
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
-    proving = {"audit": audit, "confirm": confirm != "none", "function": function}
-    if uncertain is not None:
-        for name, value in {"digits": digits, **proving}.items():
-            if value:
-                advice = "Intervals have the digits they support."
-                raise InputError(name, value, "nothing together with uncertain", advice)
-        if level not in (None, "enclosed"):
-            raise InputError("level", level, "enclosed, together with uncertain", "Ranges are proved, or refused.")
-        level = "enclosed"
-    elif derivatives:
-        raise InputError("derivatives", True, "uncertain inputs, to which they are taken", "Give uncertain={…} too.")
     requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits, "sections": sections}
-    scene = as_scene(scene).with_values({f"run.{key}": value for key, value in requested.items() if value is not None})
+    scene = requested_scene(scene, requested)
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
     if confirm not in CONFIRMATIONS:
         raise InputError("confirm", confirm, in_words(CONFIRMATIONS))
+    proving = {"audit": audit, "confirm": confirm != "none", "function": function}
     for name, value in proving.items():
         if value and settings.level != "enclosed":
             raise InputError(name, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
-    for word in settings.sections or ():
-        form_of(word, Start.of(scene.exact, LONG_DOUBLE.prec))  # refuses a gate without a rest position before any work
     # a proof is not imported unless it is asked for
-    if uncertain is not None:
-        from .uncertain import solve_ranges
-
-        return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed
 

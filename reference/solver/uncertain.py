@@ -8,18 +8,19 @@ from fractions import Fraction
 from math import ceil
 from typing import Any
 
-from ..engines import AUTO
 from ..engines.plan import Report
+from ..engines.registry import checked
 from ..errors import InputError, unknown
 from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal
 from ..scenes.inputs import RELEASES, SITE
-from ..scenes.scene import Scene, checked_value, full_name
+from ..scenes.scene import AnyScene, Scene, checked_value, full_name
 from ..scenes.texts import without_sign
 from ..system.imports import needed
 from .pilot import check_reach
 from .proof_steps import Feed
 from .ranges import Intervals, Ranges
+from .request import requested_scene
 from .solution import exact_decimals, separated
 
 UNCERTAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in (*SITE, "inverse_flattening"))]
@@ -36,7 +37,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
             values that the input may have.
     """
     if not isinstance(uncertain, Mapping):
-        raise InputError("uncertain", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
+        raise InputError("widths", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
     widths: dict[str, Fraction] = {}
     have = scene.exact.by_name
     for word, text in uncertain.items():
@@ -98,31 +99,51 @@ def need_proof() -> None:
     needed("flint", "enclose", "uncertain", "a proof for a range of inputs", instead)
 
 
-def solve_ranges(
-    scene: Scene,
-    uncertain: Mapping[str, Any],
-    engine: str = AUTO,
-    report: Report | None = None,
+def prove_ranges(
+    scene: AnyScene,
+    widths: Mapping[str, Any],
+    *,
+    t_end: str | float | None = None,
+    transits: bool | None = None,
+    sections: str | Sequence[str] | None = None,
+    engine: str | None = None,
     times: Sequence[Fraction] | None = None,
     derivatives: bool = False,
+    report: Report | None = None,
 ) -> Ranges:
-    """Prove what holds for a scene with uncertain inputs, at its grid times, with the transits if it asks for them.
+    """Prove intervals that hold for every pendulum whose inputs lie in their ranges (THEOREM.md, sections 11 to 13).
 
-    Other `times` take the place of the grid's, from 0 on, increasing. With `derivatives` it proves these too.
+    Args:
+        scene: the scene, its inputs in the middle of their ranges: a scene, its id, the path of a TOML file, or nested
+            mappings.
+        widths: half of the width of each input that is not known exactly: {"pendulum.length": "±0.001"}; SI units,
+            angles in degrees.
+        t_end: end of the run in s; a number is taken as it is printed.
+        transits: whether to find every zero of xdot.
+        sections: other moments to find, such as ["highest", "gate 30"]: docs/scene.md has the words.
+        engine: "heyoka", "limbs", or None for the fastest that is installed.
+        times: in s, from 0 on and increasing, in place of the scene's grid.
+        derivatives: prove derivatives to these inputs too: `Ranges.derivative`. It takes longer, and may make every
+            interval narrower.
+        report: called with the simulated time reached, in s.
 
     Raises:
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
-        UnreachableError: the box is too wide, and it tells up to which time it holds.
+        UnreachableError: the ranges are too wide; it tells up to which time a proof holds.
     """
     need_proof()
     from ..enclosure.prove_box import enclose_box
     from ..enclosure.trusted.printed_box import end_of
     from ..enclosure.trusted.shapes import Box
 
-    widths = widths_of(scene, uncertain)
-    inputs, times = scene.exact, times or scene.exact.grid
+    settings = {"level": "enclosed", "t_end": t_end, "transits": transits, "sections": sections}
+    scene = requested_scene(scene, settings)
+    engine = checked(engine)
+    halves = widths_of(scene, widths)
+    inputs = scene.exact
+    times = times or inputs.grid
     end = times[-1]
-    texts = exact_texts(widths)
+    texts = exact_texts(halves)
     # its ends are exact: the inputs, less and plus half of each width
     box = Box(inputs, *(end_of(inputs, texts, side) for side in (-1, 1)))
     swing = abs(float(inputs.gravity / inputs.length)) ** 0.5
@@ -137,19 +158,19 @@ def solve_ranges(
     try:
         tell = report and (lambda part: report(part * float(end)))
         proof = enclose_box(
-            box, list(times), approximant, scene.run.transits, tell, widths, derivatives, scene.run.sections or ()
+            box, list(times), approximant, scene.run.transits, tell, halves, derivatives, scene.run.sections or ()
         )
     finally:
         for feed in feeds:
             feed.stop()
     proof = replace(proof, cpu_s=proof.cpu_s + feeds[-1].run_s)
-    transits = separated(proof.proved.transits or (), TRANSITS, end, Intervals)
+    found = separated(proof.proved.transits or (), TRANSITS, end, Intervals)
     return Ranges(
         scene,
         texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
-        *transits,
+        *found,
         feeds[-1].begun,
         {word: separated(zeros, SECTION, end, Intervals) for word, zeros in proof.proved.sections.items()},
         proof,

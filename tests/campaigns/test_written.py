@@ -726,7 +726,7 @@ RANGES = [
 def honest_ranges(tmp_path_factory):
     """Return ranges without a fault, and the folders that were written of them."""
     place = tmp_path_factory.mktemp("ranges")
-    made = {name: reference.solve(SCENES[name], uncertain=BOX, engine="limbs") for name in (PLAIN, GATE)}
+    made = {name: reference.prove_ranges(SCENES[name], widths=BOX, engine="limbs") for name in (PLAIN, GATE)}
     return {name: (ranges, reference.write_ranges(ranges, place / name)) for name, ranges in made.items()}
 
 

@@ -88,7 +88,7 @@ def test_a_transit_that_comes_twice_is_told(score, tmp_path):
 
 
 def test_ranges_on_disk_take_the_place_of_the_scene(score, file, tmp_path):
-    ranges = reference.solve("paris", t_end="60", uncertain=BOX)
+    ranges = reference.prove_ranges("paris", t_end="60", widths=BOX)
     folder = write_ranges(ranges, tmp_path / "ranges")
     rows, zeros = file()
     assert score(folder, rows, "--transits", zeros)[0] == 0

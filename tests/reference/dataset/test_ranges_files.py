@@ -20,7 +20,7 @@ BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 
 @pytest.fixture(scope="module")
 def ranges():
-    return reference.solve("paris", t_end="150", uncertain=BOX)
+    return reference.prove_ranges("paris", t_end="150", widths=BOX)
 
 
 def rows(path):
@@ -179,7 +179,7 @@ def sealed_anew(folder, change):
 
 
 def test_ranges_that_were_made_with_derivatives_are_proved_again_with_them(tmp_path):
-    ranges = reference.solve("paris", t_end="20", uncertain=BOX, derivatives=True)
+    ranges = reference.prove_ranges("paris", t_end="20", widths=BOX, derivatives=True)
     folder = write_ranges(ranges, tmp_path / "out")
     assert verify_ranges(folder, recompute=True) == []
     assert reference.load_ranges(folder).derivatives

@@ -141,7 +141,7 @@ BOXES = [
 def test_a_box_is_decided_where_every_pendulum_is_and_holds_the_points_of_its_corners(release, widths, decided):
     run = ASIDE["run"] | {"t_end": "20", "grid_step": "20"}
     scene = reference.parse_scene(ASIDE | {"release": release, "run": run})
-    ranges = reference.solve(scene, uncertain=widths, sections=list(WORDS), derivatives=True)
+    ranges = reference.prove_ranges(scene, widths=widths, sections=list(WORDS), derivatives=True)
     assert [len(ranges.sections[word].possible) for word in WORDS] == [0 if decided else 1] * 2
     for signs in product((-1, 1), repeat=len(widths)):
         values = {}

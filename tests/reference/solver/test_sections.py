@@ -166,9 +166,12 @@ WEIGHTLESS = LEANING | {"id": "weightless", "site": {"gravity": "0", "rotation_r
 )
 def test_a_gate_without_a_rest_position_is_refused_with_its_reason_at_every_level(scene, levels, reason):
     for level in levels:
-        options = {"uncertain": {"pendulum.length": "0.001"}} if level == "uncertain" else {"level": level}
+        words = ["highest", "gate 33.3"]
         with pytest.raises(InputError, match=r"run\.sections: got 'gate 33\.3'") as caught:
-            reference.solve(scene, sections=["highest", "gate 33.3"], **options)
+            if level == "uncertain":
+                reference.prove_ranges(scene, {"pendulum.length": "0.001"}, sections=words)
+            else:
+                reference.solve(scene, sections=words, level=level)
         assert reason in str(caught.value)
         assert "Write gate 33.3@0 for the plane through the suspension's vertical" in str(caught.value)
 

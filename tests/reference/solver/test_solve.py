@@ -234,19 +234,15 @@ def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(pari
 
 
 def test_what_a_proof_and_ranges_are_asked_for_they_have_and_else_it_is_refused(paris):
-    wishes, wide = {"audit": True, "confirm": "sampled", "function": True}, {"length": "±0.001"}
+    wishes = {"audit": True, "confirm": "sampled", "function": True}
     short = {"t_end": "60", "engine": "limbs"}
     solution = reference.solve(paris, **short, level="enclosed", digits=15, **wishes)
     assert (solution.level, solution.run.engine) == ("enclosed", "limbs")
     assert (solution.proof.audited, solution.proof.confirmed) == (True, "sampled")
     assert solution.function is not None
-    for level in (None, "enclosed"):
-        ranges = reference.solve(paris, **short, level=level, uncertain=wide)
-        assert (ranges.scene.run.level, ranges.engine, ranges.derivatives) == ("enclosed", "limbs", False)
-        assert ranges.uncertain == {"pendulum.length": "0.001"}
-    for wish in (*wishes.items(), ("digits", 12), ("level", "confirmed")):
-        with pytest.raises(InputError, match="together with uncertain"):
-            reference.solve(paris, uncertain=wide, **dict([wish]))
+    ranges = reference.prove_ranges(paris, {"length": "±0.001"}, **short)
+    assert (ranges.scene.run.level, ranges.engine, ranges.derivatives) == ("enclosed", "limbs", False)
+    assert ranges.uncertain == {"pendulum.length": "0.001"}
     for wish in wishes.items():
         with pytest.raises(InputError, match="the level enclosed"):
             reference.solve(paris, **dict([wish]))
