@@ -1,4 +1,4 @@
-"""What a run is asked for: a scene with other settings, checked before any work."""
+"""A scene with the settings of a run that a caller asks for, checked before any work."""
 
 from __future__ import annotations
 
