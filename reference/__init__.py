@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from .solver.solution import Solution as Solution
     from .solver.solve import solve as solve
     from .solver.uncertain import prove_ranges as prove_ranges
+    from .sweeps.scene_swing import EstimatedSwing as EstimatedSwing
+    from .sweeps.scene_swing import swing as swing
     from .sweeps.sweep import Swept as Swept
     from .sweeps.sweep import load_sweep as load_sweep
     from .sweeps.sweep import sweep as sweep
@@ -60,6 +62,7 @@ __getattr__, __dir__, __all__ = lazy(
         "solver.solution": "Solution",
         "solver.solve": "solve",
         "solver.uncertain": "prove_ranges",
+        "sweeps.scene_swing": "EstimatedSwing swing",
         "sweeps.sweep": "Swept load_sweep sweep",
     },
 )

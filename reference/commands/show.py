@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Annotated, Any
@@ -20,7 +19,6 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
-MOST_SWINGS = 10_000  # that are followed for the period and the precession
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -195,50 +193,22 @@ def _derived(scene: Scene) -> dict[str, str]:
 
 
 def _motion(scene: Scene) -> dict[str, Any]:
-    """Return period, precession and time of a full turn over the run, each with its estimated error, or the reason.
-
-    They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
-    """
-    from ..model.start import Start
-    from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, ONE_SIDE, SMALL, left_out, offset, turns_too_far
-    from ..sweeps.part import highest_on_one_side, solve_part
-    from ..sweeps.promote import Promoted
-    from ..sweeps.request import request
-
-    def unsolved(*_: Any, **__: Any) -> Promoted:
-        return Promoted({}, ([], []), "It takes more digits, for which `show` does not wait.")
+    """Return period, precession and time of a full turn over the run, each with its estimated error, or the reason."""
+    from ..solver.swing import left_out
+    from ..sweeps.scene_swing import swing
 
     try:
-        start = Start.of(scene.exact, DERIVED_PREC)
-        longest = MOST_SWINGS * 2 * math.pi / start.fastest_rate
-        if scene.exact.t_end > longest:
-            scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
-        sweep = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession", "amplitude"])
-        columns = solve_part(sweep, range(1), unsolved).columns
+        seen = swing(scene)
     except (FoucaultError, ArithmeticError) as error:
         return {"reason": str(error)}
-    row = {name: values[0] for name, values in columns.items()}
-    motion: dict[str, Any] = {"over_s": scene.run.t_end}
-    swing, turn, angle = (float(row[name]) for name in ("swing_hz", "precession_deg_per_h", "max_angle_deg"))
-    if not swing > 0:
-        return {"reason": row["reason"] or NO_SWING}
-    seconds, k = float(scene.run.t_end), start.k
-    smallest = 2 * math.sin(math.radians(angle) / 2) * math.exp(-float(k.drag) * seconds / 2)
-    off = offset(start, float(k.length) * smallest)
-    if off > 1:
-        return {"reason": LEAN}
-    too_fast = turns_too_far(start, 0.5 / swing)
-    if not too_fast and highest_on_one_side(sweep):
-        return {"reason": ONE_SIDE}
-    motion |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
-    turned, error_of_turn = math.radians(abs(turn)) * seconds / HOUR, float(row["precession_error_deg_per_h"])
-    reason = FAST if too_fast else "" if off <= turned else SMALL
-    if not reason:
-        motion |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
-        if abs(turn) > error_of_turn:
-            full = 360 / abs(turn)
-            motion |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
-    return motion | {"left_out": left_out(reason, not abs(turn) > error_of_turn)}
+    motion = {"over_s": seen.over_s, "period_s": seen.period_s, "period_error_s": seen.period_error_s}
+    if seen.precession_deg_per_h is not None:
+        motion["precession_deg_per_h"] = seen.precession_deg_per_h
+        motion["precession_error_deg_per_h"] = seen.precession_error_deg_per_h
+    if seen.full_turn_h is not None:
+        motion["full_turn_h"] = seen.full_turn_h
+        motion["full_turn_error_h"] = seen.full_turn_error_h
+    return motion | {"left_out": left_out(seen.reason, seen.may_stand_still)}
 
 
 def _motion_line(motion: dict[str, Any]) -> str:

@@ -19,22 +19,18 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import LEAST_BEND, OK, STOPPED, XDOT, Batch, Outcomes, Rows, RunOptions
+from ..engines.batch_interface import OK, STOPPED, XDOT, Batch, Outcomes, Rows, RunOptions
 from ..model.sections import direction_of
 from ..numbers.precision import Array
+from .highest_points import DEGREES_PER_HOUR, LATE, errors_of_swing, fastest_of, swing_and_precession, unsure_of_highest
 from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
 
 FACTOR = 16.0
 WILD_FACTOR = 64.0  # where there are three runs
 LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
-GOLDEN = (np.sqrt(5.0) - 1) / 2
 HALF_ULP = 2.0**-53  # of a number just above 1, relative
 GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
-OFFSETS = 3.0  # of the rest position from the plumb line; see `_unsure_of_highest`
-SWAYS = 2.0 / 3.0  # over cos² of a cone's angle, of Ω/ω sin² of it: how far the Coriolis force sways the cone
-LATE = 0.25  # of half a swing or turn: transits and highest points that may be as far off have no frequency
 HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
-DEGREES_PER_HOUR = np.degrees(1.0) * 3600
 MOVED, MOVED_BACK = (RunOptions(transits=False, apsides=False, moved=way) for way in (1, -1))
 PASSAGES = RunOptions(apsides=False, times=True, form=True)
 
@@ -98,7 +94,7 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         transit, undecided = _of_zeros(rows, run, position, velocity)
         span = run.t_last - run.t_first
         share = (run.transits - 1) * transit / span
-        swing, precession = _of_swing(rows, run, position, velocity)
+        swing, precession = errors_of_swing(rows, run, position, velocity)
     return Errors(
         position=position,
         velocity=velocity,
@@ -109,56 +105,16 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         # the height, which rounds to about an ulp, tells little of an angle next to the top
         angle=np.degrees(position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))),
         undecided=undecided,
-        unsure_of_highest=_unsure_of_highest(rows, run, position, velocity),
+        unsure_of_highest=unsure_of_highest(rows, run, position, velocity),
     )
 
 
 def _of_constants(rows: Rows) -> Array:
     """Return how far constants that are off by half an ulp may turn a swing in the whole span, in m."""
     rate = rows.rate
-    reach = np.fmin(_fastest(rows) / rate, 1.0)
+    reach = np.fmin(fastest_of(rows) / rate, 1.0)
     turned: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * HALF_ULP
     return np.where(rate > 0, turned, 0.0)
-
-
-def _fastest(rows: Rows) -> Array:
-    """Return a speed over l, seen in axes that do not turn, that no row exceeds: all its energy at the lowest point."""
-    n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
-    above = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)  # of the release over the lowest point
-    return np.asarray(rate * np.sqrt(2 * above) + np.linalg.norm(V, axis=1))
-
-
-def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the errors of the swing's frequency and of the precession.
-
-    With u the height of the bob over l, u' is wrong at a highest point by the velocity's error times sin θ, and where
-    the bob passes, by its speed times the position's error; that over u'' is how late the point is, and the bob turns
-    about the plumb line meanwhile. Over the top, sin θ may be next to nothing, and u'' is not.
-    """
-    length, rate, turn = rows.length[:, 0], rows.rate, np.linalg.norm(rows.turn[..., 0], axis=1)
-    shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)  # amplitude at the end, over the largest
-    highest = np.sin(run.largest_angle)
-    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk)
-    weakest = rate * np.sqrt(run.least_fall * run.least_bend)  # u'' over sin θ
-    # a point that is not high passes no faster than on a cone, seen from the Earth: seldom as fast as the energy allows
-    low, round_, offset = run.largest_angle < np.pi / 4, 2 * (rate + 2 * turn), 2 * turn**2 / rate
-    fastest = _fastest(rows) + turn
-    passing = np.where(low, round_ / weakest + offset / run.least_fall, fastest / run.least_fall)
-    slow = velocity * np.fmin(1 / weakest, 1 / run.least_fall)
-    late = (slow + passing * position) / length + np.spacing(run.apsis_last)
-    turned = position / (length * sine) + np.where(low, round_ + offset / sine, fastest / highest) * late
-    return of_swing(run, late, turned)
-
-
-def of_swing(run: Outcomes, late: Array, turned: Array) -> tuple[Array, Array]:
-    """Return the errors of frequency and precession of highest points that may be so late, in s, and turned, in rad.
-
-    Both are NaN where a point may be so late that it cannot be counted, that of precession where it cannot be followed.
-    """
-    span, gaps = run.apsis_last - run.apsis_first, run.apsides - 1
-    counted = (gaps > 0) & (gaps * late < LATE * span)
-    drift = np.where(turned < LATE * np.pi, 2 * turned / span + np.abs(run.turn) * 2 * late / span**2, np.nan)
-    return np.where(counted, gaps * late / span**2, np.nan), np.where(counted, drift * DEGREES_PER_HOUR, np.nan)
 
 
 def _of_zeros(
@@ -178,7 +134,7 @@ def _of_zeros(
     off, bend = of_place * position + of_velocity * velocity, fastest**2 * length * sine
     bend = np.fmin(bend * (of_place + of_velocity * fastest), bend_of_pairs(rows, run.largest_angle))
     if vertical:
-        passing = _fastest(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
+        passing = fastest_of(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
         off, bend = of_velocity * (sine * velocity + passing * position), 8 * sine * bend
     pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * bend * off)
     undecided: Array = ~rows.still & ((np.abs(value) <= off) | pair)
@@ -229,37 +185,11 @@ def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any)
         return _stated({column.name: values for column, values in zip(columns, arrays, strict=True)}, columns)
 
 
-def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
-    """Return where a highest point may lie on either side of the end, or where pairs of them may come and go unseen.
-
-    Highest points are seen from the plumb line, which is off the middle of the swing by some d: at rest by the
-    centrifugal force. From inside the ellipse's evolute an orbit with semi-axes a, b shows two a turn, from outside
-    one, and d < a - b is inside. There the bend at the highest, times its distance, is at most (3ad - d²)/(a + d),
-    below 3d, so that 3d tell the ones from the others. On a cone of angle θ the Coriolis force sways the angle by
-    cos φ as well, by 2/3 Ω/ω_c sin² θ/cos² θ, ω_c² = ω²/cos θ, and the same holds with this added to d, times
-    ω_c²/ω². Of θ are known the largest angle and the spin s ω about the line: with s² = sin⁴ θ/cos θ, cos θ is above
-    1/(1 + s²) or the golden section. And a cone is one only where the error of its bend leaves it so.
-    """
-    length, down = rows.length[:, 0], rows.pull[..., 0] / rows.rate[:, None] ** 2
-    n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
-    sine, speed = np.linalg.norm(np.cross(n, down), axis=1) + position / length, np.linalg.norm(v, axis=1)
-    at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
-    turn, has_apsides, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
-    across = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
-    offset = np.abs((turn * down).sum(axis=1)) * across
-    spun = np.abs((np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1))
-    upright = np.fmax(np.cos(run.largest_angle), np.fmin(GOLDEN, rows.rate**2 / (rows.rate**2 + spun**2)))
-    near = np.where(has_apsides, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
-    # of two squares, each twice its relative error
-    round_ = ~has_apsides & (4 * position >= LEAST_BEND * length * lean)
-    return np.asarray(has_apsides & at_end | near | round_)
-
-
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
     """Return the columns by name, and in which rows a number has no error: there neither stands."""
-    span, swings = run.t_last - run.t_first, run.apsis_last - run.apsis_first
+    span = run.t_last - run.t_first
     with np.errstate(divide="ignore", invalid="ignore"):
-        precession = run.turn / swings * DEGREES_PER_HOUR  # 0/0 of a single point, and so below
+        swing, precession = swing_and_precession(run)
         vertical = -rows.turn[:, 2, 0] * DEGREES_PER_HOUR
         columns = {
             "steps": run.steps,
@@ -270,7 +200,7 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
             "transit_error_s": errors.transit,
             "frequency_hz": (run.transits - 1) / (2 * span),
             "frequency_error_hz": errors.frequency,
-            "swing_hz": (run.apsides - 1) / (2 * swings),
+            "swing_hz": swing,
             "swing_error_hz": errors.swing,
             "precession_deg_per_h": precession,
             "precession_error_deg_per_h": errors.precession,

@@ -126,13 +126,14 @@ class Part:
         self.transits = {name: values[order] for name, values in columns.items()}
 
 
-def solve_part(request: Request, numbers: range, promote: Promote = promoted) -> Part:
+def solve_part(request: Request, numbers: range, promote: Promote | None = promoted) -> Part:
     """Return rows solved; a row that fails says so, and the others go on.
 
     Args:
         request: the sweep.
         numbers: of the rows.
-        promote: solves a row by itself, as `promoted` does, which is not made for several threads.
+        promote: solves a row by itself, as `promoted` does, which is not made for several threads; None: a row that
+            double precision does not decide fails.
     """
     started = time.thread_time()
     part = Part.unsolved(request, numbers)
@@ -148,7 +149,7 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
     return part
 
 
-def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promote) -> None:
+def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promote | None) -> None:
     """Solve rows whose values are right one by one."""
     sound = _finite(rows)
     reasons: dict[int, str] = {}  # places of rows that the solver has to solve, and why
@@ -168,6 +169,8 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
     for place, reason in sorted(reasons.items()):
         if reason == STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
+        elif promote is None:
+            part.fail(place, Status.DOUBTFUL, f"{reason} It takes more digits.".strip())
         else:
             _promote(request, part, place, reason, promote)
 

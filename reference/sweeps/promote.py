@@ -15,20 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import CLOSE_PAIR, LEAST_BEND, Outcomes, PlumbAxes, Rows, turned
-from ..engines.row_zeros import RowMotion
+from ..engines.batch_interface import CLOSE_PAIR, Outcomes, Rows
 from ..errors import FoucaultError, UnreachableError
-from ..model.algebra import add, cross
-from ..model.constants import Constants
-from ..numbers.columns import POSITION, SECTION, STATE, VELOCITY
-from ..numbers.double_double import DoubleDouble
+from ..numbers.columns import POSITION, STATE, VELOCITY
 from ..numbers.precision import Array
-from ..numbers.table import Table
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene
 from ..solver.solution import Solution
 from ..status import Status
-from .estimate import Errors, columns_of, of_swing, passages_listed
+from .estimate import Errors, columns_of, passages_listed
+from .highest_points import HIGHEST, note_highest_points
 from .request import Request
 from .row_constants import engine_rows
 
@@ -36,8 +32,6 @@ LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
 DIGITS = 17  # that show a double
 AUDIT_DIGITS = 28  # at about 110 bits
 MORE_DIGITS = 11  # for highest points, whose height is of second order, also after a swing has died down
-SOON = 1e-4  # of a radian of the swing after the release
-HIGHEST = "highest"  # the section that tells the swing
 
 
 def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
@@ -46,7 +40,7 @@ def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
     position, velocity = (_norm(grid.largest_bounds(), kind) for kind in (POSITION, VELOCITY))
     transit = frequency = np.full(1, np.nan)
     with np.errstate(all="ignore"):
-        swing, precession, angle = _swing(run, rows, solution, position)
+        swing, precession, angle = note_highest_points(run, rows, solution, position)
         run.steps[0], run.state[0] = solution.run.steps, [grid[name][-1] for name in STATE]
         if transits is not None and solution.directions:
             t = transits["t"]
@@ -56,47 +50,6 @@ def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
             frequency = np.where(len(t) > 1, (len(t) - 1) * transit / (t[-1] - t[0]) ** 2, np.nan)
     none = np.zeros(1, bool)
     return run, Errors(position, velocity, transit, frequency, swing, precession, np.degrees(angle), none, none)
-
-
-def _swing(run: Outcomes, rows: Rows, solution: Solution, position: Array) -> tuple[Array, Array, Array]:
-    """Fill in the highest points and the largest angle, also of release and end; return the errors of what they tell.
-
-    These are those of frequency and precession, as in `Errors`, and of the angle in rad. Where a highest point grazes,
-    its time has no bound, and its angle that of the grid, `position` in m. One so soon after the release that no digit
-    tells it, as the exact inputs do, counts as the release. On a cone, which has none, release and end tell the angle.
-    """
-    section, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
-    decided, points = section and not section.possible, section.table if section else Table(SECTION, 0, [])
-    length, turn = solution.scene.exact.length, (0, axes.turn[0].high, axes.turn[1].high)
-    states = [
-        DoubleDouble.of(q / length for q in (grid.exact(name)[0], *points.exact(name), grid.exact(name)[-1]))
-        for name in STATE
-    ]
-    n, v = (
-        (east.high, *(part.high for part in turned(north, up, axes.sin, axes.cos)))
-        for east, north, up in (states[:3], states[3:])
-    )
-    k = Constants(turn=turn, pull=(0, 0, -axes.size.high), drag=rows.drag[:, 0])
-    motion = RowMotion.of([*n, *cross(n, add(v, cross(turn, n)))], k)
-    (x, p, u), fall = motion.n, -motion.a[2]
-    across, azimuth = np.hypot(x, p), np.arctan2(p, x)
-    run.largest_angle[0] = np.arctan2(across, -u).max()
-    t, soon = np.append(0.0, points["t"]), SOON / rows.rate
-    unresolved = rows.rising[0] > 0 and abs(motion.v[2][0]) < soon * fall[0] and not (t[1:2] < 2 * soon).any()
-    high = slice(0 if unresolved else 1, -1)
-    t, azimuth = t[high.start :], azimuth[high]
-    bent = fall > LEAST_BEND * (rows.rate * across) ** 2
-    if decided and len(t) and bent[high].all():
-        run.apsides[0], run.apsis_first[0], run.apsis_last[0] = len(t), t[0], t[-1]
-        half_turns = np.round(np.diff(azimuth) / np.pi)
-        run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)
-        run.same_side[0] = np.count_nonzero(half_turns % 2 == 0)
-    late = np.max(np.array(points.bound("t"), float), initial=0) + np.spacing(run.apsis_last)
-    off = np.linalg.norm([np.array(points.bound(name), float) for name in POSITION], axis=0)
-    aside = np.max(off / (across[1:-1] * float(length)), initial=0) + np.spacing(2 * np.pi)
-    reach = np.max(off, initial=position[0])
-    leaning = np.where(reach < length, reach, position) / float(length) + np.spacing(run.largest_angle)
-    return *of_swing(run, late, aside), np.where(decided or not bent.any(), leaning, np.nan)
 
 
 def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:

@@ -13,7 +13,8 @@ from reference.engines.batch_interface import OK, Batch, Outcomes, Rows, RunOpti
 from reference.engines.registry import engines
 from reference.model.algebra import add, cross, dot, scale, subtract
 from reference.scenes.inputs import Inputs
-from reference.sweeps.estimate import DEGREES_PER_HOUR, Errors, judged
+from reference.sweeps.estimate import Errors, judged
+from reference.sweeps.highest_points import DEGREES_PER_HOUR
 
 BITS = 110
 
