@@ -19,6 +19,7 @@ import numpy.typing as npt
 from reference import Golden, Solution
 from reference.dataset.golden import Dense
 from reference.numbers.precision import Array
+from reference.numbers.zeros import XDOT
 
 from ..truth import by_function, roughly_solved, truth_at
 from .errors import TrajectoryErrors, entry, swing_rate
@@ -188,7 +189,7 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
     """Return the reason why a candidate's transits cannot be judged, or None."""
     if isinstance(golden, Golden):
         transits = golden.manifest.transits
-    elif golden.zeros is not None:
+    elif XDOT in golden.zeros:
         transits = "complete"
     else:
         transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"

@@ -11,8 +11,9 @@ from typing import Any
 from ..engines.plan import Report
 from ..engines.registry import checked
 from ..errors import InputError, unknown
-from ..numbers.columns import GRID, SECTION, TRANSITS
+from ..numbers.columns import GRID
 from ..numbers.precision import fixed_decimal
+from ..numbers.zeros import XDOT
 from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import AnyScene, Scene, checked_value, full_name
 from ..scenes.texts import without_sign
@@ -164,15 +165,16 @@ def prove_ranges(
         for feed in feeds:
             feed.stop()
     proof = replace(proof, cpu_s=proof.cpu_s + feeds[-1].run_s)
-    found = separated(proof.proved.transits or (), TRANSITS, end, Intervals)
+    found: dict[str, Any] = dict(proof.proved.sections)
+    if proof.proved.transits is not None:
+        found = {XDOT: proof.proved.transits, **found}
     return Ranges(
         scene,
         texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
-        *found,
+        {word: separated(zeros, word, end, Intervals) for word, zeros in found.items()},
         feeds[-1].begun,
-        {word: separated(zeros, SECTION, end, Intervals) for word, zeros in proof.proved.sections.items()},
         proof,
         derivatives,
     )

@@ -365,7 +365,7 @@ def test_a_possible_transit_is_refuted_where_xdot_cannot_come_near_zero_to_the_l
     monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(5))
     part = SimpleNamespace(from_s="1", to_s="5", parity="even")
     manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, 8), enclosure=None)
-    plan, later = limbs.plan(files.scene.exact, 110, (Fraction(0),), True), Table(("t", "ax"), 0, [(6, 1)])
+    plan, later = limbs.plan(files.scene.exact, 110, (Fraction(0),), ("xdot",)), Table(("t", "ax"), 0, [(6, 1)])
     outside, problems = motion._outside_intervals(SimpleNamespace(manifest=manifest), plan, later)
     assert (outside, bool(problems)) == ([0], refuted)
     assert [(plan.times, plan.transits) for plan in asked] == [((0, 3), False)]
@@ -386,7 +386,7 @@ def test_a_possible_transit_is_refuted_by_a_zero_that_xdot_surely_crosses_and_by
     monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(1, 16))
     part = SimpleNamespace(from_s="1", to_s="5", parity=parity)
     manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, 8), enclosure=None)
-    plan = limbs.plan(files.scene.exact, 110, (Fraction(0),), True)
+    plan = limbs.plan(files.scene.exact, 110, (Fraction(0),), ("xdot",))
     outside, problems = motion._outside_intervals(
         SimpleNamespace(manifest=manifest), plan, Table(("t", "ax"), 4, [(k << 4, s) for k, s in enumerate(slopes, 1)])
     )

@@ -182,7 +182,7 @@ BY = pytest.mark.parametrize("digits", [False, True], ids=["by FLINT", "by digit
 def true_run(name):
     """A scene by limbs, which have nothing of the recurrence that is sabotaged."""
     inputs, end, _ = SABOTAGED[name]
-    return run(engines()["limbs"].plan(inputs, 200, (Fraction(0), end), True))
+    return run(engines()["limbs"].plan(inputs, 200, (Fraction(0), end), ("xdot",)))
 
 
 def true_end(name):

@@ -160,7 +160,7 @@ def test_what_is_constant_is_neither_shown_nor_integrated(monkeypatch):
     assert [line.partition("'")[0] for line in equations_text(FORMULATIONS["momentum"], k)] == [
         "nx", "ny", "nz", "Hx", "Hy",
     ]  # fmt: skip
-    plan = Plan(scene.exact, "momentum", real(120), (Fraction(0), Fraction(7), Fraction(60)), transits=True)
+    plan = Plan(scene.exact, "momentum", real(120), (Fraction(0), Fraction(7), Fraction(60)), ("xdot",))
     integrated = []
 
     def stepper(formulation, *arguments, **options):
@@ -262,7 +262,7 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path,
 
 @pytest.mark.parametrize("prec", one_in(2, [200, 80]))
 def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris, monkeypatch, prec):
-    plan = Plan(paris.exact, "space", real(prec), (Fraction(0), Fraction(50), Fraction(100)), transits=True)
+    plan = Plan(paris.exact, "space", real(prec), (Fraction(0), Fraction(50), Fraction(100)), ("xdot",))
     quick = module.run(plan)
     monkeypatch.setattr(model_module, "SHORT_WORK", 0)
     thorough = module.run(plan)
