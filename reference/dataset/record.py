@@ -83,7 +83,7 @@ class Making:
     def solve_options(self, scene: Scene) -> dict[str, Any]:
         """Return the options with which `solve` makes a scene's dataset in this way, or refuses it."""
         proof = {"audit": self.audit, "confirm": self.confirm, "function": self.function}
-        return {"engine": self.engine, "uncertain": None} | (proof if scene.run.level == "enclosed" else {})
+        return {"engine": self.engine} | (proof if scene.run.level == "enclosed" else {})
 
 
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
