@@ -81,11 +81,10 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
                 scene.exact,
                 times,
                 radius=radius,
-                transits=scene.run.transits,
+                zeros=scene.run.zeros,
                 approximant=feed,
                 lost=feed.lost,
                 function=problem.function,
-                sections=scene.run.sections or (),
                 progress=report and (lambda part: report(part * span)),
             )
             try:
@@ -115,10 +114,7 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     gaps = checked_states(grid, times, approximant).largest()
     check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
     table = partial(Table.of_intervals, bits=bits)
-    found: dict[str, Any] = dict(enclosed.sections.passages) if enclosed.sections else {}
-    if enclosed.proved.transits is not None:
-        found = {XDOT: enclosed.proved.transits, **found}
-    zeros = {word: separated(of_word, word, times[-1], table) for word, of_word in found.items()}
+    zeros = {word: separated(of_word, word, times[-1], table) for word, of_word in enclosed.proved.zeros.items()}
     size, gap = (max(columns[name] for name in POSITION) for columns in (grid.largest(), gaps))
     transit_radius = max(zeros[XDOT].table.bound("t"), default=None) if XDOT in zeros else None
     proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)

@@ -146,7 +146,7 @@ class Ranges:
         if swings < 1:
             return None
         low, high = _mean([row[0] for row in self.transits.rows], swings)
-        zeros = [zero for zero in derivatives.transits if zero.own] if derivatives else []
+        zeros = [zero for zero in derivatives.zeros[XDOT] if zero.own] if derivatives else []
         if len(zeros) < len(self.transits):
             return low, high
         least, most = _mean([zero.own.t for zero in zeros], swings)
@@ -176,7 +176,7 @@ class Ranges:
             return None, []
         columns = (section.table.exact(name) for name in ("t", "x", "y", "z"))
         intervals, derivatives = _decided([*zip(*columns, strict=True)], section.possible), self.proof.derivatives
-        points = [*derivatives.passages["highest"][: len(intervals)]] if derivatives else []
+        points = [*derivatives.zeros["highest"][: len(intervals)]] if derivatives else []
         wide = swing_of(intervals, self.scene.exact, self.proof.bits, self.proof.lean)
         return wide, points if all(point.own for point in points) else []
 
@@ -217,7 +217,7 @@ class Ranges:
         if name not in names:
             raise unknown("derivative", name, "an uncertain input", names, f"There are {', '.join(names)}.")
         j = names.index(name)
-        times = [zero.times[j] for zero in derivatives.transits if zero.times]
+        times = [zero.times[j] for zero in derivatives.zeros.get(XDOT, ()) if zero.times]
         complete = len(times) == len(self.transits) > 0
         return Derivative(
             Intervals(GRID, tuple(row[j] for row in derivatives.states)),

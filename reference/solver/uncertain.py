@@ -13,7 +13,6 @@ from ..engines.registry import checked
 from ..errors import InputError, unknown
 from ..numbers.columns import GRID
 from ..numbers.precision import fixed_decimal
-from ..numbers.zeros import XDOT
 from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import AnyScene, Scene, checked_value, full_name
 from ..scenes.texts import without_sign
@@ -158,22 +157,17 @@ def prove_ranges(
 
     try:
         tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(
-            box, list(times), approximant, scene.run.transits, tell, halves, derivatives, scene.run.sections or ()
-        )
+        proof = enclose_box(box, list(times), approximant, scene.run.zeros, tell, halves, derivatives)
     finally:
         for feed in feeds:
             feed.stop()
     proof = replace(proof, cpu_s=proof.cpu_s + feeds[-1].run_s)
-    found: dict[str, Any] = dict(proof.proved.sections)
-    if proof.proved.transits is not None:
-        found = {XDOT: proof.proved.transits, **found}
     return Ranges(
         scene,
         texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
-        {word: separated(zeros, word, end, Intervals) for word, zeros in found.items()},
+        {word: separated(zeros, word, end, Intervals) for word, zeros in proof.proved.zeros.items()},
         feeds[-1].begun,
         proof,
         derivatives,

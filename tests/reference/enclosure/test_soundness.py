@@ -25,6 +25,7 @@ from enclosure_recurrence import Recurrence, prove
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference.enclosure.trusted.transits import Scan
 from scipy.integrate import solve_ivp
 
 from reference.enclosure.approximant import pair
@@ -35,7 +36,6 @@ from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import Radius
 from reference.enclosure.trusted.six_columns import Columns
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.transits import Scan
 from reference.enclosure.trusted.tube import output
 from reference.engines.registry import engines, run
 from reference.numbers.columns import STATE, TRANSITS
