@@ -44,7 +44,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/enclosure/trusted: box": f"{HOLDS}[box]",
     "reference/enclosure/trusted: derivatives": f"{HOLDS}[derivatives]",
     "reference/enclosure/trusted: balls system defect radius tube six_columns": FORMULAS,
-    "reference/enclosure/trusted: transits": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
+    "reference/enclosure/trusted: zeros": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
     "reference/enclosure/trusted: function": f"{ENCLOSURE}function.py",
     "reference/enclosure/trusted: printed": f"{ENCLOSURE}printed.py",
     "reference/enclosure/trusted: printed_box": f"{ENCLOSURE}printed.py {DATASET}ranges_files.py",

@@ -239,7 +239,7 @@ def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
     Raises:
         InputError: an input, or a width.
     """
-    return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), Intervals((), ()), [], (), "")
+    return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), {}, "")
 
 
 def _section_word(section: str, transits: str | None, scene: Scene) -> str:

@@ -19,11 +19,11 @@ def prepare(problem: Problem, setting: float) -> Work:
 
     limbs, inputs = engines()["limbs"], problem.scene.exact
     times = tuple(Fraction(t) for t in problem.times.tolist())
-    limbs.run(limbs.plan(inputs, int(setting), times[:2], transits=False))
+    limbs.run(limbs.plan(inputs, int(setting), times[:2]))
 
     def work() -> Outcome:
         try:
-            run = limbs.run(limbs.plan(inputs, int(setting), times, transits=False))
+            run = limbs.run(limbs.plan(inputs, int(setting), times))
         except IntegrationError as error:
             return failed(problem, error.reason)
 

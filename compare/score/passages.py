@@ -132,7 +132,7 @@ def score_passages(
     def distances(at: Array) -> Array:
         return away(truth_at(golden, at).states)[0]
 
-    errors = transit_errors(judged, truth["t"], slopes, 1.0, float(judged[-1]), tolerance_m=allowed, away=distances)
+    errors = transit_errors(judged, truth["t"], slopes, float(judged[-1]), tolerance_m=allowed, away=distances)
     bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
     score = PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
     if score.verdict == "agrees":

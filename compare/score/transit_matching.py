@@ -19,6 +19,7 @@ import numpy.typing as npt
 from reference import Golden, Solution
 from reference.dataset.golden import Dense
 from reference.numbers.precision import Array
+from reference.numbers.zeros import XDOT
 
 from ..truth import by_function, roughly_solved, truth_at
 from .errors import TrajectoryErrors, entry, swing_rate
@@ -118,37 +119,35 @@ def _listed(texts: Iterable[str]) -> str:
 def transit_errors(
     times: Array,
     truth: Array,
-    ax: Array,
-    omega: float,
+    slopes: Array,
     until: float,
     *,
     tolerance_m: float = 0.0,
     away: Callable[[Array], Array] | None = None,
 ) -> TransitErrors:
-    """Match a candidate's transits with the truth's.
+    """Match a candidate's transits, or passages of a section, with the truth's.
 
     Args:
         times: the candidate's, in order, in s; of equal ones all but one are extra.
         truth: the truth's times, increasing, in s.
-        ax: the truth's d²x/dt² at its transits, in m/s²; or the rate of `away` at passages of a section, in m/s.
-        omega: angular frequency of the motion in rad/s, which makes a distance of xdot; 1 for passages.
-        until: end of the candidate's run in s: later transits are not missed.
+        slopes: how fast the distance from the form's zero grows at these times, in m/s: it weights their errors.
+        until: end of the candidate's run in s: later zeros are not missed.
         tolerance_m: largest weighted error that counts as none, in m.
-        away: returns how far the truth is from a transit, in m/s if `omega` is not 1, at increasing times; without
-            it no extra transit is excused.
+        away: returns how far in m the truth is from such a zero at increasing times; without it no extra one is
+            excused.
     """
     owner = _owners(times, truth)
     matched = owner >= 0
     errors = times[owner[matched]] - truth[matched]
-    weight = np.abs(ax) / omega if omega else np.zeros_like(ax)
+    weight = np.abs(slopes)
     missed = np.flatnonzero(~matched & (truth <= until))
     extra = np.setdiff1d(np.arange(len(times)), owner[matched])
     excused = _vanishing(missed, truth, weight, until, tolerance_m)
     spurious = np.zeros(len(extra), dtype=bool)
-    if away is not None and 0 < len(extra) <= MOST_EXTRA and omega:
+    if away is not None and 0 < len(extra) <= MOST_EXTRA:
         doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])  # no motion has a transit twice
         once, back = np.unique(times[extra], return_inverse=True)
-        spurious = (np.abs(away(once)[back]) / omega <= tolerance_m) & ~doubled
+        spurious = (np.abs(away(once)[back]) <= tolerance_m) & ~doubled
     lacking, too_many = truth[missed[~excused]].tolist(), times[extra[~spurious]].tolist()
     undecided = sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()])
     return TransitErrors(errors, errors * weight[matched], lacking, too_many, truth[matched], undecided)
@@ -188,7 +187,7 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
     """Return the reason why a candidate's transits cannot be judged, or None."""
     if isinstance(golden, Golden):
         transits = golden.manifest.transits
-    elif golden.zeros is not None:
+    elif XDOT in golden.zeros:
         transits = "complete"
     else:
         transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"
@@ -223,11 +222,13 @@ def judged_transits(
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth, omega = golden.transits, swing_rate(golden.scene, errors.speed_m_s)
     t, ax = truth["t"], truth["ax"]
-    beyond_m = (t - end_of_run) * (np.abs(ax) / omega if omega else np.zeros_like(ax))
-    kept = (t <= end_of_run) | (beyond_m <= tolerance_m)
+    # xdot over ω is a distance; where nothing swings there is none
+    slopes = np.abs(ax) / omega if omega else np.zeros_like(ax)
+    kept = (t <= end_of_run) | ((t - end_of_run) * slopes <= tolerance_m)
 
-    def xdot(at: Array) -> Array:
-        return _truth(golden, at).states[:, 3]
+    def distance(at: Array) -> Array:
+        return np.asarray(_truth(golden, at).states[:, 3] / omega)
 
     until = min(float(errors.t[-1]), end_of_run)
-    return transit_errors(judged, t[kept], ax[kept], omega, until, tolerance_m=tolerance_m, away=xdot)
+    away = distance if omega else None
+    return transit_errors(judged, t[kept], slopes[kept], until, tolerance_m=tolerance_m, away=away)

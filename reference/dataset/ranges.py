@@ -14,9 +14,10 @@ from ..engines.plan import Report
 from ..errors import DatasetError, FoucaultError, InputError, checked_path
 from ..numbers.columns import GRID, SECTION, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
+from ..numbers.zeros import XDOT, Zeros
 from ..scenes.scene import parse_scene
 from ..solver.ranges import Ends, Intervals, Ranges
-from ..solver.solution import Passages, exact_decimals
+from ..solver.solution import exact_decimals
 from ..solver.uncertain import prove_ranges
 from ..system.documents import json_document
 from .files import LINE_ENDS
@@ -124,14 +125,14 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
             for word, possible in manifest.get("sections", {}).items()
         }
         transits = _zeros(tables[TRANSITS_FILE], TRANSITS, manifest["possible"])
+        zeros = {XDOT: transits, **passages}
         ranges = Ranges(
             scene,
             {name: width.removeprefix("±") for name, width in manifest["uncertain"].items()},
             tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
             Intervals(GRID, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
-            *transits,
+            zeros,
             manifest["proof"]["engine"],
-            passages,
             derivatives=manifest["proof"].get("derivatives") is True,
         )
     except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
@@ -161,8 +162,8 @@ def _hint(text: str, digest: str) -> str:
     return f": {LINE_ENDS}" if lines != text and _hash(lines) == digest else ""
 
 
-def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]) -> Passages[Intervals]:
-    return Passages(
+def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]) -> Zeros[Intervals]:
+    return Zeros(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
         tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in possible),

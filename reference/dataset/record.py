@@ -18,6 +18,7 @@ from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
 from ..numbers.precision import bits_of, context, fixed_decimal, rounded_up
 from ..numbers.table import FixedPoint
+from ..numbers.zeros import XDOT
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..scenes.shipped import DATA_VERSION, flag_meanings, index, scene_ids
@@ -127,7 +128,7 @@ def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | Non
         decimals={"grid": grid.decimals, "transits": transits.decimals},
         bounds=bounds_of(column_bounds(solution.grid, grid.decimals), of_transits),
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
-        transits=completeness(scene, solution.zeros is None, bool(solution.possible)),
+        transits=completeness(scene, XDOT not in solution.zeros, bool(solution.possible)),
         possible=_possible(solution.possible, end),
         run=RunRecord.model_validate(run),
         cross_checks=[CrossCheckRecord.model_validate(check) for check in solution.checks],

@@ -81,10 +81,6 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
             from ..enclosure.trusted.function import check_function
 
             check_function(files[FUNCTION[0]], files[FUNCTION[1]], enclosure.function, enclosure.proved)
-        if enclosure and manifest.get("sections"):
-            from ..enclosure.trusted.sections import check_sections
-
-            check_sections(files, enclosure.sections, enclosure.proved)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 

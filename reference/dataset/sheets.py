@@ -11,9 +11,10 @@ from typing import Any
 from ..numbers.columns import GRID, STATE, TRANSITS
 from ..numbers.precision import fixed_decimal, outward, rounded_up
 from ..numbers.table import Integers, Table, integers
+from ..numbers.zeros import XDOT, Zeros
 from ..scenes.fields import SECTION_SEPARATOR
 from ..scenes.scene import Scene
-from ..solver.solution import Solution, exact_decimals, grid_decimals, section_decimals, transit_decimals
+from ..solver.solution import Solution, decimals_of_zeros, exact_decimals, grid_decimals
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
@@ -61,24 +62,24 @@ def grid_sheet(solution: Solution) -> Sheet:
 
 def transits_sheet(solution: Solution) -> Sheet:
     """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
-    if solution.zeros is None:
-        return Sheet(TRANSITS_HEADER, [], {})
-    decimals = transit_decimals(solution)
-    return Sheet(TRANSITS_HEADER, _zeros(solution.zeros, solution.directions, decimals), decimals)
+    decimals = decimals_of_zeros(solution, XDOT)
+    rows = _zeros(solution.zeros[XDOT], decimals) if XDOT in solution.zeros else []
+    return Sheet(TRANSITS_HEADER, rows, decimals)
 
 
 def sections_sheet(solution: Solution) -> Sheet:
     """Return `sections.csv`: every passage of each section, in the order of the scene's words."""
-    decimals, rows = section_decimals(solution), list[tuple[str, ...]]()
+    rows = list[tuple[str, ...]]()
     for word, passages in solution.sections.items():
-        rows += [(word, *row) for row in _zeros(passages.table, passages.directions, decimals)]
+        decimals = decimals_of_zeros(solution, word)  # the same for every section
+        rows += [(word, *row) for row in _zeros(passages, decimals)]
     return Sheet(SECTIONS_HEADER, rows, decimals)
 
 
-def _zeros(table: Table, directions: Sequence[int], decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
+def _zeros(zeros: Zeros[Table], decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
     """Return the rows of zeros: number, time, direction, the other columns, and the bound on the time."""
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
-    rows = zip(table.printed(decimals), table.bound("t"), directions, strict=True)
+    rows = zip(zeros.table.printed(decimals), zeros.table.bound("t"), zeros.directions, strict=True)
     return [
         (str(k), row[0], f"{direction:+d}", *row[1:], rounded_up(error + half_unit))
         for k, (row, error, direction) in enumerate(rows, 1)

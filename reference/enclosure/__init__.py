@@ -9,6 +9,6 @@ to be believed. Endpoints of intervals are Fractions; no flint object leaves thi
 
 from .approximant import pair, turned
 from .prove import Enclosure, check_gates, enclose
-from .trusted.shapes import EnclosedTransit, Interval
+from .trusted.shapes import EnclosedZero, Interval
 
-__all__ = ["EnclosedTransit", "Enclosure", "Interval", "check_gates", "enclose", "pair", "turned"]
+__all__ = ["EnclosedZero", "Enclosure", "Interval", "check_gates", "enclose", "pair", "turned"]

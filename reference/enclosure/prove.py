@@ -21,10 +21,11 @@ from ..errors import UnreachableError
 from ..model.sections import gate_without_rest
 from ..numbers.precision import log2
 from ..numbers.taylor_step import TaylorStep
+from ..numbers.zeros import XDOT
 from .frames import ColumnSource
 from .sums_checked import SumsChecked
 from .trusted.course import Course
-from .trusted.shapes import Proved, ProvedFunction, ProvedSections, State
+from .trusted.shapes import Proved, ProvedFunction, State
 from .trusted.system import SceneBalls
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
@@ -63,7 +64,6 @@ class Enclosure:
     velocity_radius: Fraction  # in m/s
     cpu_s: float  # CPU seconds, without those of the approximant
     function: ProvedFunction | None = None  # the golden function, if it was asked for
-    sections: ProvedSections | None = None  # the same
 
 
 class _TooWide(Exception):
@@ -80,15 +80,14 @@ def enclose(
     *,
     radius: Fraction,
     approximant: Approximant,
-    transits: bool = True,
+    zeros: tuple[str, ...] = (XDOT,),
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
     flint_only: bool = False,
     function: bool = False,
-    sections: tuple[str, ...] = (),
     lost: Lost | None = None,
 ) -> Enclosure:
-    """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
+    """Prove where the pendulum is at `times` (s, increasing), and every zero of some forms up to the last of them.
 
     Args:
         inputs: the exact numbers of a scene (`Scene.exact`).
@@ -96,12 +95,11 @@ def enclose(
         radius: largest half-width to accept, in m for positions and m/s for velocities.
         approximant: function of a precision in bits that gives steps from t = 0 to the last time, as `pair` yields
             them; it is called again, with more bits, where the bounds are too wide.
-        transits: also enclose all zeros of xdot.
+        zeros: words of the zeros to enclose: `XDOT` for transits, and those of sections.
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
         flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
         function: also make the golden function, and bound it.
-        sections: words of sections, whose passages are enclosed as well.
         lost: bits that a run of so many loses besides `MARGIN_BITS`, if one radius carries its error (`Feed.lost`).
 
     Raises:
@@ -116,7 +114,7 @@ def enclose(
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), radius, transits, progress, flint_only, function, sections)
+            run = _Run(inputs, plan, list(times), radius, zeros, progress, flint_only, function)
             return run.prove(approximant)
         except _TooWide as error:
             reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
@@ -140,11 +138,10 @@ class _Run:
     plan: ProofPlan
     times: list[Fraction]
     radius: Fraction
-    transits: bool
+    zeros: tuple[str, ...]
     progress: Callable[[float], None] | None
     flint_only: bool
     function: bool
-    sections: tuple[str, ...]
 
     def prove(self, approximant: Approximant) -> Enclosure:
         """Prove all steps; raise _TooWide if a state is known less closely than to the radius."""
@@ -155,15 +152,11 @@ class _Run:
         bits, order = first.bits, len(first.coefficients[0]) - 1
         balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
-        course = Course(balls, self.times, columns is not None, self.transits)
+        course = Course(balls, self.times, columns is not None, self.zeros)
         if self.flint_only:
             course.followers.append(SumsChecked())
-        fit, steps, count, known, sections, spent = None, chain([first], steps), 0, 0, None, 0.0
-        # a proof rests on the code of sections, or of a function, only where it has some
-        if self.sections:
-            from .trusted.sections import Sections
-
-            sections = Sections(course, self.sections)
+        fit, steps, count, known, spent = None, chain([first], steps), 0, 0, 0.0
+        # a proof rests on the code of a function only where it has one
         if self.function:
             from .fit import Fit, on_doubles
 
@@ -183,10 +176,9 @@ class _Run:
         # the proof of a function finishes the course, and hands on what that has proved
         begun, function = process_time(), fit.finish() if fit else None
         proved = function.proved if function else course.finish()
-        passages = sections.finish(proved) if sections else None
         position, velocity = self._check_widths(proved.states, end, 1, bits)
         spent += process_time() - begun
-        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, spent, function, passages)
+        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, spent, function)
 
     def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""
@@ -218,10 +210,11 @@ def demand_rest_positions(balls: SceneBalls, words: tuple[str, ...]) -> None:
     Raises:
         InputError: it names the gate.
     """
-    if words:
+    sections = [word for word in words if word != XDOT]
+    if sections:
         from .trusted.sections import form
 
-    for word in words:
+    for word in sections:
         try:
             form(balls, word)
         except ArithmeticError:

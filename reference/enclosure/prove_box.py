@@ -11,6 +11,7 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
+from ..numbers.zeros import XDOT
 from .prove import SCENE_GUARD_BITS, demand_rest_positions, plan_for, until
 from .trusted.balls import interval, times
 from .trusted.box import BoxBalls, Windows
@@ -45,23 +46,21 @@ def enclose_box(
     box: Box,
     until_times: list[Fraction],
     approximant: Callable[[int, Fraction], Iterable[TaylorStep]],
-    transits: bool = True,
+    zeros: tuple[str, ...] = (XDOT,),
     progress: Callable[[float], None] | None = None,
     halves: dict[str, Fraction] | None = None,
     derivatives: bool = False,
-    sections: tuple[str, ...] = (),
 ) -> BoxEnclosure:
-    """Prove what holds at times from 0 on for all inputs of a box, and every transit up to the last of them.
+    """Prove what holds at times from 0 on for all inputs of a box, and every zero up to the last of them.
 
     Args:
         box: the scene, and the least and largest inputs.
         until_times: output times in s, from 0 on, increasing.
         approximant: function of a precision in bits and an end in s that gives steps of the scene's motion, paired.
-        transits: also enclose all zeros of xdot.
+        zeros: words of the zeros to enclose: `XDOT` for transits, and those of sections.
         progress: called with the part of the time span that is proved.
         halves: half of the width of each uncertain input by its full name; with them derivatives may be used.
         derivatives: whether they are wanted; else they are used where one radius grows too much.
-        sections: words of sections, whose passages are enclosed as well.
 
     Raises:
         UnreachableError: the box is too wide; says up to which time it holds.
@@ -69,9 +68,9 @@ def enclose_box(
     begun, reached, count, end = process_time(), Fraction(0), 0, until_times[-1]
     try:
         balls = BoxBalls(box, LOOK_BITS)
-        demand_rest_positions(balls, sections)
+        demand_rest_positions(balls, zeros)
         bits = plan_for(box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius").bits
-        windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits, sections)
+        windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, zeros)
         course, latest = windows.course, windows.course.times[-1]
         follower = source = None
         # the rate at which Theorem C's radius grows, in 1/s

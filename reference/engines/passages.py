@@ -25,6 +25,7 @@ from ..numbers.columns import SECTION
 from ..numbers.precision import GUARD_BITS, Array, to_fraction
 from ..numbers.table import Table
 from ..numbers.taylor_step import LOCAL, TaylorStep
+from ..numbers.zeros import Zeros
 from .plan import Plan
 
 BATCH = 64  # steps that are looked at together
@@ -190,7 +191,7 @@ def _shifted(value: int, bits: int) -> int:
     return value << bits if bits >= 0 else value >> -bits
 
 
-def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, tuple[Table, list[int]]]:
+def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, Zeros[Table]]:
     """Return `columns.SECTION` at each passage of a plan's sections, and its direction, from the plan's Taylor steps.
 
     Errors of the tables are those of velocities alone, by the end of a step's polynomial, as its last terms tell.
@@ -220,5 +221,6 @@ def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, tuple[Table, 
         kept = [passage for passage in search.passages if passage[0][0] <= last]
         values = [(row[0], *(int(x * length) for x in row[1:])) for row, _, _ in kept]
         errors = [(0, 0, 0, 0, *(int(size * length) + 1 for size in lost)) for _, _, lost in kept]
-        tables[search.word] = Table(SECTION, bits, values, errors), [direction for _, direction, _ in kept]
+        table = Table(SECTION, bits, values, errors)
+        tables[search.word] = Zeros(table, [direction for _, direction, _ in kept])
     return tables

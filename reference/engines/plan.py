@@ -22,6 +22,7 @@ from ..numbers.columns import STATE
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, NumberType, real
 from ..numbers.table import Table
 from ..numbers.taylor_step import TaylorStep
+from ..numbers.zeros import XDOT, Zeros
 from ..scenes.inputs import Inputs
 from ..system.imports import OptionalEngine
 
@@ -41,20 +42,28 @@ class Plan:
         formulation: a name of `model.formulations.FORMULATIONS`.
         number: type to compute in.
         times: times of output in s, increasing, from 0.
-        transits: whether to find the zeros of xdot.
+        zeros: words of the zeros that are to be found: `XDOT` for transits, and those of sections.
         engine: the name of an engine, as `registry.engines` has them.
         other_steps: whether to take other steps than the engine would: for a run that checks one of the same engine.
-        sections: words of sections whose passages are to be found.
     """
 
     inputs: Inputs
     formulation: str
     number: NumberType
     times: tuple[Fraction, ...]
-    transits: bool
+    zeros: tuple[str, ...] = ()
     engine: str = "heyoka"
     other_steps: bool = False
-    sections: tuple[str, ...] = ()
+
+    @property
+    def transits(self) -> bool:
+        """Whether to find the zeros of xdot, which an engine does while it runs."""
+        return XDOT in self.zeros
+
+    @property
+    def sections(self) -> tuple[str, ...]:
+        """The words of the sections whose passages are to be found, from the run's Taylor steps."""
+        return tuple(word for word in self.zeros if word != XDOT)
 
 
 @dataclass(frozen=True)
@@ -64,24 +73,30 @@ class Run:
     Attributes:
         plan: the plan that was run.
         grid: `columns.RUN` at each output time, in SI units.
-        transits: t and `columns.RUN` at each zero of xdot; None if not asked for, or if xdot is identically zero.
-        directions: sign of each crossing of xdot.
         order: order of the Taylor polynomials.
         steps: number of steps.
         compile_s: CPU seconds of compiling.
         cpu_s: CPU seconds of the run without compiling.
-        passages: of each section `columns.SECTION` at each passage, and the signs of the crossings.
+        zeros: by word, t and at least the columns that are printed; without xdot where that is identically zero.
     """
 
     plan: Plan
     grid: Table
-    transits: Table | None
-    directions: list[int] = field(repr=False)
     order: int
     steps: int
     compile_s: float
     cpu_s: float
-    passages: dict[str, tuple[Table, list[int]]] = field(default_factory=dict, repr=False)
+    zeros: dict[str, Zeros[Table]] = field(default_factory=dict, repr=False)
+
+    @property
+    def transits(self) -> Table | None:
+        """The zeros of xdot; None if not asked for, or if xdot is identically zero."""
+        return self.zeros[XDOT].table if XDOT in self.zeros else None
+
+    @property
+    def directions(self) -> list[int]:
+        """The sign of each crossing of xdot."""
+        return self.zeros[XDOT].directions if XDOT in self.zeros else []
 
     @cached_property
     def tension(self) -> float:
@@ -109,7 +124,7 @@ class Engine(OptionalEngine, ABC):
     proof_step_s: ClassVar[float]
 
     @abstractmethod
-    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
+    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()) -> Plan:
         """Return the cheapest run with at least `prec` bits."""
 
     def witness(self, published: Plan, prec: int) -> Plan:
@@ -117,7 +132,7 @@ class Engine(OptionalEngine, ABC):
 
         No number in it may be the published run's by construction, so that their difference tells an error.
         """
-        return replace(self.plan(published.inputs, prec, published.times, published.transits), other_steps=True)
+        return replace(self.plan(published.inputs, prec, published.times, published.zeros), other_steps=True)
 
     @property
     def _code(self) -> Any:
@@ -152,7 +167,7 @@ class Engine(OptionalEngine, ABC):
             prec: precision of the run in bits.
             coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits.
         """
-        plan = self.plan(inputs, prec, times, transits=False)
+        plan = self.plan(inputs, prec, times)
         # not in hardware: a proof's bytes are the same on every machine
         plan = replace(plan, number=real(plan.number.prec)) if plan.number.hardware else plan
         return self.expanded(plan, coefficient_bits)

@@ -76,7 +76,8 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     from .passages import passages
 
     begun, steps = process_time(), engine.expanded(plan, plan.number.prec + SERIES_BITS)
-    return replace(done, passages=passages(plan, steps), cpu_s=done.cpu_s + process_time() - begun)
+    found = passages(plan, steps)
+    return replace(done, zeros={**done.zeros, **found}, cpu_s=done.cpu_s + process_time() - begun)
 
 
 def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None) -> tuple[Run, Run]:

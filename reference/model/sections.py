@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from ..errors import InputError, UnreachableError
 from ..numbers.precision import to_mpf
+from ..numbers.zeros import XDOT
 from ..scenes.inputs import azimuth_of
 from .algebra import cross, dot, scale
 from .constants import Vector
@@ -30,11 +31,13 @@ class Form(NamedTuple):
 
 
 def form_of(word: str, start: Start) -> Form:
-    """Return the form of a section's word, in the precision of a scene's start.
+    """Return the form whose zeros a word means, in the precision of a scene's start.
 
     Raises:
         InputError: a gate through the rest position, and the scene has none.
     """
+    if word == XDOT:
+        return Form(NOTHING, (1, 0, 0), 0)
     ctx, angle = start.ctx, to_mpf(azimuth_of(word) / 180, start.ctx)
     try:
         return form_along(word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest)

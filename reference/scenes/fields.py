@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
+from ..numbers.zeros import XDOT
 from .inputs import GravityIs, azimuth_of
 from .texts import OR_INF, NotNegative, Number, Positive, Refused, checked, within
 
@@ -135,3 +136,9 @@ class RunTable(SceneTable):
     sections: Sections = field(
         None, "", "other moments that are sought: highest, lowest, gate AZIMUTH, gate AZIMUTH@0, turn AZIMUTH"
     )
+
+    @property
+    def zeros(self) -> tuple[str, ...]:
+        """The words of all zeros that are sought: `XDOT` for transits, and those of sections."""
+        transits = (XDOT,) if self.transits else ()
+        return (*transits, *(self.sections or ()))

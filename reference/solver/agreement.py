@@ -1,13 +1,13 @@
 """How far a published run and its witness are apart: the bits that they lack to agree, and the errors that follow.
 
-The errors of transits are those of the time, where xdot's error moves the zero, and of the state, taken at that time.
-A run takes the state at the zero that it found. So a column there is off by the run's own error, and by the time's
-error times the column's rate. With Δ for errors, λ = v·v + n·F for the tension over l, and n_x = x/l, the acceleration
-ax = F_x - n_x λ changes with the state by at most
+A zero is where a form a·n + b·n' - d vanishes: xdot, or that of a section. Errors of the form move its time. A run
+takes the state at the zero that it found, so a column there is off by the run's own error, and by the time's error
+times the column's rate. With Δ for errors and λ = v·v + n·F for the tension over l, the rate of the form changes with
+the state by at most
 
-    |Δax| <= λ |Δx| + (Ω² + |n_x| (|F| + Ω²)) |Δr| + (w + |n_x| (2 |v| + w)) |Δv|,   w = 2 |Ω| + γ,
+    a·|Δv| + λ b·|Δr| + (|b| Ω² + |b·n| (|F| + Ω²)) |Δr| + (|b| w + |b·n| (2 |v| + w)) |Δv|,   w = 2 |Ω| + γ,
 
-to first order; with the rates in the place of the errors the same sum bounds the rate of ax.
+to first order, where the acceleration is F - n λ.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..engines.plan import Run
 from ..errors import IntegrationError
 from ..model.algebra import add, dot, plus, scale
-from ..model.constants import Vector, is_zero
+from ..model.constants import Constants, Vector, is_zero
 from ..model.force import acceleration, force
-from ..model.sections import form_of
+from ..model.sections import Form, form_of
 from ..model.start import Start
-from ..numbers.columns import GRID, POSITION, SECTION, STATE, TRANSITS, VELOCITY
+from ..numbers.columns import GRID, POSITION, STATE, VELOCITY
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, Array, decimals_for, to_fraction
 from ..numbers.table import FixedPoint, Table, bits_in, decimals_of, integers, resolved
+from ..numbers.zeros import XDOT, Zeros, columns_of
 from .pilot import MARGIN_BITS
 
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
 INSTANT = Fraction("1e-6")  # of the fastest rate's radian: a form's second rate is a difference over it
-Zeros = tuple[Table, list[int]]  # of xdot or of a section: a row for each, and its direction
 ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here
 
 
@@ -45,16 +45,20 @@ class Agreement:
     Attributes:
         missing_bits: that they lack to agree to a quarter of the last digit; 0 if they do agree.
         grid: largest difference in each column of the grid.
-        transits: differences of each transit; None where they are not to be compared.
         errors: of each column of the grid: twice the difference, or the witness's resolution if there is none.
-        sections: the same of the passages of each section.
+        zeros: by word, the differences of each zero; None where they are not to be compared.
     """
 
     missing_bits: int
     grid: dict[str, Fraction]
-    transits: Table | None
     errors: dict[str, Fraction]
-    sections: dict[str, Table | None] = field(default_factory=dict)
+    zeros: dict[str, Table | None] = field(default_factory=dict)
+
+    @property
+    def transit_s(self) -> Fraction | None:
+        """The largest difference of a transit's time in s; None where they are not to be compared."""
+        transits = self.zeros.get(XDOT)
+        return None if transits is None else transits.largest()["t"]
 
     @classmethod
     def between(cls, published: Run, witness: Run, digits: int) -> Agreement:
@@ -69,19 +73,15 @@ class Agreement:
         finest = _resolution(published, witness)
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
-        missing, transits, sections = [bits_lacking(gaps, decimals)], None, {}
-        if published.transits is not None and witness.transits is not None:
-            table = published.transits.only(TRANSITS)
-            same = {name: places for name, places in decimals.items() if name in TRANSITS}
-            zeros, witnessed = (table, published.directions), (witness.transits, witness.directions)
-            lacking, transits = zeros_lacking(zeros, witnessed, decimals_of(table.largest(), digits) | same, witness)
+        missing, apart = [bits_lacking(gaps, decimals)], dict[str, Table | None]()
+        tables = {word: zeros.table.only(columns_of(word)) for word, zeros in published.zeros.items()}
+        for word, zeros in published.zeros.items():
+            places = zero_decimals(tables, word, decimals, digits)
+            lacking, apart[word] = zeros_lacking(
+                zeros._replace(table=tables[word]), witness.zeros[word], places, witness
+            )
             missing.append(lacking)
-        latest = max((table.largest()["t"] for table, _ in published.passages.values()), default=Fraction(0))
-        decimals = {"t": decimals_for(latest, digits), **decimals}
-        for word, passages in published.passages.items():
-            lacking, sections[word] = zeros_lacking(passages, witness.passages[word], decimals, witness)
-            missing.append(lacking)
-        return cls(max(missing), gaps, transits, errors, sections)
+        return cls(max(missing), gaps, errors, apart)
 
 
 def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
@@ -106,6 +106,23 @@ def _resolution(published: Run, witness: Run) -> dict[str, Fraction]:
     return {name: size / 2**witness.plan.number.prec for name, size in sizes.items()}
 
 
+def zero_decimals(tables: Mapping[str, Table], word: str, grid: Mapping[str, int], digits: int) -> dict[str, int]:
+    """Return the digits after the point that a word's zeros are printed with.
+
+    Those of t follow from the latest zero in the same file, those of ax from the largest, the others are the grid's.
+
+    Args:
+        tables: the zeros by word.
+        word: of the zeros.
+        grid: the digits of the columns of the grid.
+        digits: significant digits asked for.
+    """
+    same_file = [table for other, table in tables.items() if (other == XDOT) == (word == XDOT)]
+    latest = max(table.largest()["t"] for table in same_file)
+    sizes = tables[word].largest() | {"t": latest}
+    return {name: grid[name] if name in grid else decimals_for(size, digits) for name, size in sizes.items()}
+
+
 def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
     """Return the bits by which a gap exceeds one unit of its last digit, and a margin; 0 if all keep to `AGREEMENT`."""
     largest = max(gap * 10 ** decimals[name] for name, gap in gaps.items())
@@ -113,52 +130,122 @@ def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> i
 
 
 def zeros_lacking(
-    published: Zeros, witnessed: Zeros, decimals: Mapping[str, int], witness: Run
+    published: Zeros[Table], witnessed: Zeros[Table], decimals: Mapping[str, int], witness: Run
 ) -> tuple[int, Table | None]:
     """Return the bits that a witness lacks to agree on zeros, which are `witnessed` there, and how far these are apart.
 
     Where directions differ, there are no distances.
     """
-    (table, directions), (seen, signs) = published, witnessed
-    if directions != signs:
+    if published.directions != witnessed.directions:
         return witness.plan.number.prec // 2, None
-    apart = table.distance(seen)
+    apart = published.table.distance(witnessed.table)
     return bits_lacking(apart.largest(), decimals), apart
 
 
-def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None) -> Table:
-    """Return a section's passages in a run with the errors of each number, as `with_transit_errors` does for transits.
+class _Motion(NamedTuple):
+    """The motion at the zeros of a form, in SI units and doubles, shape (zeros,).
 
-    With the form's error e, its rate f and its second rate g, the time is off by at most 2 e/f where g (2 e/f) is far
-    below f. These are computed in the run's own bits: in double the height of a small swing is nothing but rounding.
-    Velocities come from the rates of a step's polynomials here, and are off by what these lack, too.
+    Attributes:
+        weights: by state column, what of its error the form has.
+        slope: size of the form's rate.
+        bend: size of its second rate.
+        of_error: by state column, what of its error the form's rate has.
+        rates: by state column, the size of its rate.
+        second_rates: by state column, the size of its second rate.
     """
-    table, _ = run.passages[word]
-    bits, rows = table.bits + GUARD_BITS, list(zip(*table.values, strict=True)) or [()] * len(SECTION)
+
+    weights: dict[str, float]
+    slope: Array
+    bend: Array
+    of_error: dict[str, Array]
+    rates: dict[str, Array]
+    second_rates: dict[str, Array]
+
+
+def _motion_at(run: Run, word: str) -> _Motion:
+    """Return the motion at the zeros of a word, from the run's own bits.
+
+    In double the height of a small swing would be nothing but rounding.
+    """
+    table = run.zeros[word].table.only(("t", *STATE))
+    bits = table.bits + GUARD_BITS
     start = Start.of(run.plan.inputs, bits)
     form, k = form_of(word, start), start.k.converted(lambda x: FixedPoint.of(x, bits))
     a, b = (_vector(0 if is_zero(x) else FixedPoint.of(x, bits) for x in part) for part in (form.a, form.b))
-    state = [FixedPoint.column(integers(column), 1 << table.bits, bits) / k.length for column in rows[1:]]
-    n, v, step = _vector(state[:3]), _vector(state[3:]), FixedPoint.of(INSTANT / Fraction(start.fastest_rate), bits)
+    columns = list(zip(*table.values, strict=True)) or [()] * len(table.columns)
+    state = [FixedPoint.column(integers(column), 1 << table.bits, bits) / k.length for column in columns[1:]]
+    n, v = _vector(state[:3]), _vector(state[3:])
+    step = FixedPoint.of(INSTANT / Fraction(start.fastest_rate), bits)
     acc = acceleration(n, v, k)
-    later = acceleration(add(n, scale(step, v)), add(v, scale(step, acc)), k)
-    f, after = plus(dot(a, v), dot(b, acc)), plus(dot(a, add(v, scale(step, acc))), dot(b, later))
-    power, length = bits_in(max(errors.values())), float(start.k.length)
-    parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    lost = {name: _in_units([row[i] for row in table.errors], table.bits + power) for i, name in enumerate(SECTION)}
-    weights = {name: abs(float(x)) for name, x in zip(STATE, (*form.a, *form.b), strict=True)}
-    off: Any = sum(parts[name] * weight for name, weight in weights.items())
-    off = off + sum(lost[name] * weights[name] for name in VELOCITY)
-    slope, bend = (np.abs(_floats(x)) * length for x in (f, (after - f) / step))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        late = 2 * off / slope
-        late = np.where(bend * np.ldexp(late, power) <= slope / 4, late, np.inf)
-        late += np.ldexp(table["t"], -run.plan.number.prec - power)
-        rates = dict(zip(STATE, (*v, *acc), strict=True))
-        columns = {"t": late} | {
-            name: parts[name] + lost[name] + np.abs(_floats(rates[name])) * length * late for name in STATE
-        }
-    return _with_errors(table, columns, power, apart)
+    n_later = add(n, scale(step, v))
+    v_later = add(v, scale(step, acc))
+    acc_later = acceleration(n_later, v_later, k)
+    rate = plus(dot(a, v), dot(b, acc))
+    rate_later = plus(dot(a, v_later), dot(b, acc_later))
+    jerk = [(after - before) / step for before, after in zip(acc, acc_later, strict=True)]
+
+    length = float(start.k.length)
+    sizes = [np.abs(_floats(x)) * length for x in (*v, *acc)]
+    second_sizes = [np.abs(_floats(x)) * length for x in (*acc, *jerk)]
+    return _Motion(
+        weights={name: abs(float(x)) for name, x in zip(STATE, (*form.a, *form.b), strict=True)},
+        slope=np.abs(_floats(rate)) * length,
+        bend=np.abs(_floats((rate_later - rate) / step)) * length,
+        of_error=_of_rate(form, _vector(map(_floats, n)), _vector(map(_floats, v)), start.k.converted(float)),
+        rates=dict(zip(STATE, sizes, strict=True)),
+        second_rates=dict(zip(STATE, second_sizes, strict=True)),
+    )
+
+
+def _of_rate(form: Form, n: Vector, v: Vector, k: Constants) -> dict[str, Any]:
+    """Return what of an error in each state column a form's rate a·v + b·acc has, at most: see the module's sum."""
+    a, b = (_vector(map(float, part)) for part in (form.a, form.b))
+    pulled = _vector(np.broadcast_arrays(*force(n, v, k), n[0])[:3])
+    square = k.rate**2
+    loss = 2 * abs(k.rate) + k.drag
+    size, aside = float(_norm(b)), abs(dot(b, n))
+    tight = abs(dot(v, v) + dot(n, pulled))
+    of_position = size * square + aside * (_norm(pulled) + square)
+    of_velocity = size * loss + aside * (2 * _norm(v) + loss)
+    of_places = {name: tight * abs(part) + of_position for name, part in zip(POSITION, b, strict=True)}
+    return of_places | {name: abs(part) + of_velocity for name, part in zip(VELOCITY, a, strict=True)}
+
+
+def with_zero_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None) -> Table:
+    """Return the columns that are printed of a word's zeros in a run, with the error of each number.
+
+    With the form's error e, its rate f, off by at most f_e, and its second rate g, a zero is late by at most the
+    smaller root of (|f| - f_e - g late) late = e; where there is none, it is not known.
+
+    Args:
+        run: the run.
+        errors: those of its columns on the grid.
+        word: of the zeros.
+        apart: differences of its zeros from another run's: no error is less than twice that.
+    """
+    zeros, power = run.zeros[word].table, bits_in(max(errors.values()))
+    motion = _motion_at(run, word)
+    # errors are in units of 2**power, as doubles may not hold them; a step's polynomial has errors of its own
+    parts: dict[str, Any] = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
+    for name in STATE if zeros.errors else ():
+        parts[name] = parts[name] + _in_units([int(x * 2**zeros.bits) for x in zeros.bound(name)], zeros.bits + power)
+    form_error = sum(parts[name] * motion.weights[name] for name in STATE)
+    rate_error = sum(parts[name] * motion.of_error[name] for name in STATE)
+
+    slope = motion.slope - np.ldexp(rate_error, power)
+    room = slope**2 - 4 * motion.bend * np.ldexp(form_error, power)
+    has_root = (slope > 0) & (room >= 0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        late = 2 * form_error / (slope + np.sqrt(room))
+    late = np.where(has_root, late, 0.0) + np.ldexp(zeros["t"], -run.plan.number.prec - power)
+
+    columns = {"t": late, "ax": rate_error + motion.bend * late}
+    for name in STATE:
+        moved = motion.rates[name] + motion.second_rates[name] * np.ldexp(late, power)
+        columns[name] = parts[name] + moved * late
+    table = zeros.only(columns_of(word))
+    known = {name: np.where(has_root, columns[name], np.inf) for name in table.columns}
+    return _with_errors(table, known, power, apart)
 
 
 def _with_errors(table: Table, columns: dict[str, Array], power: int, apart: Table | None) -> Table:
@@ -173,45 +260,6 @@ def _with_errors(table: Table, columns: dict[str, Array], power: int, apart: Tab
 
 def _floats(numbers: FixedPoint) -> Array:
     return np.array([float(x) for x in numbers.fractions()], dtype=np.float64)
-
-
-def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table | None) -> Table:
-    """Return `columns.TRANSITS` of a run, which has transits, with the errors of each number.
-
-    Args:
-        run: the run.
-        errors: those of its columns on the grid.
-        apart: differences of its transits from another run's: no error is less than twice that.
-    """
-    table, power = run.transits, bits_in(max(errors.values()))
-    assert table is not None
-    parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    k = Start.of(run.plan.inputs, DOUBLE_BITS + GUARD_BITS).k.converted(float)
-    n, v = (_vector(table[name] / k.length for name in kind) for kind in (POSITION, VELOCITY))
-    pulled, a = (_vector(np.broadcast_arrays(*of(n, v, k), n[0])[:3]) for of in (force, acceleration))
-    square, loss, aside = k.rate**2, 2 * abs(k.rate) + k.drag, abs(n[0])
-    of_x = abs(dot(v, v) + dot(n, pulled))
-    of_position = square + aside * (_norm(pulled) + square)
-    of_velocity = loss + aside * (2 * _norm(v) + loss)
-
-    ax = abs(a[0]) * k.length
-    ax_error = of_x * parts["x"]
-    ax_error += of_position * sum(parts[name] for name in POSITION)
-    ax_error += of_velocity * sum(parts[name] for name in VELOCITY)
-    jerk = (of_x * abs(v[0]) + of_position * _norm(v) + of_velocity * _norm(a)) * k.length
-
-    # at the zero xdot's error e is at most (slope - jerk late) late: the smaller root, if there is one
-    slope = ax - np.ldexp(ax_error, power)
-    room = slope**2 - 4 * jerk * np.ldexp(parts["vx"], power)
-    has_root = (slope > 0) & (room >= 0)
-    late = np.zeros(len(table))
-    late[has_root] = 2 * parts["vx"] / (slope[has_root] + np.sqrt(room[has_root]))
-    late += np.ldexp(table["t"], -run.plan.number.prec - power)
-    columns = {"t": late, "x": parts["x"] + ax * np.ldexp(late, power) * late, "ax": ax_error + jerk * late}
-    for name, rate in (("y", v[1]), ("z", v[2]), ("vy", a[1])):
-        columns[name] = parts[name] + abs(rate) * k.length * late
-    columns = {name: np.where(has_root, column, np.inf) for name, column in columns.items()}
-    return _with_errors(table.only(TRANSITS), columns, power, apart)
 
 
 def _in_units(values: list[int], bits: int) -> Array:

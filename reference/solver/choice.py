@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from hashlib import sha256
 from math import ceil
@@ -69,7 +68,7 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
 
         feed = Feed(scene.exact, times, AUTO, pilot.steps)
         bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits - COEFFICIENT_BITS
-        return fastest(bits, steps=pilot.steps, proof=True).plan(scene.exact, bits, times, transits=False)
+        return fastest(bits, steps=pilot.steps, proof=True).plan(scene.exact, bits, times)
     return published_plan(scene, times, pilot, first_prec(scene, pilot, AUTO), AUTO)
 
 
@@ -93,8 +92,7 @@ def published_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec
     """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
     finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
     bits = prec if scene.run.level == "computed" else finer
-    plan = fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.transits)
-    return replace(plan, sections=scene.run.sections or ())
+    return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.zeros)
 
 
 def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int) -> Plan:
@@ -103,7 +101,7 @@ def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, pre
     It is `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed.
     """
     number, formulation = DOUBLE if prec == DOUBLE.prec else real(prec), "space" if pilot.tension > 0 else "spin"
-    return Plan(scene.exact, formulation, number, times, scene.run.transits, sections=scene.run.sections or ())
+    return Plan(scene.exact, formulation, number, times, scene.run.zeros)
 
 
 def drawn_intervals(scene: Scene) -> list[int]:

@@ -19,6 +19,7 @@ from ..engines.registry import WORTH_A_PROCESS, expected_s, in_background, repor
 from ..errors import IntegrationError
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
+from ..numbers.zeros import XDOT
 from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..system.workers import Emit, Parent
@@ -26,7 +27,7 @@ from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, guarded, proved
-from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, section_decimals, tables_of, transit_decimals
+from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 LOWER = 5  # priority of that process, in steps of `nice`
@@ -90,8 +91,10 @@ def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:
 def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
     tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
-    passages = [(part.directions, [parity for *_, parity in part.possible]) for part in solution.sections.values()]
-    return tables, [(solution.directions, [parity for *_, parity in solution.possible]), *passages]
+    decided = {
+        word: (zeros.directions, [parity for *_, parity in zeros.possible]) for word, zeros in solution.zeros.items()
+    }
+    return tables, decided
 
 
 def _send_digits(emit: Emit, problem: ProofTask) -> None:
@@ -120,7 +123,7 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     """Return heyoka's run over the drawn intervals, each from the middle of the proven one at its first row."""
     from ..engines.heyoka.run import run_between
 
-    states_alone = replace(plan, transits=False, sections=())
+    states_alone = replace(plan, zeros=())
     return run_between(states_alone, solution.grid, drawn_intervals(solution.scene), report)
 
 
@@ -157,12 +160,10 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
     """
     gaps, late = grid.distance(witness.grid).largest(), None
     missing = [bits_lacking(gaps, grid_decimals(solution))]
-    for word, passages in solution.sections.items():
-        if word in witness.passages and not passages.possible:
-            missing.append(zeros_lacking(passages[:2], witness.passages[word], section_decimals(solution), witness)[0])
-    if solution.zeros is not None and witness.transits is not None and not solution.possible:
-        zeros, witnessed = (solution.zeros, solution.directions), (witness.transits, witness.directions)
-        lacking, apart = zeros_lacking(zeros, witnessed, transit_decimals(solution), witness)
-        missing.append(lacking)
-        late = None if apart is None else apart.largest()["t"]
+    for word, zeros in solution.zeros.items():
+        if word in witness.zeros and not zeros.possible:
+            lacking, apart = zeros_lacking(zeros, witness.zeros[word], decimals_of_zeros(solution, word), witness)
+            missing.append(lacking)
+            if word == XDOT and apart is not None:
+                late = apart.largest()["t"]
     return CrossCheck.by(witness, gaps, late), max(missing)

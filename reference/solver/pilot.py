@@ -160,9 +160,9 @@ def run_pilot(
 def _plan(inputs: Inputs, times: tuple[Fraction, ...], prec: int, engine: str, hardware: bool) -> Plan:
     """Return a pilot run, in limbs or in heyoka's `real` unless it is to be one in hardware."""
     if hardware:
-        return Plan(inputs, "momentum", DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE, times, transits=False)
+        return Plan(inputs, "momentum", DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE, times)
     radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(times[-1]))  # about one a step
-    plan = fastest(max(prec, LONG_DOUBLE.prec + 1), engine, 2 * radians).plan(inputs, prec, times, transits=False)
+    plan = fastest(max(prec, LONG_DOUBLE.prec + 1), engine, 2 * radians).plan(inputs, prec, times)
     return replace(plan, number=real(prec)) if plan.number.hardware else plan
 
 

@@ -17,15 +17,16 @@ from typing import Any
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
-from ..numbers.columns import GRID, POSITION, SECTION, TRANSITS, VELOCITY
+from ..numbers.columns import GRID, POSITION, VELOCITY
 from ..numbers.precision import cheapest_type, log2, rounded_up
 from ..numbers.table import Table, bits_in
+from ..numbers.zeros import XDOT, Zeros
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
-from .agreement import with_passage_errors
+from .agreement import with_zero_errors
 from .pilot import ESTIMATE_FACTOR, Pilot, second_order_bits
 from .proof_steps import EngineChanged, Feed
-from .solution import CrossCheck, Passages, Proof, Solution, Source, UndecidedRounding, check_decided, separated
+from .solution import CrossCheck, Proof, Solution, Source, UndecidedRounding, check_decided, separated
 
 MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
@@ -80,11 +81,10 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
                 scene.exact,
                 times,
                 radius=radius,
-                transits=scene.run.transits,
+                zeros=scene.run.zeros,
                 approximant=feed,
                 lost=feed.lost,
                 function=problem.function,
-                sections=scene.run.sections or (),
                 progress=report and (lambda part: report(part * span)),
             )
             try:
@@ -114,15 +114,11 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     gaps = checked_states(grid, times, approximant).largest()
     check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
     table = partial(Table.of_intervals, bits=bits)
-    zeros = separated(enclosed.proved.transits or (), TRANSITS, times[-1], table)
-    transits = None if enclosed.proved.transits is None else zeros.table
+    zeros = {word: separated(of_word, word, times[-1], table) for word, of_word in enclosed.proved.zeros.items()}
     size, gap = (max(columns[name] for name in POSITION) for columns in (grid.largest(), gaps))
-    transit_radius = None if transits is None else max(transits.bound("t"), default=None)
+    transit_radius = max(zeros[XDOT].table.bound("t"), default=None) if XDOT in zeros else None
     proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)
-    passages, source = enclosed.sections.passages if enclosed.sections else {}, Source.of(approximant)
-    sections = {word: separated(section, SECTION, times[-1], table) for word, section in passages.items()}
-    fields = (scene, times, grid, transits, zeros.directions, source, (check,), pilot.cpu_s, proof, zeros.possible)
-    return Solution(*fields, sections=sections)
+    return Solution(scene, times, grid, zeros, Source.of(approximant), (check,), pilot.cpu_s, proof)
 
 
 def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
@@ -172,11 +168,11 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     Raises:
         IntegrationError: the run finds other transits; names the first that differs.
     """
-    scene, times, transits = solution.scene, solution.times, solution.transits
-    if solution.zeros is None and not solution.sections:
+    scene, times = solution.scene, solution.times
+    if not solution.zeros:
         return solution
     usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
-    least, more = _bits_to_see(transits, times[-1], pilot), second_order_bits(scene, pilot)
+    least, more = _bits_to_see(solution.transits, times[-1], pilot), second_order_bits(scene, pilot)
     contradiction: IntegrationError | None = None
     units = {name: Fraction(1, 10**places) for name, places in pilot.decimals(USUAL_DIGITS).items()}
     for prec in (max(usual + more, least), max(finer + more, least + finer - usual)):
@@ -184,8 +180,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
             break
         try:
-            words, with_transits = scene.run.sections or (), solution.zeros is not None
-            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, with_transits, sections=words))
+            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, tuple(solution.zeros)))
         except (UnreachableError, OverflowError) as error:
             reason = error
             break
@@ -193,14 +188,12 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
         try:
             if any(gaps[name] > unit for name, unit in units.items()):
                 raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
-            errors = _between_rows(gaps)
-            apart = _transit_gap(event_run, solution, errors["vx"]) if with_transits else None
-            _check_passages(event_run, solution, errors)
+            apart = _zero_gaps(event_run, solution, _between_rows(gaps))
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
             solution = replace(solution, discarded_s=solution.discarded_s + event_run.cpu_s)
         else:
-            return replace(solution, guard=CrossCheck.by(event_run, gaps, apart))
+            return replace(solution, guard=CrossCheck.by(event_run, gaps, apart.get(XDOT)))
     if contradiction is not None:
         raise contradiction
     return replace(solution, not_checked=str(reason))
@@ -215,12 +208,20 @@ def _between_rows(gaps: Mapping[str, Fraction]) -> dict[str, Fraction]:
     return {name: ESTIMATE_FACTOR * gap for kind, gap in largest.items() for name in kind}
 
 
-def _check_passages(event_run: Run, solution: Solution, errors: Mapping[str, Fraction]) -> None:
-    """Raise `IntegrationError` where a run finds other passages of a section, given how far its states may be off."""
-    for word, passages in solution.sections.items():
-        if not passages.possible:
-            seen = with_passage_errors(event_run, errors, word, None)
-            _zero_gap(f"{word} passage", passages, seen, event_run.passages[word][1], seen.bound("t"))
+def _zero_gaps(event_run: Run, solution: Solution, errors: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Return by word how far the zeros that a run found are from the enclosed ones, at most, in s.
+
+    `errors` are how far its states may be off.
+
+    Raises:
+        IntegrationError: the run finds other zeros.
+    """
+    gaps = {}
+    for word, zeros in solution.zeros.items():
+        seen = with_zero_errors(event_run, errors, word, None)
+        found = event_run.zeros[word]._replace(table=seen)
+        gaps[word] = _zero_gap(word, zeros, found, event_run.plan.number.prec)
+    return gaps
 
 
 def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
@@ -234,38 +235,32 @@ def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
     return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
 
 
-def _transit_gap(event_run: Run, solution: Solution, xdot_error: Fraction) -> Fraction:
-    """Return how far the transits that a run found are from the enclosed ones, at most, in s.
-
-    `xdot_error` is how far its xdot may be from the truth, in m/s.
-    """
-    zeros = Passages(solution.transits, solution.directions, solution.possible)
-    rounding = event_run.plan.times[-1] * Fraction(2) ** (EVALUATION_BITS - event_run.plan.number.prec)
-    late = [xdot_error / abs(ax) + rounding for ax in zeros.table.exact("ax")]
-    return _zero_gap("transit", zeros, event_run.transits or Table(("t",), 0, []), event_run.directions, late)
-
-
-def _zero_gap(name: str, zeros: Passages[Table], seen: Table, signs: list[int], late: list[Fraction]) -> Fraction:
-    """Return how far the zeros that a run has seen are from the enclosed ones, at most, in s.
+def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) -> Fraction:
+    """Return how far the zeros that a run found are from the enclosed ones, at most, in s.
 
     Args:
-        name: of a zero, in messages.
+        word: of the zeros.
         zeros: the enclosed ones.
-        seen: times of those that the run found; there may be others where some are undecided.
-        signs: the directions of these.
-        late: how far the run's times may be from the truth, in s, beside each enclosed one's own bound.
+        found: those of the run, with errors; there may be others where some are undecided.
+        prec: bits of the run.
 
     Raises:
         IntegrationError: the run has others.
     """
+    name = "transit" if word == XDOT else f"{word} passage"
+    seen = found.table
     if len(seen) != len(zeros.directions) and not zeros.possible:
         raise IntegrationError(f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}.")
     bits = max(zeros.table.bits, seen.bits)
-    remaining, gaps = iter(zip(seen.whole("t", bits), signs, strict=True)), [0]
-    limits = (math.floor((bound + off) * 2**bits) for bound, off in zip(zeros.table.bound("t"), late, strict=True))
-    rows = zip(zeros.table.whole("t", bits), zeros.directions, limits, strict=True)
-    for k, (t, direction, limit) in enumerate(rows, 1):
-        gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= limit), None)
+    rounding = zeros.table.largest()["t"] * Fraction(2) ** (EVALUATION_BITS - prec)
+    late = [math.floor((bound + rounding) * 2**bits) for bound in seen.bound("t")]
+    remaining = iter(zip(seen.whole("t", bits), late, found.directions, strict=True))
+    bounds = [math.ceil(bound * 2**bits) for bound in zeros.table.bound("t")]
+    gaps = [0]
+    rows = zip(zeros.table.whole("t", bits), bounds, zeros.directions, strict=True)
+    for k, (t, bound, direction) in enumerate(rows, 1):
+        near = (abs(t - time) for time, off, sign in remaining if sign == direction and abs(t - time) <= bound + off)
+        gap = next(near, None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s.")
         gaps.append(gap)

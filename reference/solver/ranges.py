@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import InputError, counted, unknown
-from ..numbers.columns import GRID, Framed, data_frame
+from ..numbers.columns import GRID, TRANSITS, Framed, data_frame
 from ..numbers.precision import Array, double_below
+from ..numbers.zeros import XDOT, Undecided, Zeros, sections_of
 from ..scenes.scene import Scene, full_name
-from .solution import Passages, Undecided
 from .swing import HOUR, Swing, swing_of
 
 
@@ -87,12 +87,9 @@ class Ranges:
         uncertain: half of the width of each uncertain input as text, by its full name.
         times: grid times in s, exact.
         grid: position and velocity at those times, in m and m/s.
-        transits: intervals in each of which every pendulum of the box has one zero of xdot, in order; the last one may
-            come after the end for some. Without rows if not asked for, or if xdot is identically zero.
-        directions: +1 where xdot goes from - to +, per transit.
-        possible: intervals of time that may hold other zeros, each with its parity.
+        zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections; without xdot where
+            that is identically zero.
         engine: whose steps were proved.
-        sections: the passages of each section that the scene asks for, by its word.
         proof: the `BoxEnclosure`; None for ranges that were read from a file.
         derivatives: whether derivatives were asked for. They may make every interval narrower.
     """
@@ -101,13 +98,37 @@ class Ranges:
     uncertain: dict[str, str]
     times: tuple[Fraction, ...]
     grid: Intervals
-    transits: Intervals
-    directions: list[int] = field(repr=False)
-    possible: Undecided
+    zeros: Mapping[str, Zeros[Intervals]] = field(repr=False)
     engine: str
-    sections: Mapping[str, Passages[Intervals]] = field(default_factory=dict, repr=False)
     proof: Any = field(default=None, repr=False)
     derivatives: bool = field(default=False, repr=False)
+
+    @property
+    def transits(self) -> Intervals:
+        """Intervals in each of which every pendulum of the box has one zero of xdot, in order; the last may come late.
+
+        Without rows if not asked for, or if xdot is identically zero.
+        """
+        return self._of_xdot.table
+
+    @property
+    def directions(self) -> list[int]:
+        """+1 where xdot goes from - to +, per transit."""
+        return self._of_xdot.directions
+
+    @property
+    def possible(self) -> Undecided:
+        """Intervals of time that may hold other zeros of xdot, each with its parity."""
+        return self._of_xdot.possible
+
+    @property
+    def sections(self) -> dict[str, Zeros[Intervals]]:
+        """The passages of each section that the scene asks for, by its word."""
+        return sections_of(self.zeros)
+
+    @property
+    def _of_xdot(self) -> Zeros[Intervals]:
+        return self.zeros.get(XDOT, Zeros(Intervals(TRANSITS, ()), []))
 
     @property
     def t(self) -> Array:
@@ -125,7 +146,7 @@ class Ranges:
         if swings < 1:
             return None
         low, high = _mean([row[0] for row in self.transits.rows], swings)
-        zeros = [zero for zero in derivatives.transits if zero.own] if derivatives else []
+        zeros = [zero for zero in derivatives.zeros[XDOT] if zero.own] if derivatives else []
         if len(zeros) < len(self.transits):
             return low, high
         least, most = _mean([zero.own.t for zero in zeros], swings)
@@ -155,7 +176,7 @@ class Ranges:
             return None, []
         columns = (section.table.exact(name) for name in ("t", "x", "y", "z"))
         intervals, derivatives = _decided([*zip(*columns, strict=True)], section.possible), self.proof.derivatives
-        points = [*derivatives.passages["highest"][: len(intervals)]] if derivatives else []
+        points = [*derivatives.zeros["highest"][: len(intervals)]] if derivatives else []
         wide = swing_of(intervals, self.scene.exact, self.proof.bits, self.proof.lean)
         return wide, points if all(point.own for point in points) else []
 
@@ -196,7 +217,7 @@ class Ranges:
         if name not in names:
             raise unknown("derivative", name, "an uncertain input", names, f"There are {', '.join(names)}.")
         j = names.index(name)
-        times = [zero.times[j] for zero in derivatives.transits if zero.times]
+        times = [zero.times[j] for zero in derivatives.zeros.get(XDOT, ()) if zero.times]
         complete = len(times) == len(self.transits) > 0
         return Derivative(
             Intervals(GRID, tuple(row[j] for row in derivatives.states)),

@@ -54,7 +54,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))
         changed = [_perturbed(inputs, nudge, release=release) for release in (True, False)[: 1 + constants]]
-        base, *perturbed = (run(Plan(each, "momentum", number, times, transits=False)) for each in (inputs, *changed))
+        base, *perturbed = (run(Plan(each, "momentum", number, times)) for each in (inputs, *changed))
         changes = [base.grid.only(GRID).distance(other.grid).largest() for other in perturbed]
         worst = max(change[name] / size for change in changes for name, size in pilot.sizes.items() if size)
         if worst <= DIVERGED:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy.typing as npt
 
@@ -17,13 +17,13 @@ from ..engines.plan import Run
 from ..errors import InputError, UnreachableError, counted
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
-from ..numbers.precision import decimals_for
 from ..numbers.table import Table, decimals_of, resolved
+from ..numbers.zeros import XDOT, Undecided, Zeros, columns_of, sections_of
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
+from .agreement import zero_decimals
 from .swing import NO_SECTION, UNDECIDED, Swing, swing_or_reason
 
-Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
 T = TypeVar("T")
 SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
@@ -85,21 +85,6 @@ class Proof:
     audit_s: float = 0.0
 
 
-class Passages(NamedTuple, Generic[T]):
-    """The passages of a section, or the zeros of xdot.
-
-    Attributes:
-        table: `columns.SECTION` at each, in SI units: a `Table` with bounds; of uncertain inputs `Intervals` in each of
-            which every pendulum of the box has one, in order; the last one may come after the end for some.
-        directions: +1 where the section's form grows, per passage.
-        possible: intervals in s, each with a parity, that may hold passages which the proof could not decide.
-    """
-
-    table: T
-    directions: list[int]
-    possible: Undecided = ()
-
-
 @dataclass(frozen=True, repr=False)
 class Solution(GridColumns):
     """A solved scene.
@@ -108,16 +93,14 @@ class Solution(GridColumns):
         scene: the scene as solved.
         times: grid times in s, exact.
         grid: `columns.GRID` at those times, in SI units.
-        zeros: `transits`, or None if they were not asked for, or if xdot is identically zero.
-        directions: +1 where xdot goes from - to +, per transit.
+        zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections; without xdot where
+            that is identically zero.
         run: the run that the numbers come from.
         checks: runs that agree with it.
         pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
         proof: the enclosure, at the level enclosed.
-        possible: intervals in s, each with a parity, that may hold transits which the proof could not decide.
         guard: at the level enclosed, where no run confirms every transit, one with event detection that found them
             all, in the cheapest type that serves; it goes into no dataset.
-        sections: the passages of each section that the scene asks for, by its word.
         discarded_s: CPU seconds of runs and proofs in too few bits, whose numbers are not used.
         not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest on it, and a run
             that finds other transits is an error.
@@ -130,22 +113,38 @@ class Solution(GridColumns):
     scene: Scene
     times: tuple[Fraction, ...]
     grid: Table
-    zeros: Table | None = field(repr=False)
-    directions: list[int] = field(repr=False)
+    zeros: Mapping[str, Zeros[Table]] = field(repr=False)
     run: Source
     checks: tuple[CrossCheck, ...]
     pilot_s: float
     proof: Proof | None = None
-    possible: Undecided = ()
     guard: CrossCheck | None = None
     discarded_s: float = 0.0
     not_checked: str = ""
-    sections: Mapping[str, Passages[Table]] = field(default_factory=dict, repr=False)
 
     @property
     def transits(self) -> Table:
         """`columns.TRANSITS` of every zero of xdot; without rows if not asked for, or if xdot is identically zero."""
-        return self.zeros or Table(TRANSITS, 0, [])
+        return self._of_xdot.table
+
+    @property
+    def directions(self) -> list[int]:
+        """+1 where xdot goes from - to +, per transit."""
+        return self._of_xdot.directions
+
+    @property
+    def possible(self) -> Undecided:
+        """Intervals in s, each with a parity, that may hold transits which the proof could not decide."""
+        return self._of_xdot.possible
+
+    @property
+    def sections(self) -> dict[str, Zeros[Table]]:
+        """The passages of each section that the scene asks for, by its word."""
+        return sections_of(self.zeros)
+
+    @property
+    def _of_xdot(self) -> Zeros[Table]:
+        return self.zeros.get(XDOT, Zeros(Table(TRANSITS, 0, []), []))
 
     @property
     def level(self) -> Level:
@@ -211,18 +210,12 @@ def grid_decimals(solution: Solution) -> dict[str, int]:
     return decimals_of(resolved(grid.largest(), grid.largest_bounds()), solution.scene.run.digits)
 
 
-def transit_decimals(solution: Solution) -> dict[str, int]:
-    """Return those of the transits, empty without any table: as in the grid, and t and ax by their own size."""
-    if solution.zeros is None:
+def decimals_of_zeros(solution: Solution, word: str) -> dict[str, int]:
+    """Return those of the zeros of a word; empty where there are none."""
+    if word not in solution.zeros:
         return {}
-    decimals = decimals_of(solution.zeros.largest(), solution.scene.run.digits)
-    return decimals | {name: places for name, places in grid_decimals(solution).items() if name in decimals}
-
-
-def section_decimals(solution: Solution) -> dict[str, int]:
-    """Return those of the passages of sections, of which there are some: as in the grid, and t by the latest of all."""
-    latest = max(passages.table.largest()["t"] for passages in solution.sections.values())
-    return {"t": decimals_for(latest, solution.scene.run.digits), **grid_decimals(solution)}
+    tables = {other: zeros.table for other, zeros in solution.zeros.items()}
+    return zero_decimals(tables, word, grid_decimals(solution), solution.scene.run.digits)
 
 
 def exact_decimals(values: tuple[Fraction, ...]) -> int:
@@ -236,15 +229,11 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
 
 def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
     """Return the tables of grid, transits and sections, each with the digits after the point of its columns."""
-    tables = [(solution.grid, grid_decimals(solution))]
-    if solution.zeros is not None:
-        tables.append((solution.zeros, transit_decimals(solution)))
-    return tables + [(passages.table, section_decimals(solution)) for passages in solution.sections.values()]
+    of_zeros = [(zeros.table, decimals_of_zeros(solution, word)) for word, zeros in solution.zeros.items()]
+    return [(solution.grid, grid_decimals(solution)), *of_zeros]
 
 
-def separated(
-    zeros: Sequence[Any], columns: tuple[str, ...], end: Fraction, table: Callable[[tuple[str, ...], Any], T]
-) -> Passages[T]:
+def separated(zeros: Sequence[Any], word: str, end: Fraction, table: Callable[[tuple[str, ...], Any], T]) -> Zeros[T]:
     """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
 
     Zeros lie in (0, end], and the ball of a cluster may be a little wider.
@@ -252,8 +241,9 @@ def separated(
     single = [z for z in zeros if z.kind == "one"]
     undecided = [z for z in zeros if z.kind != "one"]
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in undecided)
+    columns = columns_of(word)
     rows = tuple(tuple(getattr(z, name) for name in columns) for z in single)
-    return Passages(table(columns, rows), [z.direction for z in single], possible)
+    return Zeros(table(columns, rows), [z.direction for z in single], possible)
 
 
 def check_decided(solution: Solution) -> None:

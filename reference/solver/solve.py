@@ -18,13 +18,14 @@ from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
+from ..numbers.zeros import XDOT
 from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene
-from .agreement import Agreement, with_passage_errors, with_transit_errors
+from .agreement import Agreement, with_zero_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import MAX_PREC, MAX_RAISES, Pace, Pilot, check_reach, out_of_reach
 from .request import requested_scene
-from .solution import CrossCheck, Passages, Solution, Source
+from .solution import CrossCheck, Solution, Source
 
 
 def solve(
@@ -104,7 +105,7 @@ def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = Non
         IntegrationError: a run stopped.
     """
     scene, every = scene.with_values(["run.level=confirmed"]), tuple(sorted({Fraction(0), *times}))
-    fine = Plan(scene.exact, "momentum", LONG_DOUBLE, every, scene.run.transits)
+    fine = Plan(scene.exact, "momentum", LONG_DOUBLE, every, (XDOT,) if scene.run.transits else ())
     published = run(fine, report, Pace(scene.exact, every[-1]))
     witness = run(replace(fine, formulation="spin", number=DOUBLE))
     gap = Agreement.between(published, witness, scene.run.digits)
@@ -121,7 +122,7 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Re
     check_reach(pilot.steps, prec, scene.run.digits)
     published = run(published_plan(scene, times, pilot, prec, engine), report)
     errors = pilot.estimates(published.plan.number.prec)
-    return _assemble(scene, published, Agreement(0, {}, None, errors), (), pilot.cpu_s)
+    return _assemble(scene, published, Agreement(0, {}, errors), (), pilot.cpu_s)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
@@ -140,8 +141,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         published, witness = run_both(fine, coarse, pilot.steps, report)
         gap = Agreement.between(published, witness, digits)
         if not gap.missing_bits:
-            transit_s = None if gap.transits is None else gap.transits.largest()["t"]
-            checks = (CrossCheck.by(witness, gap.grid, transit_s),)
+            checks = (CrossCheck.by(witness, gap.grid, gap.transit_s),)
             return replace(_assemble(scene, published, gap, checks, pilot.cpu_s), discarded_s=discarded_s)
         discarded_s += published.cpu_s + witness.cpu_s
         largest = max(gap.grid.values())
@@ -164,15 +164,15 @@ def _witness(fine: Plan, prec: int, engine: str, steps: int) -> Plan:
     """Return the run that checks another at the level self_consistent: by another engine, or in other steps."""
     coarse = fastest(prec, engine, steps)
     if coarse.name == fine.engine:
-        return replace(coarse.witness(fine, prec), sections=fine.sections)
-    return replace(coarse.plan(fine.inputs, prec, fine.times, fine.transits), sections=fine.sections)
+        return coarse.witness(fine, prec)
+    return coarse.plan(fine.inputs, prec, fine.times, fine.zeros)
 
 
 def _assemble(scene: Scene, published: Run, gap: Agreement, checks: tuple[CrossCheck, ...], pilot_s: float) -> Solution:
     """Return a run with its bounds as a `Solution`, given its errors and how far a second run is apart, if any."""
-    errors, times, signs, source = gap.errors, published.plan.times, published.directions, Source.of(published)
-    grid = published.grid.only(GRID).with_errors(errors)
-    transits = None if published.transits is None else with_transit_errors(published, errors, gap.transits)
-    tables = {word: with_passage_errors(published, errors, word, gap.sections.get(word)) for word in published.passages}
-    sections = {word: Passages(table, published.passages[word][1]) for word, table in tables.items()}
-    return Solution(scene, times, grid, transits, signs, source, checks, pilot_s, sections=sections)
+    grid = published.grid.only(GRID).with_errors(gap.errors)
+    zeros = {
+        word: of_word._replace(table=with_zero_errors(published, gap.errors, word, gap.zeros.get(word)))
+        for word, of_word in published.zeros.items()
+    }
+    return Solution(scene, published.plan.times, grid, zeros, Source.of(published), checks, pilot_s)

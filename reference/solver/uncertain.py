@@ -11,7 +11,7 @@ from typing import Any
 from ..engines.plan import Report
 from ..engines.registry import checked
 from ..errors import InputError, unknown
-from ..numbers.columns import GRID, SECTION, TRANSITS
+from ..numbers.columns import GRID
 from ..numbers.precision import fixed_decimal
 from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import AnyScene, Scene, checked_value, full_name
@@ -157,22 +157,18 @@ def prove_ranges(
 
     try:
         tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(
-            box, list(times), approximant, scene.run.transits, tell, halves, derivatives, scene.run.sections or ()
-        )
+        proof = enclose_box(box, list(times), approximant, scene.run.zeros, tell, halves, derivatives)
     finally:
         for feed in feeds:
             feed.stop()
     proof = replace(proof, cpu_s=proof.cpu_s + feeds[-1].run_s)
-    found = separated(proof.proved.transits or (), TRANSITS, end, Intervals)
     return Ranges(
         scene,
         texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
-        *found,
+        {word: separated(zeros, word, end, Intervals) for word, zeros in proof.proved.zeros.items()},
         feeds[-1].begun,
-        {word: separated(zeros, SECTION, end, Intervals) for word, zeros in proof.proved.sections.items()},
         proof,
         derivatives,
     )

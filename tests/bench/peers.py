@@ -66,7 +66,7 @@ def truth(count: int) -> Any:
     found = []
     for i in range(count):
         inputs = replace(paris, t_end=Fraction(SPAN), latitude=Fraction(-90) + Fraction(180 * i, count - 1))
-        run = limbs.run(limbs.plan(inputs, 110, (Fraction(0), Fraction(SPAN)), False))
+        run = limbs.run(limbs.plan(inputs, 110, (Fraction(0), Fraction(SPAN))))
         found.append([float(run.grid[name][-1]) for name in ("x", "y", "z")])
     return np.array(found)
 

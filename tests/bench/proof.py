@@ -50,8 +50,8 @@ def proof(t_end: str, pairs: int) -> None:
     proved("60")  # compiles
     _, _, solution = proved(t_end)
     scene, bits = solution.scene, solution.proof.enclosure.bits
-    plan = Plan(scene.exact, "momentum", real(bits), solution.times, transits=True)
-    run(Plan(scene.exact, "momentum", real(bits), solution.times[:2], transits=True))  # compiles
+    plan = Plan(scene.exact, "momentum", real(bits), solution.times, ("xdot",))
+    run(Plan(scene.exact, "momentum", real(bits), solution.times[:2], ("xdot",)))  # compiles
     print(f"paris, {t_end} s, {bits} bits, {len(solution.directions)} transits, {solution.proof.enclosure.steps} steps")
     ratios = []
     for _ in range(pairs):
@@ -72,7 +72,7 @@ def limbs(t_end: str, pairs: int) -> None:
     pilot = run_pilot(scene.exact, times)
     for digits in DIGITS:
         prec = pilot.bits_for(digits, times[-1], checked=False)
-        ours, theirs = (engines()[name].plan(scene.exact, prec, times, True) for name in ("limbs", "heyoka"))
+        ours, theirs = (engines()[name].plan(scene.exact, prec, times, ("xdot",)) for name in ("limbs", "heyoka"))
         run(ours), run(theirs)  # compile
         ratios = [run(theirs).cpu_s / run(ours).cpu_s for _ in range(pairs)]
         print(f"limbs, {digits} digits, {prec} bits: heyoka takes {median(ratios):.0f} times as long; {load()}")

@@ -33,9 +33,9 @@ def misses(solution, engine):
     By heyoka it is in the formulation `spin`, which the proof does not use, but heyoka compiles for each precision.
     """
     scene, prec = solution.scene, solution.proof.enclosure.bits + FINER
-    plan = Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), scene.run.transits)
+    plan = Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), ("xdot",) * scene.run.transits)
     if engine == "limbs":
-        plan = engines()["limbs"].plan(scene.exact, prec, tuple(scene.exact.grid), scene.run.transits)
+        plan = engines()["limbs"].plan(scene.exact, prec, tuple(scene.exact.grid), ("xdot",) * scene.run.transits)
     try:
         truth = run(plan)
     except (UnreachableError, InputError, OverflowError):

@@ -67,7 +67,7 @@ def test_every_bound_holds_against_another_code_and_none_is_zero(engine, size, t
         scene = small_swing(Random(seed))
         solution = reference.solve(scene, engine=engine)
         prec = int(solution.run.number.split("(")[1][:-1]) + FINER_BITS + SMALL_SWING_BITS
-        truth = run(Plan(scene.exact, "spin", real(prec), solution.times, scene.run.transits))
+        truth = run(Plan(scene.exact, "spin", real(prec), solution.times, ("xdot",) * scene.run.transits))
         found = [("grid", *each) for each in compared(solution, solution.grid, truth.grid, GRID)]
         if solution.transits is not None:
             assert solution.directions == truth.directions, seed

@@ -50,7 +50,7 @@ class Comparison:
 def truth(inputs: Inputs, times: tuple[Fraction, ...] = ()) -> Any:
     """Return a run in limbs, with transits; its grid has the release, some times and the end."""
     limbs = engines()["limbs"]
-    return limbs.run(limbs.plan(inputs, BITS, (Fraction(0), *times, inputs.t_end), True))
+    return limbs.run(limbs.plan(inputs, BITS, (Fraction(0), *times, inputs.t_end), ("xdot",)))
 
 
 def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Comparison:

@@ -191,7 +191,7 @@ def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
 def truth(inputs: Inputs, times: Sequence[Fraction]) -> Run:
     """Return a run by limbs, with 40 digits."""
     limbs = engines()["limbs"]
-    return limbs_run(replace(limbs.plan(inputs, TRUTH_BITS, tuple(times), True), sections=SECTIONS))
+    return limbs_run(replace(limbs.plan(inputs, TRUTH_BITS, tuple(times), ("xdot",)), sections=SECTIONS))
 
 
 def passages(run: Run, word: str) -> list[tuple[Fraction, ...]]:

@@ -17,8 +17,8 @@ from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import Radius
 from reference.enclosure.trusted.six_columns import Columns
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.transits import Scan
 from reference.enclosure.trusted.tube import output
+from reference.enclosure.trusted.zeros import Scan
 from reference.numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 from reference.scenes.inputs import Inputs
 

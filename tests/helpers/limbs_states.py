@@ -40,7 +40,7 @@ def states(inputs: Inputs, times: npt.ArrayLike, bits: int = STATES_BITS) -> tup
     if moments[0] < 0 or (np.diff(moments) <= 0).any():
         raise InputError("times", "a list that decreases or is negative", "increasing numbers from 0 on")
     exact_times = tuple(map(Fraction, moments.tolist()))
-    integration = Integration(Plan(inputs, "inertial", NumberType("limbs", bits), exact_times, transits=False))
+    integration = Integration(Plan(inputs, "inertial", NumberType("limbs", bits), exact_times))
     integration.finish(None)
     problem = integration.problem
     limb_count = problem.model.limb_count

@@ -23,6 +23,7 @@ from ...model.start import Start
 from ...numbers.columns import GRID, SECTION, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
+from ...numbers.zeros import Zeros, sections_of
 from ..files import Files
 from ..manifest import MANIFEST, Kind, Manifest
 from . import function
@@ -87,10 +88,11 @@ def _steps(files: Files) -> int:
 def _run(files: Files, prec: int, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
     times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
-    plan = limbs.plan(inputs, prec, tuple(times), files.scene.run.transits)
     sections = files.manifest.sections
-    words = tuple(word for word, possible in sections.possible.items() if not possible) if sections else ()
-    return run(replace(plan, sections=words), report and (lambda t: report(t, float(inputs.t_end))))
+    undecided = [word for word, possible in sections.possible.items() if possible] if sections else []
+    words = tuple(word for word in files.scene.run.zeros if word not in undecided)
+    plan = limbs.plan(inputs, prec, tuple(times), words)
+    return run(plan, report and (lambda t: report(t, float(inputs.t_end))))
 
 
 def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
@@ -98,9 +100,9 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     states = [_at(files.scene.exact.grid, run) for run in (coarse, fine)]
     kinds: list[tuple[Kind, Table, Table]] = [("grid", states[0], states[1])]
     differing: list[str] = []
+    if any(coarse.zeros[word].directions != zeros.directions for word, zeros in fine.zeros.items()):
+        return None
     if coarse.transits is not None and fine.transits is not None:
-        if coarse.directions != fine.directions:
-            return None
         outside, differing = _outside_intervals(files, fine.plan, fine.transits)
         sheet, count = files.tables.get("transits.csv"), files.manifest.counts.transits
         expected = [fine.directions[k] for k in outside]
@@ -112,15 +114,14 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
             tables = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
             kinds.append(("transits", tables[0], tables[1]))
     if sheet := files.tables.get("sections.csv"):
-        if any(coarse.passages[word][1] != directions for word, (_, directions) in fine.passages.items()):
-            return None
-        decided = [row for row in sheet.rows if row[0] in fine.passages]
-        signs = [(word, f"{sign:+d}") for word, (_, ways) in fine.passages.items() for sign in ways]
+        passages = sections_of(fine.zeros)
+        decided = [row for row in sheet.rows if row[0] in passages]
+        signs = [(word, f"{sign:+d}") for word, zeros in passages.items() for sign in zeros.directions]
         if [(row[0], row[3]) for row in decided] != signs:
             differing.append(f"sections.csv: {len(decided)} passages are not the motion's, which are {len(signs)}")
         elif signs:
             files = replace(files, tables={**files.tables, "sections.csv": replace(sheet, rows=decided)})
-            kinds.append(("sections", _joined(coarse.passages), _joined(fine.passages)))
+            kinds.append(("sections", _joined(sections_of(coarse.zeros)), _joined(passages)))
     for kind, rough, table in kinds:
         columns = table.only({"grid": GRID, "transits": TRANSITS, "sections": SECTION}[kind])
         apart = columns.distance(rough).largest()
@@ -133,9 +134,9 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     return differing + function.contradicted(files, times, table, table.distance(rough).largest())
 
 
-def _joined(passages: Mapping[str, tuple[Table, list[int]]]) -> Table:
+def _joined(passages: Mapping[str, Zeros[Table]]) -> Table:
     """Return the passages of all sections in one table."""
-    tables = [table for table, _ in passages.values()]
+    tables = [zeros.table for zeros in passages.values()]
     return replace(tables[0], values=[row for table in tables for row in table.values], errors=[])
 
 
@@ -160,7 +161,7 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
     near, jerk, outside = GRAZES * files.manifest.bound("grid", "vx"), largest_jerk(files), {*range(len(times))}
     spans = [(Fraction(part.from_s), Fraction(part.to_s)) for part in parts]
     moments = (Fraction(0), *((low + high) / 2 for low, high in spans))
-    middles = engines()["limbs"].run(replace(plan, times=moments, transits=False)).grid
+    middles = engines()["limbs"].run(replace(plan, times=moments, zeros=())).grid
     for part, (low, high), vx, ax in zip(parts, spans, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True):
         inside, half = range(bisect_left(times, low), bisect_right(times, high)), (high - low) / 2
         outside.difference_update(inside)

@@ -138,20 +138,16 @@ class BoxRadius(Radius):
 
 
 class Windows:
-    """Runs a course in the scene's time; gives states and transits of all inputs of the box in their own time."""
+    """Runs a course in the scene's time; gives states and zeros of all inputs of the box in their own time."""
 
-    def __init__(self, box: Box, prec: int, until: list[Fraction], transits: bool, words: tuple[str, ...] = ()) -> None:
+    def __init__(self, box: Box, prec: int, until: list[Fraction], words: tuple[str, ...]) -> None:
         self.box, self.balls, self.times = box, BoxBalls(box, prec), tuple(until)
         self.pace, self.hulls, self.done = self.balls.paces, list[Vector](), 0
         demand(self.pace.low > 0 == until[0], "a box is followed from its release on")
-        self.course = Course(self.balls, [self.pace.high * until[-1]], False, transits)  # to the latest end
+        latest = self.pace.high * until[-1]
+        self.course = Course(self.balls, [latest], False, words, second_order=True)
         self.course.bound = BoxRadius(self.balls)
         self.course.followers.append(self)
-        self.sections: Any = None
-        if words:
-            from .sections import Apsis, Sections  # a box without sections does not rest on their code
-
-            self.sections = Sections(self.course, words, Apsis)
 
     def advance(self, covered: Covered) -> None:
         """Take the next tube: at each output time some pendulums of the box may be in it."""
@@ -167,7 +163,6 @@ class Windows:
     def finish(self) -> ProvedBox:
         """Return what is proved, in the time of each pendulum, to which it was `pace` times that of the course."""
         proved, pace, length = self.course.finish(), self.balls.pace, self.balls.length
-        passages = self.sections.finish(proved).passages if self.sections else {}
         demand(self.done == len(self.times), "the steps do not end with the run")
         with ctx.workprec(self.balls.prec):
             own = [[*times(length, x[:3]), *times(length * pace, x[3:])] for x in self.hulls]
@@ -175,9 +170,8 @@ class Windows:
             if self.balls.given:
                 own[0][:2], own[0][3:5] = self.balls.given[:2], self.balls.given[2:]
             states = tuple(tuple(map(interval, x)) for x in own)
-            transits = None if proved.transits is None else self.in_own_time(proved.transits)
-            sections = {word: self.in_own_time(zeros) for word, zeros in passages.items()}
-        FINISHED.add(result := ProvedBox(self.box, self.times, states, transits, sections))
+            zeros = {word: self.in_own_time(found) for word, found in proved.zeros.items()}
+        FINISHED.add(result := ProvedBox(self.box, self.times, states, zeros))
         return result
 
     def in_own_time(self, zeros: tuple[Any, ...]) -> tuple[Any, ...]:

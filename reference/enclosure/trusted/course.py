@@ -1,4 +1,4 @@
-"""TRUSTED. A proof from step to step: bound, output times and transits are given one piece, in order and without a gap.
+"""TRUSTED. A proof from step to step: bound, output times and zeros are given one piece, in order and without a gap.
 
 Who calls `advance` proposes steps and columns, and can do no harm: an exception closes a run for good, and there is a
 result only for a run that is complete.
@@ -12,22 +12,35 @@ from ...numbers.taylor_step import TaylorStep
 from .balls import demand
 from .defect import Piece
 from .radius import Radius
-from .shapes import Proposal, Proved, State
+from .shapes import XDOT, Proposal, Proved, State
 from .six_columns import Columns
 from .system import SceneBalls
-from .transits import Scan
 from .tube import output
+from .zeros import Scan
 
 FINISHED = WeakSet[Any]()
 
 
 class Course:
-    """The states at `times` (increasing, from 0 on) and, with `transits`, all zeros of xdot up to the last of them."""
+    """The states at `times` (increasing, from 0 on), and all zeros of `words` up to the last of them.
 
-    def __init__(self, balls: SceneBalls, times: list[Fraction], columns: bool, transits: bool) -> None:
+    With `second_order` highest and lowest points are enclosed as a box of inputs wants it.
+    """
+
+    def __init__(
+        self,
+        balls: SceneBalls,
+        times: list[Fraction],
+        columns: bool,
+        words: tuple[str, ...],
+        second_order: bool = False,
+    ) -> None:
         self.balls, self.times, self.states, self.open = balls, tuple(times), list[State](), True
         self.bound: Any = Columns(balls) if columns else Radius(balls)
-        self.scan, self.followers = Scan(balls) if transits and not balls.still else None, list[Any]()
+        # xdot that is identically zero has no zeros
+        sought = [word for word in words if not (word == XDOT and balls.still)]
+        self.scans = {word: scan_of(balls, word, second_order) for word in sought}
+        self.followers = list[Any]()
 
     def advance(self, step: TaylorStep, *proposal: Proposal) -> None:
         """Take the next step, and columns if it is proved by them."""
@@ -36,15 +49,24 @@ class Course:
         covered = self.bound.advance(Piece(self.balls, step), *proposal)
         while len(self.states) < len(self.times) and self.times[len(self.states)] <= covered.piece.end:
             self.states.append(output(covered, self.times[len(self.states)]))
-        for follower in filter(None, (self.scan, *self.followers)):
+        for follower in (*self.scans.values(), *self.followers):
             follower.advance(covered)
         self.open = True
 
     def finish(self) -> Proved:
         """Return what is proved; only this very object, and no copy of it, counts as the result of a proof."""
         end, complete = self.times[-1], self.open and len(self.states) == len(self.times)
-        reached = {part.time for part in (self.bound, self.scan) if part}
+        reached = {part.time for part in (self.bound, *self.scans.values())}
         demand(complete and (not end or reached == {end}), "the steps do not end with the run")
-        transits = tuple(self.scan.finish() if end else ()) if self.scan else None
-        FINISHED.add(proved := Proved(self.balls.inputs, self.times, tuple(self.states), transits, self.balls.still))
+        zeros = {word: tuple(scan.finish() if end else ()) for word, scan in self.scans.items()}
+        FINISHED.add(proved := Proved(self.balls.inputs, self.times, tuple(self.states), zeros, self.balls.still))
         return proved
+
+
+def scan_of(balls: SceneBalls, word: str, second_order: bool) -> Scan:
+    """Return a scan for the zeros of a word; a proof rests on the code of sections only where it asks for some."""
+    if word == XDOT:
+        return Scan(balls)
+    from .sections import section_scan
+
+    return section_scan(balls, word, second_order)

@@ -14,14 +14,14 @@ from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
 from .box import BoxBalls, BoxRadius, Windows, near, on_the_sphere, spread
-from .course import FINISHED
+from .course import FINISHED, scan_of
 from .defect import Piece
 from .printed_box import end_of
 from .radius import Radius
-from .shapes import Covered, EnclosedZero, Interval, Led, ProvedDerivatives, Sizes, State, Tangent
+from .shapes import XDOT, Covered, EnclosedZero, Interval, Led, ProvedDerivatives, Sizes, State, Tangent
 from .six_columns import cut
-from .transits import Scan
 from .tube import output, tube
+from .zeros import Scan
 
 TINY = arb(2) ** -4096  # more than nothing
 TERMS = 32  # of p and K in the residuals, which are compared with proposals in doubles
@@ -187,12 +187,11 @@ class Derivatives:
         self.windows, self.balls, self.course, self.names = windows, windows.balls, windows.course, tuple(halves)
         self.bound = self.course.bound = Tangents(self.balls, halves, scales)
         self.done, self.hulls, self.states, self.watched = 0, list[list[Vector]](), list[State](), dict[str, Watched]()
-        if self.course.scan:
-            self.watched[""] = Watched(self.course.scan, Scan(self.balls.own), False)
-        sections = windows.sections
-        for word, scan in zip(sections.words, sections.scans, strict=True) if sections else ():
-            if word in ("highest", "lowest"):  # in axes in which the plumb line is the same for all
-                self.watched[word] = Watched(scan, sections.scan(self.balls.own, word), True)
+        for word, scan in self.course.scans.items():
+            # these in axes in which the plumb line is the same for all
+            if word in (XDOT, "highest", "lowest"):
+                own = scan_of(self.balls.own, word, second_order=True)
+                self.watched[word] = Watched(scan, own, word != XDOT)
         self.course.followers.append(self)
 
     def advance(self, covered: Covered) -> None:
@@ -230,14 +229,12 @@ class Derivatives:
                 )
                 for wide, own, rows in zip(proved.states, self.states, self.hulls, strict=True)
             )
-            made = {word: self.narrowed(word, proved.sections.get(word, proved.transits)) for word in self.watched}
+            made = {word: self.narrowed(word, proved.zeros[word]) for word in self.watched}
         derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
-        transits, led = made.pop("", (proved.transits, ()))
-        sections = proved.sections | {word: zeros for word, (zeros, _) in made.items()}
-        narrow = replace(proved, states=states, transits=transits, sections=sections)
+        narrow = replace(proved, states=states, zeros=proved.zeros | {word: zeros for word, (zeros, _) in made.items()})
         FINISHED.add(narrow)
-        passages = {word: rows for word, (_, rows) in made.items()}
-        FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, led, passages))
+        led = {word: rows for word, (_, rows) in made.items()}
+        FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, led))
         return result
 
     def narrowed(self, word: str, proved: Any) -> tuple[Any, tuple[Led, ...]]:

@@ -11,12 +11,13 @@ from typing import Any
 from ...scenes.inputs import Inputs
 from .balls import demand
 from .course import FINISHED
-from .shapes import Interval, Proved
+from .shapes import XDOT, Interval, Proved
 
 PLAIN = "length drag latitude altitude gravity rotation_rate equatorial_radius t_end grid_step"
 RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
 OTHERS = ("digits", "level", "transits", "sections")  # no input of the motion
 GRID, TRANSITS = "t,x,y,z,vx,vy,vz", "k,t,direction,x,y,z,vy,ax,bound"
+SECTIONS = "k,t,direction,x,y,z,vx,vy,vz,bound"  # after the section's word
 EXACT = ("k", "direction", "bound")  # columns whose doubles do not stand beside them
 POSITION, VELOCITY = ("x", "y", "z"), ("vx", "vy", "vz")
 DECIMAL = frozenset("+-.0123456789")
@@ -45,7 +46,7 @@ def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
     """Demand that manifest.json, the tables and certified.txt state what was proved, of just these inputs."""
     manifest = document(texts["manifest.json"])
     demand(proved in FINISHED and asked(manifest) == (proved.inputs, proved.times), "the proof is of other inputs")
-    ones, others = single_and_other(proved.transits or ())
+    ones, others = single_and_other(proved.zeros.get(XDOT, ()))
     check_words(manifest, proved, others)
     check_radii(manifest["enclosure"], proved, ones)
 
@@ -72,7 +73,33 @@ def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
     check_possible(others, manifest["possible"], proved.times[-1])
     counts = {"grid": len(grid), "transits": len(transits), "possible": len(others)}
     demand(manifest["counts"] == counts, "misprint: the counts")
+    check_sections(texts, manifest, proved)
     check_page(texts["certified.txt"], manifest, grid, transits)
+
+
+def check_sections(texts: Mapping[str, str], manifest: Any, proved: Proved) -> None:
+    """Demand that sections.csv and the manifest state the passages that were proved, of just these sections."""
+    sections = {word: zeros for word, zeros in proved.zeros.items() if word != XDOT}
+    said, words = manifest.get("sections"), [*sections]
+    demand((said is not None) == bool(words), "misprint: other sections")
+    if said is None:
+        return
+    right = "; ".join(words) == manifest["scene"]["run"]["sections"]
+    demand(right and [*said["counts"]] == [*said["possible"]] == words, "misprint: other sections")
+
+    rows, names = list[Any](), list[str]()
+    for word, zeros in sections.items():
+        ones, others = single_and_other(zeros)
+        rows += [[k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)]
+        names += [word] * len(ones)
+        check_possible(others, said["possible"][word], proved.times[-1])
+        demand(said["counts"][word] == len(ones), "misprint: the count of passages")
+
+    header, *lines = lines_of(texts["sections.csv"])
+    demand([line[0] for line in lines] == names and header[0] == "section", "misprint: other sections")
+    text = "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
+    least = {name: Fraction(bound) for name, bound in said["bounds"].items()}
+    check_rows(text, SECTIONS, rows, least, said["decimals"])
 
 
 def document(text: str) -> Any:
@@ -103,7 +130,7 @@ def check_words(manifest: Any, proved: Proved, others: Sequence[Any]) -> None:
     else:
         word = "undecided intervals" if others else "complete"
     sought = word in ("undecided intervals", "complete")
-    right = manifest["transits"] == word and sought == (proved.transits is not None)
+    right = manifest["transits"] == word and sought == (XDOT in proved.zeros)
     demand(right, "misprint: whether all transits are there")
 
 

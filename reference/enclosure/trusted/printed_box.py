@@ -9,7 +9,7 @@ from ...scenes.inputs import Inputs
 from .balls import demand
 from .course import FINISHED
 from .printed import DECIMAL, PLAIN, RELEASES, asked, document, lines_of, single_and_other
-from .shapes import Interval, ProvedBox
+from .shapes import XDOT, Interval, ProvedBox
 
 GRID, TRANSITS = ("x", "y", "z", "vx", "vy", "vz"), ("t", "x", "y", "z", "vy", "ax")
 PASSAGES = ("t", *GRID)
@@ -17,7 +17,9 @@ PASSAGES = ("t", *GRID)
 
 def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     """Demand that ranges.json and both tables state what was proved, or less, and of just this box."""
-    said, found = document(texts["ranges.json"]), proved.transits or ()
+    said = document(texts["ranges.json"])
+    found = proved.zeros.get(XDOT, ())
+    sections = {word: zeros for word, zeros in proved.zeros.items() if word != XDOT}
     inputs, times = asked(said)
     ends = (end_of(inputs, said["uncertain"], side) for side in (-1, 1))
     demand(
@@ -26,11 +28,11 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     demand(said["level"] == said["scene"]["run"]["level"] == "enclosed", "misprint: the level")
     check_rows(texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True)))
     ones, others = check_zeros(texts["transits.csv"], TRANSITS, found, said["possible"], times[-1])
-    words = [*proved.sections]
+    words = [*sections]
     header, *parts = lines_of(texts["sections.csv"]) if words else [["section"]]
     right = header[0] == "section" and sorted(parts, key=lambda part: words.index(part[0])) == parts
     demand(right and [*said.get("sections", {})] == words, "misprint: other sections")
-    for word, zeros in proved.sections.items():
+    for word, zeros in sections.items():
         own = [header, *(part for part in parts if part[0] == word)]
         text = "".join(",".join(line[1:]) + "\n" for line in own)
         check_zeros(text, PASSAGES, zeros, said["sections"][word], times[-1])

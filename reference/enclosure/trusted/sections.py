@@ -6,15 +6,13 @@ from typing import Any
 from flint import arb, arb_poly, ctx, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, fixed, size, times, total, upper
-from .course import FINISHED, Course
-from .printed import check_possible, check_rows, document, lines_of, single_and_other
-from .shapes import Covered, EnclosedPassage, ProvedSections
+from .shapes import Covered
 from .six_columns import cut
 from .system import SceneBalls
-from .transits import Scan, Slope, sign
 from .tube import state
+from .zeros import Scan, Slope, sign
 
-HEADER, WAYS = "k,t,direction,x,y,z,vx,vy,vz,bound", {"highest": -1, "lowest": 1}
+WAYS = {"highest": -1, "lowest": 1}
 
 
 def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
@@ -51,6 +49,8 @@ class Form(Slope):
 
     `slow` says that the form is exactly 0 at the release.
     """
+
+    names: tuple[str, ...] = ("x", "y", "z", "vx", "vy", "vz")
 
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
         piece = covered.piece
@@ -117,54 +117,10 @@ class Apsis(Form):
         return [*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)]
 
 
-class Sections:
-    """Scans a course for the passages of sections."""
-
-    def __init__(self, course: Course, words: tuple[str, ...], apsis: Any = Form) -> None:
-        self.course, self.words, self.apsis = course, words, apsis
-        self.scans = [self.scan(course.balls, word) for word in words]
-        course.followers.append(self)
-
-    def scan(self, balls: SceneBalls, word: str) -> Scan:
-        """Return a scan for the passages of a section."""
-        with ctx.workprec(balls.prec):
-            f, kind = form(balls, word), self.apsis if word in WAYS else Form
-            slow = vanishes_at_release(balls, word)
-        return Scan(balls, lambda covered: kind(covered, *f, slow), EnclosedPassage, WAYS.get(word, 0))
-
-    def advance(self, covered: Covered) -> None:
-        """Take the next step's tube."""
-        demand(not self.course.open, "a tube comes from the course alone, while it takes a step")
-        for scan in self.scans:
-            scan.advance(covered)
-
-    def finish(self, proved: Any) -> ProvedSections:
-        """Return the passages in the course, whose result is `proved`."""
-        right = proved in FINISHED and proved.times is self.course.times
-        demand(right and {scan.time for scan in self.scans} == {proved.times[-1]}, "the proof is of another course")
-        found = zip(self.words, self.scans, strict=True)
-        FINISHED.add(sections := ProvedSections(proved, {word: tuple(scan.finish()) for word, scan in found}))
-        return sections
-
-
-def check_sections(texts: Any, sections: Any, proved: Any) -> None:
-    """Demand that sections.csv and the manifest state the passages that were proved, of just these sections."""
-    manifest = document(texts["manifest.json"])
-    said, words = manifest["sections"], [*sections.passages]
-    right = sections in FINISHED and sections.proved is proved
-    right &= "; ".join(words) == manifest["scene"]["run"]["sections"]
-    demand(right and [*said["counts"]] == [*said["possible"]] == words, "misprint: other sections")
-
-    rows, names = list[Any](), list[str]()
-    for word, zeros in sections.passages.items():
-        ones, others = single_and_other(zeros)
-        rows += [[k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)]
-        names += [word] * len(ones)
-        check_possible(others, said["possible"][word], proved.times[-1])
-        demand(said["counts"][word] == len(ones), "misprint: the count of passages")
-
-    header, *lines = lines_of(texts["sections.csv"])
-    demand([line[0] for line in lines] == names and header[0] == "section", "misprint: other sections")
-    text = "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
-    least = {name: Fraction(bound) for name, bound in said["bounds"].items()}
-    check_rows(text, HEADER, rows, least, said["decimals"])
+def section_scan(balls: SceneBalls, word: str, second_order: bool = False) -> Scan:
+    """Return a scan for the passages of a section; `second_order`: of highest and lowest points by `Apsis`."""
+    with ctx.workprec(balls.prec):
+        a, b, d = form(balls, word)
+        slow = vanishes_at_release(balls, word)
+    kind = Apsis if second_order and word in WAYS else Form
+    return Scan(balls, lambda covered: kind(covered, a, b, d, slow), WAYS.get(word, 0))

@@ -24,7 +24,10 @@ State = tuple[Interval, ...]  # x, y, z in m, vx, vy, vz in m/s
 
 @dataclass(frozen=True, slots=True)
 class EnclosedZero:
-    """A single zero of xdot or of a section's form ("one"), or an interval that may hold zeros ("possible")."""
+    """A single zero of xdot or of a section's form ("one"), or an interval that may hold zeros; SI units.
+
+    Of a zero of xdot vx and vz are None, of another one ax is.
+    """
 
     parity: str  # "one"; of possible zeros "odd" (so at least one), "even" or "unknown"
     direction: int  # +1 where it goes from - to +, 0 if not known
@@ -32,38 +35,29 @@ class EnclosedZero:
     x: Interval
     y: Interval
     z: Interval
+    vy: Interval
+    vx: Interval | None = None
+    vz: Interval | None = None
+    ax: Interval | None = None
 
     @property
     def kind(self) -> str:
-        """Kind of transit: "one" where it is proved to be a single zero, else "possible"."""
+        """Kind of zero: "one" where it is proved to be a single one, else "possible"."""
         return "one" if self.parity == "one" else "possible"
 
 
-@dataclass(frozen=True, slots=True)
-class EnclosedTransit(EnclosedZero):
-    """A zero of xdot; SI units."""
-
-    vy: Interval
-    ax: Interval
-
-
-@dataclass(frozen=True, slots=True)
-class EnclosedPassage(EnclosedZero):
-    """A zero of a section's form; SI units."""
-
-    vx: Interval
-    vy: Interval
-    vz: Interval
+XDOT = "xdot"  # the word of the zeros that are called transits; every other word is that of a section
+Zeros = dict[str, tuple[EnclosedZero, ...]]  # by word
 
 
 @dataclass(frozen=True, eq=False)
 class Proved:
-    """The result of a proof: for these inputs, intervals of the state at each of `times` and of every transit."""
+    """The result of a proof: for these inputs, intervals of the state at each of `times` and of every zero."""
 
     inputs: Inputs
     times: tuple[Fraction, ...]
     states: tuple[State, ...]
-    transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or `still`
+    zeros: Zeros  # those that were requested; without xdot where that is identically zero
     still: bool  # xdot is identically zero
 
 
@@ -75,14 +69,6 @@ class ProvedFunction:
     facts: dict[str, Any]  # what function.json says of its coefficients
     bounds: dict[str, Fraction]  # of what it evaluates to, in m and m/s
     data: bytes  # function.f64
-
-
-@dataclass(frozen=True, eq=False)
-class ProvedSections:
-    """The passages of each section, by its word."""
-
-    proved: Proved  # in the same run
-    passages: dict[str, tuple[EnclosedPassage, ...]]
 
 
 class Box(NamedTuple):
@@ -100,8 +86,7 @@ class ProvedBox:
     box: Box
     times: tuple[Fraction, ...]
     states: tuple[State, ...]
-    transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or xdot is identically zero
-    sections: dict[str, tuple[EnclosedPassage, ...]]  # by their words
+    zeros: Zeros  # those that were requested; without xdot where that is identically zero
 
 
 class Led(NamedTuple):
@@ -114,13 +99,12 @@ class Led(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ProvedDerivatives:
-    """Derivatives to `names`, for all inputs of a box: of the states at its times, of the times of transits."""
+    """Derivatives to `names`, for all inputs of a box: of the states at its times, of the times of its zeros."""
 
     proved: ProvedBox
     names: tuple[str, ...]
     states: tuple[tuple[State, ...], ...]  # per time, per name
-    transits: tuple[Led, ...]
-    passages: dict[str, tuple[Led, ...]]  # of highest and lowest points, by word
+    zeros: dict[str, tuple[Led, ...]]  # of transits, highest and lowest points, by word
 
 
 class Tangent(NamedTuple):

@@ -23,6 +23,7 @@ from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, to_mpf
 from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep
+from ...numbers.zeros import XDOT, Zeros
 from ..plan import MOST_TURN, Pace, Plan, Report, Run
 from .events import march
 from .model import Numbers
@@ -171,17 +172,17 @@ def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, 
     return Run(
         plan=plan,
         grid=stepper.model.table(states, bits),
-        transits=None if zeros is None else _transits(stepper, zeros, bits),
-        directions=[zero.direction for zero in zeros or ()],
         order=stepper.order,
         steps=stepper.steps,
         compile_s=stepper.compile_s,
         cpu_s=time.process_time() - started,
+        zeros={} if zeros is None else {XDOT: _transits(stepper, zeros, bits)},
     )
 
 
-def _transits(stepper: Stepper, zeros: list[Zero], bits: int) -> Table:
+def _transits(stepper: Stepper, zeros: list[Zero], bits: int) -> Zeros[Table]:
     dtype = stepper.numbers.dtype
     states = stepper.model.table(np.array([zero.state for zero in zeros], dtype=dtype), bits)
     times = stepper.numbers.fixed(np.array([zero.t for zero in zeros], dtype=dtype), bits)
-    return Table(("t", *states.columns), bits, [(t, *row) for t, row in zip(times, states.values, strict=True)])
+    table = Table(("t", *states.columns), bits, [(t, *row) for t, row in zip(times, states.values, strict=True)])
+    return Zeros(table, [zero.direction for zero in zeros])

@@ -24,9 +24,9 @@ class Limbs(Engine):
     start_s = 0.5
     proof_step_s = 4e-4  # its steps are twice as long as heyoka's
 
-    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
+    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()) -> Plan:
         """Return the run that keeps `prec` bits of a number as large as the swing."""
-        return Plan(inputs, self.formulation, NumberType("limbs", prec), times, transits, self.name)
+        return Plan(inputs, self.formulation, NumberType("limbs", prec), times, zeros, self.name)
 
     def witness(self, published: Plan, prec: int) -> Plan:
         """Return a run of at most `prec` bits, with fewer limbs than the published run, and in other steps."""

@@ -19,6 +19,7 @@ from ...numbers.columns import RUN
 from ...numbers.precision import Array
 from ...numbers.table import Table
 from ...numbers.taylor_step import Digits, TaylorStep
+from ...numbers.zeros import XDOT, Zeros
 from ...system.machine_code import prepare
 from ..plan import AT_REST, Pace, Plan, Report, Run
 from ..simd.lanes import LANES, aligned
@@ -185,12 +186,11 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
     return Run(
         plan=plan,
         grid=Table(RUN, bits + SPARE_BITS, grid),
-        transits=transits if integration.seek else None,
-        directions=zeros[:, -1].tolist(),
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
         compile_s=integration.compile_s,
         cpu_s=time.process_time() - cpu_start,
+        zeros={XDOT: Zeros(transits, zeros[:, -1].tolist())} if integration.seek else {},
     )
 
 

@@ -65,7 +65,7 @@ def test_a_run_of_60_bits_more_and_mostly_in_another_formulation_lies_within_eve
     pilot = run_pilot(scene.exact, times)
     prec = first_prec(scene, pilot, AUTO) + 60
     if name == THIRTY_DAYS:
-        finer = run(engines()["limbs"].plan(scene.exact, prec, times, transits=False))
+        finer = run(engines()["limbs"].plan(scene.exact, prec, times))
     else:
         finer = run(confirming_plan(scene, times, pilot, prec))
         assert finer.plan.formulation != golden.manifest.run.formulation

@@ -16,8 +16,8 @@ from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import Radius
 from reference.enclosure.trusted.shapes import Covered, Tube
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.transits import MOST_LEAVES, Scan
 from reference.enclosure.trusted.tube import output, tube
+from reference.enclosure.trusted.zeros import MOST_LEAVES, Scan
 from reference.numbers.taylor_step import Digits
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]

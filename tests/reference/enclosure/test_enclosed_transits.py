@@ -17,7 +17,7 @@ from reference.enclosure.trusted.balls import ball
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.shapes import Covered, Leaf, Tube
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.transits import Scan, Slope, narrowed
+from reference.enclosure.trusted.zeros import Scan, Slope, narrowed
 from reference.numbers.taylor_step import TaylorStep
 
 
@@ -220,7 +220,7 @@ def test_a_zero_far_from_the_middle_of_a_bent_leaf_is_found():
 
 def test_whatever_is_proposed_the_zero_stays_between():
     rng, balls = Random(2), SceneBalls(scene(), 128)
-    trusted = with_names("reference/enclosure/trusted/transits.py", around_zero=lambda _: times)
+    trusted = with_names("reference/enclosure/trusted/zeros.py", around_zero=lambda _: times)
     with ctx.workprec(balls.prec):
         row = [0, 0, 1 << 127]  # xdot = s, known to 0.01
         piece = Piece(balls, unit_step(128, (row, *[[0]] * 3)))

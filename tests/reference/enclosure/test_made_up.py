@@ -13,7 +13,7 @@ from reference.enclosure.trusted.balls import ball
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.shapes import Covered, Tube
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.transits import Scan
+from reference.enclosure.trusted.zeros import Scan
 from reference.numbers.taylor_step import TaylorStep
 
 BITS = 200

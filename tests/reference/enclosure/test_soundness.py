@@ -35,8 +35,8 @@ from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import Radius
 from reference.enclosure.trusted.six_columns import Columns
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.transits import Scan
 from reference.enclosure.trusted.tube import output
+from reference.enclosure.trusted.zeros import Scan
 from reference.engines.registry import engines, run
 from reference.numbers.columns import STATE, TRANSITS
 from reference.numbers.taylor_step import Digits
@@ -182,7 +182,7 @@ BY = pytest.mark.parametrize("digits", [False, True], ids=["by FLINT", "by digit
 def true_run(name):
     """A scene by limbs, which have nothing of the recurrence that is sabotaged."""
     inputs, end, _ = SABOTAGED[name]
-    return run(engines()["limbs"].plan(inputs, 200, (Fraction(0), end), True))
+    return run(engines()["limbs"].plan(inputs, 200, (Fraction(0), end), ("xdot",)))
 
 
 def true_end(name):

@@ -143,7 +143,7 @@ def test_what_is_constant_is_not_shown_and_the_motion_is_the_same():
     shown = [line.partition("'")[0] for line in equations_text(FORMULATIONS["momentum"], k)]
     assert shown == ["nx", "ny", "nz", "Hx", "Hy"]
     times = (Fraction(0), Fraction(7), Fraction(60))
-    less, whole = (run(Plan(scene.exact, name, real(120), times, transits=True)) for name in ("momentum", "inertial"))
+    less, whole = (run(Plan(scene.exact, name, real(120), times, ("xdot",))) for name in ("momentum", "inertial"))
     gaps = less.grid.distance(whole.grid).largest()
     assert all(0 <= gap < Fraction(1, 2**100) for gap in gaps.values())
     assert less.directions == whole.directions and len(less.directions) > 0
@@ -234,7 +234,7 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, tmp_path, home):
 def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris):
     """As it is for a short run; that of a long one, whose steps are the same at first, is compiled thoroughly."""
     quick, thorough = (
-        run(Plan(paris.exact, "space", real(200), (Fraction(0), Fraction(50), Fraction(end)), transits=True))
+        run(Plan(paris.exact, "space", real(200), (Fraction(0), Fraction(50), Fraction(end)), ("xdot",)))
         for end in (100, 2000)
     )
     assert quick.grid.values[:2] == thorough.grid.values[:2]

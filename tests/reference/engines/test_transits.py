@@ -133,7 +133,7 @@ def test_guard_xdot_identically_zero_is_known_from_the_exact_inputs(sections, va
     scene = make_scene(**sections)
     assert xdot_vanishes(start_for(scene, DOUBLE)) == vanishes
     if vanishes:
-        done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
+        done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), ("xdot",)))
         assert done.transits is None
         assert len(set(done.grid.exact("x"))) == 1
 
@@ -303,7 +303,7 @@ def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
 def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris, size):
     hours = size(1, 24)
     times, pairs = (Fraction(0), Fraction(3600 * hours)), {1: 219, 24: 5257}[hours]
-    runs = [run(Plan(paris.exact, name, LONG_DOUBLE, times, transits=True)) for name in ("momentum", "space")]
+    runs = [run(Plan(paris.exact, name, LONG_DOUBLE, times, ("xdot",))) for name in ("momentum", "space")]
     assert [len(one.transits) for one in runs] == [2 * pairs, 2 * pairs]
     assert runs[0].directions == runs[1].directions == [1, -1] * pairs
     late, slopes = runs[0].transits.distance(runs[1].transits).exact("t"), runs[0].transits.exact("ax")
@@ -314,7 +314,7 @@ def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris, 
 
 def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_others(paris):
     times = (Fraction(0), Fraction(86400))
-    done = run(Plan(paris.exact, "momentum", DOUBLE, times, transits=True))
+    done = run(Plan(paris.exact, "momentum", DOUBLE, times, ("xdot",)))
     slopes = sorted(abs(done.transits["ax"]))
     assert slopes[0] < slopes[len(slopes) // 2] / 1000
 
@@ -371,19 +371,19 @@ def test_a_zero_of_higher_order_at_the_release_is_left_out_and_no_other(release,
 def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof_has_it(number):
     """y0 = 0.5 m: the first transit is proved to be at 8.2266590196580988 s; there must be no spurious one at 0."""
     scene = make_scene(release={"x": "0", "y": "0.5"})
-    done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), transits=True))
+    done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), ("xdot",)))
     assert abs(done.transits.exact("t")[0] - Fraction("8.2266590196580988")) < (1e-9 if number is DOUBLE else 1e-15)
 
 
 def test_a_moving_release_may_have_a_transit_in_its_first_step():
     """xdot(0) = 0.067 m/s: the first transit is proved to be at 1.38290078 s."""
     scene = make_scene(release={"x": "0.3", "y": "0.4", "vx": "0.067"})
-    done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
+    done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), ("xdot",)))
     assert abs(done.transits["t"][0] - 1.38290078) < 1e-8
 
 
 def test_a_run_shorter_than_the_quiet_start_has_no_transit(paris):
-    done = run(Plan(paris.exact, "momentum", real(160), (Fraction(0), Fraction(1, 10)), transits=True))
+    done = run(Plan(paris.exact, "momentum", real(160), (Fraction(0), Fraction(1, 10)), ("xdot",)))
     assert len(done.transits) == 0
 
 

@@ -25,7 +25,7 @@ def test_the_witness_of_limbs_has_fewer_limbs_and_every_step_is_another(swing):
     limbs, steps = engines()["limbs"], 16
     scene = make_scene(site={"rotation_rate": "0"}, release={"x": "0.3", "y": "0.4", **swing})
     for prec in (80, 88, 104, 128, 200, 384):
-        published = limbs.plan(scene.exact, prec, (Fraction(0), Fraction(1000)), transits=False)
+        published = limbs.plan(scene.exact, prec, (Fraction(0), Fraction(1000)))
         witness = limbs.witness(published, prec - 16)
         assert witness.number.prec <= prec - 16
         one, other = (Integration(plan, steps) for plan in (published, witness))

@@ -54,7 +54,7 @@ BEYOND_LIMBS = make_scene(
 )
 def test_a_tiny_swing_has_bounds_that_hold(scene):
     solution = reference.solve(scene)
-    truth = run(Plan(scene.exact, "spin", real(512), solution.times, transits=True))
+    truth = run(Plan(scene.exact, "spin", real(512), solution.times, ("xdot",)))
     assert solution.directions == truth.directions
     for table, exact, columns in ((solution.grid, truth.grid, GRID), (solution.transits, truth.transits, TRANSITS)):
         gaps = table.only(columns).distance(exact)
@@ -72,7 +72,7 @@ def test_where_steps_are_at_their_longest_the_second_run_has_others():
 
 
 def test_a_run_does_not_confirm_itself(paris):
-    alone = run(Plan(paris.exact, "spin", real(90), (Fraction(0), Fraction(10)), transits=True))
+    alone = run(Plan(paris.exact, "spin", real(90), (Fraction(0), Fraction(10)), ("xdot",)))
     with pytest.raises(IntegrationError, match="the same run"):
         Agreement.between(alone, alone, 15)
 
@@ -117,8 +117,8 @@ def transits_in_double(name):
     """Return a run in double, its largest errors on a dense grid, and those of its transits; the truth is far finer."""
     end = 5 if name == "short cord" else 20  # s; that one swings five times a second
     scene, times = make_scene(**TRANSIT_SCENES[name]), tuple(Fraction(k, 20) for k in range(20 * end + 1))
-    rough = run(Plan(scene.exact, "momentum", DOUBLE, times, transits=True))
-    fine = run(Plan(scene.exact, "spin", real(120), times, transits=True))
+    rough = run(Plan(scene.exact, "momentum", DOUBLE, times, ("xdot",)))
+    fine = run(Plan(scene.exact, "spin", real(120), times, ("xdot",)))
     assert rough.directions == fine.directions
     on_grid = rough.grid.only(GRID).distance(fine.grid).largest()
     return rough, on_grid, rough.transits.only(TRANSITS).distance(fine.transits)
@@ -148,7 +148,7 @@ TURNING = make_scene(
 
 def test_the_errors_of_transits_are_the_sums_that_the_module_states():
     """A fast Earth and much drag, where each term counts; in exact fractions but for the norms."""
-    made = run(Plan(TURNING.exact, "spin", DOUBLE, (Fraction(0), Fraction(10)), transits=True))
+    made = run(Plan(TURNING.exact, "spin", DOUBLE, (Fraction(0), Fraction(10)), ("xdot",)))
     errors = {name: Fraction(k, 10**6) for name, k in zip(GRID, (3, 5, 7, 2, 11, 13), strict=True)}
     table = with_transit_errors(made, errors, None)
     k = Start.of(TURNING.exact, 200).k
@@ -178,7 +178,7 @@ def test_the_errors_of_transits_are_the_sums_that_the_module_states():
 @cache
 def passages_in_double():
     words = ("gate 30", "gate 70@0", "turn 50", "highest")
-    return run(Plan(TURNING.exact, "spin", DOUBLE, (Fraction(0), Fraction(10)), transits=False, sections=words))
+    return run(Plan(TURNING.exact, "spin", DOUBLE, (Fraction(0), Fraction(10)), words))
 
 
 def form_and_rates(word, state):
@@ -229,7 +229,7 @@ def test_no_error_of_a_time_is_below_the_last_bit_of_the_run():
 
 
 def test_zeros_lack_bits_where_directions_differ_or_a_number_has_not_its_digits(paris):
-    witness = run(Plan(paris.exact, "spin", real(90), (Fraction(0), Fraction(10)), transits=True))
+    witness = run(Plan(paris.exact, "spin", real(90), (Fraction(0), Fraction(10)), ("xdot",)))
     table, places = Table(SECTION, 8, [(500 << 8, *[0] * 6)]), dict.fromkeys(GRID, 9) | {"t": 2}
     later = Table(SECTION, 8, [((500 << 8) + 1, *[0] * 6)])
     missing, apart = zeros_lacking((table, [1]), (table, [1]), places, witness)
@@ -243,7 +243,7 @@ def test_zeros_lack_bits_where_directions_differ_or_a_number_has_not_its_digits(
 def test_the_times_of_passages_have_the_decimals_of_the_latest_of_all_sections(paris):
     """Five digits of 117 s are two after the point, and 1/512 s is less than a quarter of a unit of the last."""
     times, words = (Fraction(0), Fraction(60), Fraction(120)), ("highest", "lowest")
-    plans = (Plan(paris.exact, "momentum", real(bits), times, transits=False, sections=words) for bits in (136, 120))
+    plans = (Plan(paris.exact, "momentum", real(bits), times, words) for bits in (136, 120))
     one, other = map(run, plans)
     early = {word: (replace(table, values=table.values[:3]), ways[:3]) for word, (table, ways) in one.passages.items()}
 
@@ -272,7 +272,7 @@ def test_no_error_of_a_transit_is_below_twice_the_difference_of_two_runs(error, 
 
 @pytest.mark.parametrize("error", [Fraction(1, 2**200), Fraction(1, 2**60)])
 def test_no_error_of_a_passage_is_below_twice_the_difference_of_two_runs(paris, error):
-    plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=False, sections=("gate 30",))
+    plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), ("gate 30",))
     found = run(plan)
     passages, _ = found.passages["gate 30"]
     apart = Table(SECTION, 90, [[2**60 * (1 + k) for k in range(len(SECTION))]] * len(passages))
@@ -288,7 +288,7 @@ def norm(vector):
 
 def test_the_time_of_a_transit_that_only_grazes_zero_is_unknown(paris):
     """xdot may be off by as much as the whole swing has: no zero of it is certain."""
-    solution = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
+    solution = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), ("xdot",)))
     table = with_transit_errors(solution, dict.fromkeys(GRID, Fraction(1)), None)
     assert set(table.bound("t")) == {10**9}
 
@@ -302,7 +302,7 @@ def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the
 
 def test_the_error_of_a_column_is_twice_the_difference_of_two_runs(paris):
     times = (Fraction(0), Fraction(30), Fraction(60))
-    one, other = (run(Plan(paris.exact, "spin", number, times, transits=True)) for number in (DOUBLE, real(120)))
+    one, other = (run(Plan(paris.exact, "spin", number, times, ("xdot",))) for number in (DOUBLE, real(120)))
     found = Agreement.between(one, other, 12)
     gaps = one.grid.only(GRID).distance(other.grid).largest()
     assert found.errors == {name: 2 * gap for name, gap in gaps.items()}
@@ -313,7 +313,7 @@ def test_the_error_of_a_column_that_never_changes_is_the_last_bit_of_the_second_
     """Of the cord's length, and of the largest speed; where nothing moves, of the speed of a swing as wide as that."""
     scene = make_scene(pendulum={"length": "2"}, site={"rotation_rate": "0"}, release={"x": "0", "y": y})
     times = (Fraction(0), Fraction(1), Fraction(2))
-    one, other = (run(Plan(scene.exact, "spin", number, times, transits=False)) for number in (DOUBLE, real(120)))
+    one, other = (run(Plan(scene.exact, "spin", number, times)) for number in (DOUBLE, real(120)))
     found = Agreement.between(one, other, 12).errors
     fastest = one.grid.largest()["vy"] or sqrt(scene.exact.gravity * 2)
     assert found["x"] == Fraction(2, 2**120)
@@ -322,7 +322,7 @@ def test_the_error_of_a_column_that_never_changes_is_the_last_bit_of_the_second_
 
 def test_runs_that_find_other_transits_lack_half_their_bits_and_one_without_any_is_not_asked(paris):
     plans = (
-        Plan(paris.exact, "spin", number, (Fraction(0), Fraction(60)), transits=True) for number in (DOUBLE, real(120))
+        Plan(paris.exact, "spin", number, (Fraction(0), Fraction(60)), ("xdot",)) for number in (DOUBLE, real(120))
     )
     one, other = map(run, plans)
     found = Agreement.between(one, replace(other, directions=other.directions[:-1]), 12)

@@ -93,12 +93,12 @@ def test_exact_rest_is_no_growth_and_a_motion_slower_than_65_bits_show_is_seen()
 
 def pace_of(scene):
     times = (Fraction(0), scene.exact.t_end)
-    plan = Plan(scene.exact, "momentum", DOUBLE, times, transits=False)
+    plan = Plan(scene.exact, "momentum", DOUBLE, times)
     return run(plan, pace=Pace(scene.exact, scene.exact.t_end))
 
 
 def test_watching_the_pace_changes_nothing(paris):
-    plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(86400)), transits=False)
+    plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(86400)))
     assert pace_of(paris).grid == run(plan).grid
 
 
@@ -194,7 +194,7 @@ def test_a_proof_has_no_number_of_hardware(paris, digits):
 @cache
 def in_200_bits(times):
     """The states of Paris, with more digits than any run under test."""
-    return run(engines()["limbs"].plan(load_scene("paris").exact, 200, times, transits=False)).grid.only(STATE)
+    return run(engines()["limbs"].plan(load_scene("paris").exact, 200, times)).grid.only(STATE)
 
 
 @pytest.mark.parametrize("engine", ["limbs", "heyoka"])

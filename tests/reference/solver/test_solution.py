@@ -114,7 +114,7 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
 
 
 def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
-    witness = run(Plan(solution.scene.exact, "spin", DOUBLE, solution.times, transits=True))
+    witness = run(Plan(solution.scene.exact, "spin", DOUBLE, solution.times, ("xdot",)))
     gaps = {name: Fraction(i, 7) for i, name in enumerate(GRID)}
     check = CrossCheck.by(witness, gaps, None)
     assert (check.engine, check.formulation, check.number) == ("heyoka", "spin", "double")

@@ -35,7 +35,7 @@ def paris(paris):
 
 def by_higher_precision(scene, prec=256):
     """x, y, z, vx, vy, vz at the end from one run far finer than any under test, in yet another formulation."""
-    done = run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), transits=False))
+    done = run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid)))
     return [done.grid.exact(name)[-1] for name in GRID]
 
 
@@ -86,7 +86,7 @@ def test_the_last_printed_digit_is_off_by_at_most_one_at_every_level(level, digi
 
 def test_the_bound_of_every_transit_holds_against_a_finer_run(paris, size):
     solution = reference.solve(paris, t_end=size("120", "600"), digits=20, level="confirmed")
-    finer = run(Plan(solution.scene.exact, "spin", real(160), solution.times, transits=True))
+    finer = run(Plan(solution.scene.exact, "spin", real(160), solution.times, ("xdot",)))
     exact = finer.transits.exact("t")
     sheet = transits_sheet(solution)
     assert len(exact) == len(sheet.rows) == size(14, 73)
@@ -208,7 +208,7 @@ def test_two_cheap_runs_give_the_states_at_any_times_and_their_distance_as_the_e
     assert solution.times == (0, Fraction(1, 4), 37, 90)
     assert (solution.level, solution.pilot_s) == ("confirmed", 0)
     assert (solution.run.number, solution.checks[0].number) == ("long_double", "double")
-    truth = run(Plan(paris.exact, "spin", real(160), solution.times, transits=True))
+    truth = run(Plan(paris.exact, "spin", real(160), solution.times, ("xdot",)))
     for table, finer in ((solution.grid, truth.grid), (solution.transits, truth.transits)):
         gaps = table.distance(finer)
         for name in table.columns:
@@ -314,7 +314,7 @@ def test_a_wrong_field_is_refused_before_anything_runs(paris):
 
 
 def test_two_processes_give_what_one_gives(monkeypatch, paris):
-    fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), transits=True)
+    fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), ("xdot",))
     coarse = replace(fine, formulation="space", number=real(100))
     seen: list[float] = []
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0}, raising=False)
@@ -328,9 +328,9 @@ def test_two_processes_give_what_one_gives(monkeypatch, paris):
 
 
 def test_an_error_in_the_second_process_arrives_in_the_first(paris):
-    good = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=False)
+    good = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)))
     lost = make_scene(pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
-    bad = Plan(lost.exact, "space", DOUBLE, (Fraction(0), Fraction(10**6)), transits=False)
+    bad = Plan(lost.exact, "space", DOUBLE, (Fraction(0), Fraction(10**6)))
     with pytest.raises(IntegrationError):
         run_both(good, bad, 10**9)
 

@@ -37,7 +37,7 @@ def drawn(pytestconfig):
     ]
     words.append(f"{words[3]}@0")
     limbs = engines()["limbs"]
-    plans = [limbs.plan(inputs, 110, (Fraction(0), SPAN), False) for inputs in many]
+    plans = [limbs.plan(inputs, 110, (Fraction(0), SPAN)) for inputs in many]
     return many, words, [run(replace(plan, sections=tuple(words))).passages for plan in plans]
 
 

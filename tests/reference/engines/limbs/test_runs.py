@@ -179,7 +179,7 @@ from reference import load_scene
 from reference.engines.registry import engines
 times = tuple(Fraction(7 * k, 5) for k in range(40))
 limbs = engines()["limbs"]
-result = limbs.run(limbs.plan(load_scene("paris").exact, 113, times, transits=True))
+result = limbs.run(limbs.plan(load_scene("paris").exact, 113, times, ("xdot",)))
 print((result.grid.values, result.transits.values, result.steps))
 """
 

@@ -1,4 +1,4 @@
-"""TRUSTED. Transits enclosed: every zero of xdot in (0, T], which are single, and where (THEOREM.md, section 8)."""
+"""TRUSTED. Every zero of a form in (0, T]: which are single, and where; xdot itself (THEOREM.md, section 8)."""
 
 from fractions import Fraction
 from functools import reduce
@@ -9,11 +9,11 @@ from flint import arb, arb_poly, ctx
 
 from ..guess import around_zero
 from .balls import SHORT, Vector, ball, cross, demand, interval
-from .shapes import Covered, EnclosedTransit, Leaf
+from .shapes import Covered, EnclosedZero, Leaf
 from .system import SceneBalls
 from .tube import state
 
-MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
+MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible zero
 
 
 def sign(x: arb) -> int:
@@ -23,6 +23,8 @@ def sign(x: arb) -> int:
 
 class Slope:
     """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
+
+    names: tuple[str, ...] = ("x", "y", "z", "vy", "ax")  # what `row` returns
 
     def __init__(self, covered: Covered) -> None:
         self.covered, self.piece, self.unit, (piece, tube) = covered, covered.piece, covered.piece.unit, covered
@@ -55,10 +57,10 @@ class Scan:
     With `only` a direction, single zeros in the other one are left out.
     """
 
-    def __init__(self, balls: SceneBalls, slope: Any = Slope, kind: Any = EnclosedTransit, only: int = 0) -> None:
+    def __init__(self, balls: SceneBalls, slope: Any = Slope, only: int = 0) -> None:
         self.balls, self.left, self.time, self.leaves, self.slope = balls, 0, Fraction(0), 0, slope
         self.end: tuple[Slope, arb] | None = None
-        self.kind, self.only, self.found, self.cluster = kind, only, list[Any](), list[Leaf]()
+        self.only, self.found, self.cluster = only, list[EnclosedZero](), list[Leaf]()
 
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
@@ -94,8 +96,8 @@ class Scan:
             self._sort(slope, low, middle, depth + 1)
             self._sort(slope, middle, high, depth + 1)
 
-    def finish(self) -> list[Any]:
-        """Close the cluster that is open at T; return all transits in order."""
+    def finish(self) -> list[EnclosedZero]:
+        """Close the cluster that is open at T; return all zeros in order."""
         with ctx.workprec(self.balls.prec):
             self._close(sign(self.end[0].at(0, self.end[1])) if self.end else 0)
         return self.found
@@ -113,7 +115,8 @@ class Scan:
         way = leaves[0].bend if steady else right if product < 0 else 0
         rows = zip(*(slope.row(s) for slope, s in touched(leaves, t)), strict=True)
         values = (interval(reduce(arb.union, x) * self.balls.length) for x in rows)
-        self.found.append(self.kind(parity, way, interval(t), *values))
+        named = dict(zip(leaves[0].slope.names, values, strict=True))
+        self.found.append(EnclosedZero(parity, way, interval(t), **named))
 
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
