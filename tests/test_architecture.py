@@ -6,7 +6,7 @@ import ast
 import re
 
 from places import ROOT
-from structure import PACKAGES, sources
+from structure import PACKAGES, picture, sources
 
 PAGE = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
 
@@ -41,3 +41,9 @@ def test_every_folder_and_file_below_a_package_stands_in_the_tree():
                 assert f"`{package}/{path.name}`" in tree, path
             elif (path / "__init__.py").is_file():
                 assert f"`{package}/{path.name}/`" in tree, path
+
+
+def test_the_picture_of_the_packages_is_that_of_todays_imports():
+    again = "python tests/helpers/structure.py --picture > docs/packages.svg"
+    assert (ROOT / "docs/packages.svg").read_text(encoding="utf-8") == picture(ROOT), again
+    assert "](packages.svg)" in PAGE

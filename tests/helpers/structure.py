@@ -1,6 +1,7 @@
 """Measure the structure of the code: rooms, floors, arrows, circles and class names.
 
     python tests/helpers/structure.py [ROOT]
+    python tests/helpers/structure.py --picture > docs/packages.svg
 
 A room is a file or a folder directly inside a package; an arrow goes from a room to another room that it imports,
 imports for type checkers included. A room stands one floor above the highest room that it imports.
@@ -15,6 +16,15 @@ from functools import cache
 from pathlib import Path
 
 PACKAGES = ("reference", "compare")
+WIDE, BOX, HIGH, GAP, FLOOR = 420, 104, 26, 12, 58  # of the picture: a package, a box, from box to box, floor to floor
+MARGIN, TITLE = 16, 30
+STYLE = """<style>
+text { font: 12px sans-serif; text-anchor: middle; fill: #222 }
+.package { font-weight: bold; text-anchor: start }
+rect { fill: #eef3f8; stroke: #5a7896 }
+.frame { fill: none; stroke: #b9c6d3 }
+line { stroke: #8aa }
+</style>"""
 Arrows = set[tuple[str, str]]
 
 
@@ -140,6 +150,54 @@ def importers(root: Path) -> dict[Path, list[Path]]:
     return found
 
 
+def direct(found: Arrows) -> Arrows:
+    """The arrows that do not follow from two others."""
+    reach = {a: {b for start, b in found if start == a} for a, _ in found}
+    for middle in reach:
+        for ends in reach.values():
+            if middle in ends:
+                ends.update(reach[middle])
+    return {(a, b) for a, b in found if not any(b in reach.get(c, ()) for start, c in found if start == a)}
+
+
+def drawn(root: Path, name: str, left: int) -> tuple[list[str], int]:
+    """A package as elements of SVG, and how high it is: a row of boxes for each floor, a line for each direct arrow."""
+    rooms, found = arrows(root, name)
+    stack = floors(rooms, found)
+    places: dict[str, tuple[float, int]] = {}
+    for k, floor in enumerate(stack):
+        first = left + (WIDE - len(floor) * (BOX + GAP) + GAP) / 2
+        for i, room in enumerate(sorted(floor)):
+            places[room] = first + i * (BOX + GAP), TITLE + k * FLOOR
+    lines, boxes = [], []
+    for a, b in sorted(direct(found)):
+        (x1, y1), (x2, y2) = places[a], places[b]
+        lines.append(f'<line x1="{x1 + BOX / 2:g}" y1="{y1 + HIGH}" x2="{x2 + BOX / 2:g}" y2="{y2}"/>')
+    for room, (x, y) in sorted(places.items()):
+        boxes.append(f'<rect x="{x:g}" y="{y}" width="{BOX}" height="{HIGH}" rx="3"/>')
+        boxes.append(f'<text x="{x + BOX / 2:g}" y="{y + 17}">{room}</text>')
+    title = f'<text class="package" x="{left + MARGIN}" y="19">{name}</text>'
+    return [title, *lines, *boxes], TITLE + len(stack) * FLOOR - FLOOR + HIGH + MARGIN
+
+
+def picture(root: Path) -> str:
+    """Both packages side by side as SVG: their folders by floors, and what imports what."""
+    parts, high = [], 0
+    for k, name in enumerate(reversed(PACKAGES)):
+        left = 4 + k * (WIDE + 12)
+        elements, end = drawn(root, name, left)
+        parts += elements
+        high = max(high, end)
+    frames = [
+        f'<rect class="frame" x="{4 + k * (WIDE + 12)}" y="2" width="{WIDE}" height="{high - 2}" rx="6"/>'
+        for k in range(len(PACKAGES))
+    ]
+    label = "The folders of compare and reference; every line leads down from a folder to one that it imports"
+    size = f'width="{2 * WIDE + 20}" height="{high + 4}"'
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img" aria-label="{label}">'
+    return "\n".join([head, STYLE, *frames, *parts, "</svg>"]) + "\n"
+
+
 def main(root: Path) -> None:
     """Print the figures of a checkout."""
     for place in ("", *PACKAGES):
@@ -165,4 +223,7 @@ def main(root: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve())
+    if sys.argv[1:] == ["--picture"]:
+        print(picture(Path.cwd()), end="")
+    else:
+        main(Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve())
