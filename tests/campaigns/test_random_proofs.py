@@ -33,16 +33,16 @@ def misses(solution, engine):
     By heyoka it is in the formulation `spin`, which the proof does not use, but heyoka compiles for each precision.
     """
     scene, prec = solution.scene, solution.proof.enclosure.bits + FINER
-    plan = Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), ("xdot",) * scene.run.transits)
+    plan = Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), scene.run.zeros)
     if engine == "limbs":
-        plan = engines()["limbs"].plan(scene.exact, prec, tuple(scene.exact.grid), ("xdot",) * scene.run.transits)
+        plan = engines()["limbs"].plan(scene.exact, prec, tuple(scene.exact.grid), scene.run.zeros)
     try:
         truth = run(plan)
     except (UnreachableError, InputError, OverflowError):
         return None
     found = []
     tables = [("state", solution.grid, truth.grid)]
-    if (solution.zeros is None) != (truth.transits is None):
+    if solution.zeros.keys() != truth.zeros.keys():
         return ["xdot is identically zero in one of the two alone"]
     if truth.transits is not None and not solution.possible:
         if len(solution.transits) != len(truth.transits):

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import derivative_truths
 import numpy as np
 import pytest
-from boxes import SECTIONS, drawn, outside, truth, widened
+from boxes import WORDS, drawn, outside, truth, widened
 from derivative_truths import cross
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
@@ -156,12 +156,12 @@ TRUTHS = {}
 
 
 def runs_hold(module, names=SHORT_RUNS):
-    """Pendulums at the corners of a box lie inside, in states and transits."""
+    """Pendulums at the corners of a box lie inside, in states and zeros."""
     for name in names:
         changes, widths, end = SHORT_RUNS[name]
         box = widened(scene(t_end=str(end), **{"drag": "1e-3", **changes} if name == "drag" else changes), widths)
         times = [Fraction(end * k, 40) for k in range(41)]
-        windows = module.Windows(box, BITS + 64, times, True, SECTIONS)
+        windows = module.Windows(box, BITS + 64, times, WORDS)
         chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), BITS, 24).chain(Fraction(1, 16)))
         covered = []
         windows.course.followers.append(SimpleNamespace(advance=covered.append))

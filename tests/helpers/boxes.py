@@ -18,12 +18,13 @@ from reference.enclosure.trusted.shapes import Box, ProvedBox
 from reference.engines.plan import Run
 from reference.engines.registry import engines
 from reference.engines.registry import run as limbs_run
-from reference.numbers.columns import GRID, SECTION, TRANSITS
+from reference.numbers.columns import GRID
+from reference.numbers.zeros import XDOT, columns_of
 from reference.scenes.inputs import Inputs
 from reference.solver.proof_steps import Feed
 
 TRUTH_BITS = 133  # forty digits
-SECTIONS = ("highest", "gate 0", "turn 100")
+WORDS = (XDOT, "highest", "gate 0", "turn 100")
 ROUNDING = Fraction(1, 10**30)  # of such a run, in parts of the largest number
 NAMES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
 PLAIN = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
@@ -115,7 +116,7 @@ def proof_of(box: Box, times: list[Fraction], halves: dict[str, Fraction] | None
     def steps(bits: int, end: Fraction) -> Any:
         return Feed(box.inputs, (end,), "limbs", 1)(bits)
 
-    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, sections=SECTIONS)
+    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, zeros=WORDS)
 
 
 def inputs_of(box: Box) -> dict[str, Fraction]:
@@ -160,19 +161,17 @@ def wrong_derivatives(found: Any, inputs: Inputs, name: str) -> list[str]:
         pairs = zip(up.grid.exact(column), down.grid.exact(column), found.states, strict=True)
         for k, (high, low, row) in enumerate(pairs):
             check(f"{column} of row {k}", high, low, row[j][i])
-    times = [run.transits.exact("t") for run in (up, down)]
-    for z, led in zip(found.proved.transits or (), found.transits, strict=True):
-        near = [[t for t in run if z.t.low - 1000 * off <= t <= z.t.high + 1000 * off] for run in times]
-        if led.times and all(len(zeros) == 1 for zeros in near):
-            check(f"transit at {float(z.t.low)}", near[0][0], near[1][0], led.times[j])
-    points = [azimuths(run) for run in (up, down)]
-    for z, led in zip(found.proved.sections["highest"], found.passages["highest"], strict=True):
-        near = [[p for p in run if z.t.low - 1000 * off <= p[0] <= z.t.high + 1000 * off] for run in points]
-        if led.times and all(len(zeros) == 1 for zeros in near):
-            (high, turned), (low, before) = near[0][0], near[1][0]
-            check(f"highest point at {float(z.t.low)}", high, low, led.times[j])
-            turn = turned - before
-            check(f"azimuth at {float(z.t.low)}", turn - 360 * round(turn / 360), Fraction(0), led.azimuths[j])
+    for word, every in found.zeros.items():
+        points = [azimuths(run, word) for run in (up, down)]
+        for z, led in zip(found.proved.zeros[word], every, strict=True):
+            near = [[p for p in run if z.t.low - 1000 * off <= p[0] <= z.t.high + 1000 * off] for run in points]
+            if led.times and all(len(zeros) == 1 for zeros in near):
+                (high, turned), (low, before) = near[0][0], near[1][0]
+                check(f"{word} at {float(z.t.low)}", high, low, led.times[j])
+                if led.azimuths:
+                    turn = turned - before
+                    turn -= 360 * round(turn / 360)
+                    check(f"azimuth of {word} at {float(z.t.low)}", turn, Fraction(0), led.azimuths[j])
     return wrong
 
 
@@ -191,21 +190,22 @@ def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
 def truth(inputs: Inputs, times: Sequence[Fraction]) -> Run:
     """Return a run by limbs, with 40 digits."""
     limbs = engines()["limbs"]
-    return limbs_run(replace(limbs.plan(inputs, TRUTH_BITS, tuple(times), ("xdot",)), sections=SECTIONS))
+    return limbs_run(limbs.plan(inputs, TRUTH_BITS, tuple(times), WORDS))
 
 
-def passages(run: Run, word: str) -> list[tuple[Fraction, ...]]:
-    """Return t, x, y, z, vx, vy, vz of the passages of a section in a run."""
-    table, _ = run.passages[word]
-    return [*zip(*(table.exact(name) for name in SECTION), strict=True)]
+def rows_of(run: Run, word: str) -> list[tuple[Fraction, ...]]:
+    """Return the zeros of a word in a run, by its columns: time, position and then others."""
+    if word not in run.zeros:
+        return []
+    return [*zip(*map(run.zeros[word].table.exact, columns_of(word)), strict=True)]
 
 
-def azimuths(run: Run) -> list[tuple[Fraction, Fraction]]:
-    """Return the time of each highest point, and its azimuth about the run's own plumb line in degrees."""
+def azimuths(run: Run, word: str) -> list[tuple[Fraction, Fraction]]:
+    """Return the time of each zero of a word, and its azimuth about the run's own plumb line in degrees."""
     found = []
     with mp.workprec(TRUTH_BITS):
         (_, north, up), _ = plumb(run.plan.inputs)
-        for t, *place in ((row[0], *row[1:4]) for row in passages(run, "highest")):
+        for t, *place in ((row[0], *row[1:4]) for row in rows_of(run, word)):
             x, y, z = (mp.mpf(q.numerator) / q.denominator for q in place)
             angle = mp.atan2((north * z - up * y) / mp.hypot(north, up), x) * 180 / mp.pi
             found.append((t, Fraction(int(angle * 2**120), 2**120)))
@@ -213,7 +213,7 @@ def azimuths(run: Run) -> list[tuple[Fraction, Fraction]]:
 
 
 def outside(proved: ProvedBox, run: Run) -> list[str]:
-    """Return what of a run contradicts what is proved: states, transits that are lost, doubled or elsewhere."""
+    """Return what of a run contradicts what is proved: states, zeros that are lost, doubled or elsewhere."""
     found = []
     size = max(run.grid.largest().values())
 
@@ -224,37 +224,31 @@ def outside(proved: ProvedBox, run: Run) -> list[str]:
     for i, name in enumerate(GRID):
         for time, value, state in zip(proved.times, run.grid.exact(name), proved.states, strict=True):
             check(f"{name} at {float(time)}:", value, state[i].low, state[i].high)
-    for word, zeros in proved.sections.items():
-        rows = passages(run, word)
-        for row in rows:
-            inside = [z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING]
-            if len(inside) == 1 and inside[0].parity == "one":
-                for name, value in zip(SECTION, row, strict=True):
-                    interval = getattr(inside[0], name)
-                    check(f"{name} at a passage of {word}:", value, interval.low, interval.high)
-            elif not inside:
-                found.append(f"passage of {word} at {float(row[0])} is lost")
+    for word, zeros in proved.zeros.items():
+        columns, rows, directions = columns_of(word), rows_of(run, word), []
+        if rows:
+            directions = run.zeros[word].directions
+        # the zeros that each row may be; a late one of some pendulums comes after the end
+        near = [[z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING] for row in rows]
+        late = [z for z in zeros if z.t.high >= proved.times[-1]]
+        if all(z.parity == "one" for z in zeros):
+            if not len(zeros) - len(late) <= len(rows) <= len(zeros):
+                found.append(f"{len(rows)} zeros of {word}, {len(zeros)} proved")
+            own = [[z] for z in zeros[: len(rows)]]
+        else:
+            own = near
+        for row, direction, possible, inside in zip(rows, directions, own, near, strict=False):
+            if not inside:
+                found.append(f"{word} at {float(row[0])} is lost")
+            if len(possible) == 1 and possible[0].parity == "one":
+                for name, value in zip(columns, row, strict=True):
+                    interval = getattr(possible[0], name)
+                    check(f"{name} of {word}:", value, interval.low, interval.high)
+                if direction != possible[0].direction:
+                    found.append(f"direction of {word} at {float(row[0])}")
         for z in zeros:
-            single = z.parity == "one" and z.t.high < proved.times[-1]
-            if single and not any(z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING for row in rows):
-                found.append(f"no passage of {word} in {float(z.t.low)} to {float(z.t.high)}")
-    rows = list(zip(*(run.transits.exact(name) for name in TRANSITS), strict=True))
-    ones = [z for z in proved.transits if z.parity == "one"]
-    if len(ones) < len(proved.transits):  # some are undecided: each zero has to lie in one of all
-        for t, *_ in rows:
-            if not any(z.t.low - ROUNDING <= t <= z.t.high + ROUNDING for z in proved.transits):
-                found.append(f"transit at {float(t)} is lost")
-        return found
-    # the last ones may come after the end
-    late = [z for z in ones if z.t.high >= proved.times[-1]]
-    if not len(ones) - len(late) <= len(rows) <= len(ones):
-        found.append(f"{len(rows)} transits, {len(ones)} proved")
-    for row, direction, z in zip(rows, run.directions, ones, strict=False):
-        for name, value in zip(TRANSITS, row, strict=True):
-            interval = getattr(z, name)
-            check(f"{name} at a transit:", value, interval.low, interval.high)
-        if direction != z.direction:
-            found.append(f"direction at {float(row[0])}")
+            if z.parity == "one" and z not in late and not any(z in inside for inside in near):
+                found.append(f"no zero of {word} in {float(z.t.low)} to {float(z.t.high)}")
     return found
 
 
@@ -269,18 +263,20 @@ def widths_over_hulls(proved: ProvedBox, runs: Sequence[Run]) -> dict[str, float
 
 
 def ordered(proved: ProvedBox) -> bool:
-    """Return whether transits follow each other."""
-    return all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in pairwise(proved.transits or ()))
+    """Return whether the zeros of each word follow each other."""
+    pairs = (pair for zeros in proved.zeros.values() for pair in pairwise(zeros))
+    return all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in pairs)
 
 
 def check_runs(name: str, box: Box, proved: ProvedBox, count: int) -> None:
     """Hold runs that are drawn from a box against what is proved for it, and print how wide that is."""
     rng = Random(name)
-    assert proved.transits or any(proved.sections.values()), "nothing is claimed"
+    assert any(proved.zeros.values()), "nothing is claimed"
     assert ordered(proved)
     runs = [truth(drawn(box, rng, corner=k % 2 == 0), proved.times) for k in range(count)]
     for run in runs:
         assert outside(proved, run) == []
     ratios = widths_over_hulls(proved, runs)
-    print(f"\n{name}: {len(runs)} runs, {len(proved.transits)} transits; widths over hulls", end=" ")
+    counts = ", ".join(f"{len(zeros)} of {word}" for word, zeros in proved.zeros.items())
+    print(f"\n{name}: {len(runs)} runs; zeros: {counts}; widths over hulls", end=" ")
     print(", ".join(f"{column} {ratio:.2f}" for column, ratio in ratios.items()))

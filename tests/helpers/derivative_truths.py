@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from boxes import SECTIONS, azimuths, drawn, inputs_of, moved, outside, truth, widened
+from boxes import WORDS, azimuths, drawn, inputs_of, moved, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
 from flint import arb, arb_poly, ctx
@@ -177,17 +177,18 @@ ROUNDED = Fraction(1, 10**24)  # a difference of two runs with forty digits, ove
 
 
 def slopes_at(inputs, key, times):
-    """Differences of runs: of the states, and of each transit."""
+    """Differences of runs: of the states, and of each zero, by word and by what is differentiated."""
     off = Fraction(1, 10**12)
     up, down = (truth(moved(inputs, key, side * off), times) for side in (1, -1))
     rows = [[(a - b) / (2 * off) for a, b in zip(up.grid.exact(c), down.grid.exact(c), strict=True)] for c in GRID]
-    zeros = [run.transits.exact("t") for run in (up, down)]
-    pairs = zip(*zeros, strict=True) if len(zeros[0]) == len(zeros[1]) else ()
-    points = [azimuths(run) for run in (up, down)]
-    apses = [*zip(*points, strict=True)] if len(points[0]) == len(points[1]) else []
-    late = [(a, (a - b) / (2 * off)) for (a, _), (b, _) in apses]
-    turned = [(a, (x - y - 360 * round((x - y) / 360)) / (2 * off)) for (a, x), (_, y) in apses]
-    return rows, [(a, (a - b) / (2 * off)) for a, b in pairs], late, turned
+    zeros = {}
+    for word in ("xdot", "highest"):
+        points = [azimuths(run, word) for run in (up, down)]
+        pairs = [*zip(*points, strict=True)] if len(points[0]) == len(points[1]) else []
+        zeros[word, "times"] = [(a, (a - b) / (2 * off)) for (a, _), (b, _) in pairs]
+        turned = [(a, x - y - 360 * round((x - y) / 360)) for (a, x), (_, y) in pairs]
+        zeros[word, "azimuths"] = [(a, turn / (2 * off)) for a, turn in turned]
+    return rows, zeros
 
 
 def known(name, box, times):
@@ -218,7 +219,7 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             halves = halves if whole else dict.fromkeys(halves, Fraction(0))
             rows = 13 if not poor else 5 if kind == "poor" and name == "damped" else 2
             bits = COARSE if kind == "coarse" else BITS
-            windows = windows_of(here, BITS + 64, times[:rows], True, SECTIONS)
+            windows = windows_of(here, BITS + 64, times[:rows], WORDS)
             follower = module.Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             ways = follower.bound.ways
             source = Poor(ways) if poor else (Jumping if kind == "jumping" else TangentSource)(windows.balls, ways)
@@ -238,20 +239,21 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
 
 
 def slopes_hold(found, j, truths, case):
-    """Differences of states and of single transits are inside."""
-    rows, *zeros = truths
+    """Differences of states and of single zeros are inside."""
+    rows, zeros = truths
     for i, column in enumerate(rows):
         for k, (slope, row) in enumerate(zip(column, found.states, strict=False)):
             slack = abs(slope) / 10**15 + ROUNDED
             assert row[j][i].low - slack <= slope <= row[j][i].high + slack, (*case, i, k)
-    highest = found.proved.sections["highest"], found.passages["highest"]
-    made = [(found.proved.transits, found.transits, "times"), (*highest, "times"), (*highest, "azimuths")]
-    for slopes, (proved, every, name) in zip(zeros, made, strict=True):
-        for z, led in zip(proved, every, strict=True):
+    assert [*found.zeros] == ["xdot", "highest"], "derivatives in other axes would be false for other sections"
+    for (word, name), slopes in zeros.items():
+        for z, led in zip(found.proved.zeros[word], found.zeros[word], strict=True):
             near = [slope for t, slope in slopes if z.t.low - Fraction(1, 10**6) <= t <= z.t.high + Fraction(1, 10**6)]
-            if led.times and len(near) == 1:
-                slack, interval = abs(near[0]) / 10**15, getattr(led, name)[j]
-                assert interval.low - slack <= near[0] <= interval.high + slack, (*case, name)
+            made = getattr(led, name)
+            assert bool(made) == (bool(led.times) and (word, name) != ("xdot", "azimuths"))
+            if made and len(near) == 1:
+                slack, interval = abs(near[0]) / 10**15, made[j]
+                assert interval.low - slack <= near[0] <= interval.high + slack, (*case, word, name)
 
 
 def radius_holds(module):
@@ -270,7 +272,7 @@ def widths_hold(module):
     wrong = [{"pendulum.length": "0.001"}, {"pendulum.length": "0.001", "site.gravity": "1e-5"}]
     for widths in wrong:
         halves = {key: Fraction(half) for key, half in widths.items()}
-        windows, refused = Windows(box, BITS, [Fraction(0), Fraction(1)], True), False
+        windows, refused = Windows(box, BITS, [Fraction(0), Fraction(1)], ("xdot",)), False
         try:
             module.Derivatives(windows, halves, dict.fromkeys(halves, 0))
         except ArithmeticError:

@@ -29,7 +29,7 @@ def proved_function(scene: Scene | str, radius: Fraction = Fraction(1, 10**30), 
             times,
             radius=radius,
             approximant=feed,
-            transits=False,
+            zeros=(),
             function=True,
         )
     finally:

@@ -1,12 +1,9 @@
 """What has to hold for the trusted code of sections, whichever module has it: sections.py, or a mutation of it."""
 
-import json
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise, product
 from math import factorial
-from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
@@ -17,8 +14,6 @@ from flint import arb, ctx
 from numpy.polynomial import Polynomial
 from passages import WAYS, form, value
 
-import reference
-from reference.dataset.render import render
 from reference.enclosure.approximant import pair
 from reference.enclosure.prove import until
 from reference.enclosure.trusted.balls import ball
@@ -41,7 +36,6 @@ CASES = {  # changes of Paris, sections, end: rest and moving, fast planets, whe
     "nearly aside": ({"gravity_is": "effective", "vx": "-0.04", "vy": f"0.03{'0' * 45}1"}, ("highest", "lowest"), 20),
     "from below": ({"x": "0", "y": "0", "vx": "0.3"}, ("highest", "lowest", "gate 30@0", "turn 90"), 20),
 }
-OWN_PLANE = {"id": "own_plane", "release": {"angle": "5", "azimuth": "30"}, "run": {"t_end": "40", "grid_step": "20"}}
 POSSIBLE = {  # what vanishes at the release with its rate, or may vanish there, so that nothing is decided
     ("own plane", "gate 30@0"),
     ("pole", "turn 120"),
@@ -242,8 +236,9 @@ def passages_hold(module, names=CASES):
         changes, words, end = CASES[name]
         inputs = scene(t_end=str(end), **changes)
         balls = SceneBalls(inputs, BITS + 64)
-        course = Course(balls, [Fraction(0), Fraction(end)], False, True)
-        both = [module.Sections(course, words, kind) for kind in (module.Form, module.Apsis)]
+        course = Course(balls, [Fraction(0), Fraction(end)], False, ())
+        both = [*product(words, (False, True))]
+        course.scans = {(word, second): module.section_scan(balls, word, second) for word, second in both}
         for step in until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(end)):
             course.advance(step)
         proved = course.finish()
@@ -251,11 +246,8 @@ def passages_hold(module, names=CASES):
             if name not in TRUTHS:
                 times = [Fraction(end * k, 100) for k in range(1, 101)]
                 TRUTHS[name] = [[mp.mpf(x.numerator) / x.denominator for x in row] for row in truth(inputs, times, 200)]
-            for sections in both:
-                made = sections.finish(proved)
-                assert tuple(made.passages) == words
-                for word in words:
-                    check(inputs, word, made.passages[word], TRUTHS[name], end, name)
+            for word, second in both:
+                check(inputs, word, proved.zeros[word, second], TRUTHS[name], end, name)
 
 
 def check(inputs, word, zeros, states, end, name):
@@ -281,84 +273,6 @@ def check(inputs, word, zeros, states, end, name):
             assert low <= x + late * rate <= high, (name, word, "state")
 
 
-@cache
-def papers():
-    """The texts of a dataset with sections, what was proved, and forgeries of the texts."""
-    words = ["highest", "gate 30@0"]
-    solution = reference.solve(dict(OWN_PLANE), level="enclosed", digits=12, sections=words)
-    texts = {k: v for k, v in render(solution).items() if isinstance(v, str)}
-    return texts, solution.proof.enclosure
-
-
-def forged(texts):
-    table, manifest = texts["sections.csv"], json.loads(texts["manifest.json"])
-
-    def said(change):
-        document = json.loads(texts["manifest.json"])
-        change(document["sections"])
-        return texts | {"manifest.json": json.dumps(document)}
-
-    row = table.splitlines()[2]
-    cells = row.split(",")
-    for i, cell in enumerate(cells[1:-1], 1):
-        other = cell[:-1] + str((int(cell[-1]) + 5) % 10) if i != 3 else cell.replace("-", "+")
-        yield texts | {"sections.csv": table.replace(row, ",".join([*cells[:i], other, *cells[i + 1 :]]))}
-    yield texts | {"sections.csv": table.replace(row, row.replace("highest", "gate 30@0"))}
-    yield texts | {"sections.csv": table.replace(row + "\n", "")}
-    yield texts | {"sections.csv": table.replace("section,k", "sections,k")}
-    yield said(lambda s: s["possible"]["gate 30@0"].pop())
-    for key, other in (("parity", "odd"), ("from_s", "0.001"), ("to_s", "0")):
-        yield said(lambda s, key=key, other=other: s["possible"]["gate 30@0"][0].update({key: other}))
-    yield said(lambda s: s["bounds"].update({"x": "1e-30"}))
-    yield said(lambda s: s["decimals"].update({"x": s["decimals"]["x"] + 1}))
-    yield said(lambda s: s["counts"].update({"highest": s["counts"]["highest"] + 1}))
-    yield said(lambda s: s.update(counts=dict(reversed(s["counts"].items()))))
-    yield said(lambda s: s.update(possible=dict(reversed(s["possible"].items()))))
-    manifest["scene"]["run"]["sections"] = "highest"
-    yield texts | {"manifest.json": json.dumps(manifest)}
-
-
-def papers_hold(module):
-    """What was proved is accepted, and nothing else."""
-    texts, proof = papers()
-    module.check_sections(texts, proof.sections, proof.proved)
-    for text in forged(texts):
-        with pytest.raises((ArithmeticError, LookupError, ValueError)):
-            module.check_sections(text, proof.sections, proof.proved)
-    copies = replace(proof.sections), replace(proof.proved)
-    for sections, proved in ((copies[0], proof.proved), (proof.sections, copies[1])):
-        with pytest.raises(ArithmeticError):
-            module.check_sections(texts, sections, proved)
-
-
-def courses_hold(module):
-    """Sections belong to the course that gave them every tube, and to no other."""
-    inputs = scene(t_end="5")
-    balls = SceneBalls(inputs, BITS + 64)
-    steps = list(until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(5)))
-    courses = [Course(balls, [Fraction(0), Fraction(2), Fraction(5)], False, True) for _ in range(3)]
-    mine, like, other = (module.Sections(course, ("highest",)) for course in courses)
-    covered = []
-    courses[0].followers.append(SimpleNamespace(advance=covered.append))
-    for step in steps:
-        courses[0].advance(step)
-        courses[1].advance(step)
-    for sections in (mine, other):
-        with pytest.raises(ArithmeticError):
-            sections.advance(covered[0])
-    proved, others = courses[0].finish(), courses[1].finish()
-    for wrong in (replace(proved), others, SimpleNamespace(times=proved.times)):
-        with pytest.raises((ArithmeticError, TypeError)):
-            mine.finish(wrong)
-    with pytest.raises(ArithmeticError):
-        other.finish(proved)
-    assert like.finish(others) in module.FINISHED
-    late = module.Sections(courses[0], ("highest",))
-    with pytest.raises(ArithmeticError):
-        late.finish(proved)
-    assert mine.finish(proved) in module.FINISHED
-
-
 def fast_rotation_is_refused(module):
     """A gate goes through the rest position, so there has to be one."""
     with pytest.raises(ArithmeticError, match="no rest position"):
@@ -371,7 +285,5 @@ def all_hold(module, long):
     releases_hold(module)
     wide_forms_hold(module)
     apses_hold(module)
-    courses_hold(module)
-    papers_hold(module)
     few_bits_hold(module)
     passages_hold(module, CASES if long else IN_EVERY_RUN)

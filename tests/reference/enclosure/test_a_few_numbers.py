@@ -12,7 +12,7 @@ def between(interval, low, high):
 
 def test_paris_in_its_first_minute():
     proved = prove(PARIS, [Fraction(0), Fraction(60)], Fraction(1, 10**20)).proved
-    first, *others = proved.transits
+    first, *others = proved.zeros["xdot"]
     (_, _, z, *_), (x, y, *_) = proved.states
 
     # the cord is 67 m long, and the bob 0.5 m from below its end: sqrt(67² - 0.5²) = 66.998134

@@ -11,7 +11,7 @@ import pytest
 from enclosure_oracle import PARIS, FailingStep, carry, in_digits, scene, steps, unit_step
 from flint import arb
 
-from reference.enclosure.trusted.course import Course
+from reference.enclosure.trusted.course import Course, scan_of
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import Radius
 from reference.enclosure.trusted.shapes import Covered, Tube
@@ -21,26 +21,32 @@ from reference.enclosure.trusted.zeros import MOST_LEAVES, Scan
 from reference.numbers.taylor_step import Digits
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]
+WORDS = ("xdot", "highest")
 
 
 def course(proposed, times=TIMES):
     proposed = list(proposed)
-    one = Course(SceneBalls(PARIS, proposed[0].bits + 64), times, columns=False, transits=True)
+    one = Course(SceneBalls(PARIS, proposed[0].bits + 64), times, columns=False, words=WORDS)
     for step in proposed:
         one.advance(step)
     return one
 
 
-def test_a_whole_run_gives_its_states_and_transits():
+def test_a_whole_run_gives_its_states_and_zeros():
     proved = course(steps(PARIS, TIMES[-1])).finish()
     assert (proved.inputs, proved.times, len(proved.states)) == (PARIS, tuple(TIMES), 3)
-    assert [t.parity for t in proved.transits] == ["one", "one"]
+    assert [*proved.zeros] == [*WORDS]
+    transits, highest = proved.zeros.values()
+    assert [z.parity for z in transits] == ["one", "one"]
+    assert {z.parity for z in highest} == {"one"}
+    assert all(z.ax is not None and z.vx is z.vz is None for z in transits)
+    assert all(None not in (z.vx, z.vz) and z.ax is None for z in highest)
 
 
 def test_a_run_that_ends_early_gives_nothing():
     with pytest.raises(ArithmeticError, match="do not end with the run"):
         course(steps(PARIS, Fraction(10))).finish()
-    with pytest.raises(ArithmeticError, match="do not end with the run"):  # beyond the end, where no transit is asked
+    with pytest.raises(ArithmeticError, match="do not end with the run"):  # beyond the end, where no zero is asked
         course(steps(PARIS, Fraction(30))).finish()
 
 
@@ -53,13 +59,14 @@ def test_a_step_left_out_or_of_another_scene_is_refused():
         bound.advance(Piece(other, rows[0]))
 
 
-def test_the_scan_takes_the_steps_of_its_own_scene_in_order():
+@pytest.mark.parametrize("word", WORDS)
+def test_a_scan_takes_the_steps_of_its_own_scene_in_order(word):
     first, second, *_ = covered = list(carry(PARIS, steps(PARIS, Fraction(20))))
-    scan = Scan(first.piece.balls)
+    scan = scan_of(first.piece.balls, word, second_order=False)
     with pytest.raises(ArithmeticError, match="join"):
         scan.advance(second)
     with pytest.raises(ArithmeticError, match="one scene"):
-        Scan(SceneBalls(PARIS, 192)).advance(first)
+        scan_of(SceneBalls(PARIS, 192), word, second_order=False).advance(first)
     assert output(covered[-1], covered[-1].piece.end)
 
 
@@ -85,7 +92,7 @@ def test_leaves_that_a_useless_tube_would_ask_for_are_one_possible_transit(width
 
 def test_a_closed_run_takes_no_further_step():
     first, second, third = islice(steps(PARIS, Fraction(20)), 3)
-    one = Course(SceneBalls(PARIS, 192), TIMES, columns=False, transits=False)
+    one = Course(SceneBalls(PARIS, 192), TIMES, columns=False, words=())
     one.advance(first)
     with pytest.raises(ArithmeticError, match="join"):
         one.advance(third)
@@ -93,9 +100,9 @@ def test_a_closed_run_takes_no_further_step():
         one.advance(second)
 
 
-def swallowed(proposed, times, transits, inputs=PARIS):
+def swallowed(proposed, times, words, inputs=PARIS):
     """Drive a run on through every exception; return what it says at the end."""
-    one = Course(SceneBalls(inputs, 400), times, False, transits)
+    one = Course(SceneBalls(inputs, 400), times, False, words)
     for step in proposed:
         with suppress(ArithmeticError, RuntimeError):
             one.advance(step)
@@ -106,14 +113,15 @@ SHORT_ROD = scene(length="1", x="0.05", y="0.1")
 
 
 def test_an_exception_in_a_step_closes_the_run_for_good():
-    """F1 of the audit: the transits of a step were lost when something between the bound and the scan raised."""
+    """F1 of the audit: the zeros of a step were lost when something between the bound and the scan raised."""
     *proposed, last = steps(SHORT_ROD, Fraction("5.04"), bits=160)
     times = [Fraction(0), Fraction("5.04")]
     whole = FailingStep(last, 10**6)
-    assert len(swallowed([*proposed, whole], times, True, SHORT_ROD).transits) == 5
+    found = swallowed([*proposed, whole], times, WORDS, SHORT_ROD).zeros
+    assert [len(found[word]) for word in WORDS] == [5, 5]
     for readings in range(10**6 - whole.readings):
         with pytest.raises(ArithmeticError, match="do not end with the run"):
-            swallowed([*proposed, FailingStep(last, readings)], times, True, SHORT_ROD)
+            swallowed([*proposed, FailingStep(last, readings)], times, WORDS, SHORT_ROD)
 
 
 def bumped(step, size=1 << 8):
@@ -131,14 +139,35 @@ def test_a_step_whose_bound_is_not_finite_is_not_passed_over():
     k = len(proposed) // 2
     with pytest.raises(ArithmeticError, match="do not end with the run"):
         chain = [*proposed[:k], bumped(proposed[k]), *proposed[k + 1 :]]
-        swallowed(chain, [Fraction(0), Fraction("5.04")], False, SHORT_ROD)
+        swallowed(chain, [Fraction(0), Fraction("5.04")], (), SHORT_ROD)
 
 
-def test_a_run_whose_scan_did_not_come_to_the_end_gives_nothing():
+@pytest.mark.parametrize("word", WORDS)
+def test_a_run_whose_scan_did_not_come_to_the_end_gives_nothing(word):
     one = course(steps(PARIS, TIMES[-1]))
-    one.scan.time -= 1
+    scan = one.scans[word]
+    one.scans[word] = scan_of(one.balls, word, second_order=False)  # which was given no step
     with pytest.raises(ArithmeticError, match="do not end with the run"):
         one.finish()
+    one.scans[word] = scan
+    assert one.finish().zeros[word]
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_a_tube_that_does_not_come_from_the_course_ends_the_run(word):
+    """As one that is narrower than what was proved, which would hide a zero."""
+    proposed = list(steps(PARIS, TIMES[-1]))
+    covered = list(carry(PARIS, proposed))
+    for k in (0, len(proposed) // 2, len(proposed) - 1):
+        one = Course(SceneBalls(PARIS, proposed[0].bits + 64), TIMES, columns=False, words=WORDS)
+        for step in proposed[:k]:
+            one.advance(step)
+        narrow = Covered(Piece(one.balls, proposed[k]), covered[k].tube)
+        one.scans[word].advance(narrow)
+        with pytest.raises(ArithmeticError, match="join"):
+            one.advance(proposed[k])
+        with pytest.raises(ArithmeticError, match="do not end with the run"):
+            one.finish()
 
 
 class Changing(Digits):

@@ -84,7 +84,7 @@ def test_a_source_whose_steps_change_when_they_are_read_again_proves_nothing_fal
             yield step._replace(rows=lambda readings=readings: readings.pop(0) if len(readings) > 1 else readings[0])
 
     found = enclose_box(
-        box, times, steps, halves={"pendulum.length": Fraction(1, 10**12)}, derivatives=True, sections=("highest",)
+        box, times, steps, halves={"pendulum.length": Fraction(1, 10**12)}, derivatives=True, zeros=("xdot", "highest")
     )
     assert outside(found.proved, truth(inputs, times)) == []
 

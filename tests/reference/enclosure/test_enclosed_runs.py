@@ -51,8 +51,8 @@ def test_the_hard_scenes_lie_inside(name, size):
     inputs, end = HARD[name], Fraction(size(6, 60))
     proof = enclose(inputs, [end], radius=WANTED, approximant=recurrence(inputs))
     assert proof.method == {6: "radius", 60: "columns"}[end]
-    assert len(proof.proved.transits) == {"steep": {60: 134}, "near inverted": {6: 5, 60: 53}}[name][end]
-    assert {t.kind for t in proof.proved.transits} == {"one"}
+    assert len(proof.proved.zeros["xdot"]) == {"steep": {60: 134}, "near inverted": {6: 5, 60: 53}}[name][end]
+    assert {t.kind for t in proof.proved.zeros["xdot"]} == {"one"}
     exact = steep_truth(inputs, end, 400)
     assert all(contains(i, x) for i, x in zip(proof.proved.states[0], exact, strict=True))
 
@@ -119,7 +119,7 @@ def test_uneven_chains_are_covered_without_gap():
 
 def test_time_zero_alone_gives_the_release():
     proof = enclose(PARIS, [Fraction(0)], radius=WANTED, approximant=recurrence(PARIS))
-    assert proof.proved.transits == ()
+    assert proof.proved.zeros["xdot"] == ()
     assert contains(proof.proved.states[0][0], Fraction("0.3"))
     assert proof.position_radius < WANTED
 

@@ -62,9 +62,9 @@ def test_transits_are_those_of_an_event_finder(name):
     end = {"steep": Fraction(10), "near inverted": Fraction(4)}.get(name, Fraction(100))
     proof = prove(inputs, [end], Fraction(1, 10**20))
     expected = events(inputs, end)
-    assert [t.kind for t in proof.proved.transits] == ["one"] * len(expected)
-    assert np.allclose([float(middle(t.t)) for t in proof.proved.transits], expected, rtol=0, atol=1e-6)
-    for before, after in pairwise(proof.proved.transits):
+    assert [t.kind for t in proof.proved.zeros["xdot"]] == ["one"] * len(expected)
+    assert np.allclose([float(middle(t.t)) for t in proof.proved.zeros["xdot"]], expected, rtol=0, atol=1e-6)
+    for before, after in pairwise(proof.proved.zeros["xdot"]):
         assert before.direction == -after.direction
         assert before.t.high < after.t.low
 
@@ -109,7 +109,7 @@ def test_a_release_perpendicular_to_the_earths_axis_takes_few_leaves():
 def test_no_transits_where_xdot_is_zero_for_ever(inputs):
     proof = prove(inputs, [Fraction(20)], Fraction(1, 10**15))
     assert proof.proved.still
-    assert proof.proved.transits is None
+    assert proof.proved.zeros == {}
 
 
 def released_in_the_meridian(rng):
@@ -238,10 +238,10 @@ def test_a_parabola_that_stays_clear_has_no_zero():
 
 
 def test_an_end_on_a_transit_is_undecided_and_a_little_later_is_not():
-    (hit, *_) = prove(PARIS, [Fraction(12)], Fraction(1, 10**30)).proved.transits
+    (hit, *_) = prove(PARIS, [Fraction(12)], Fraction(1, 10**30)).proved.zeros["xdot"]
     at = middle(hit.t)
-    (last,) = prove(PARIS, [at], Fraction(1, 10**20)).proved.transits
+    (last,) = prove(PARIS, [at], Fraction(1, 10**20)).proved.zeros["xdot"]
     assert (last.kind, last.parity) == ("possible", "unknown")
-    (later,) = prove(PARIS, [at + Fraction(1, 10**6)], Fraction(1, 10**20)).proved.transits
+    (later,) = prove(PARIS, [at + Fraction(1, 10**6)], Fraction(1, 10**20)).proved.zeros["xdot"]
     assert later.kind == "one"
-    assert prove(PARIS, [at - Fraction(1, 10**6)], Fraction(1, 10**20)).proved.transits == ()
+    assert prove(PARIS, [at - Fraction(1, 10**6)], Fraction(1, 10**20)).proved.zeros["xdot"] == ()

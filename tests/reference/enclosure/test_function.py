@@ -122,7 +122,7 @@ class Driver:
 
     def __init__(self, scene, bits=BITS, order=64):
         self.inputs = scene.exact
-        self.course = Course(SceneBalls(self.inputs, bits + 64), self.inputs.grid, columns=False, transits=False)
+        self.course = Course(SceneBalls(self.inputs, bits + 64), self.inputs.grid, columns=False, words=())
         self.fit = Fit(self.course)
         self.proposed = list(on_doubles(steps(self.inputs, self.inputs.grid[-1], bits, order)))
 

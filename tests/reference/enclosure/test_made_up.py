@@ -92,7 +92,7 @@ def test_a_release_a_hair_off_the_meridian_keeps_its_early_transit():
         inputs = scene(x=x, y="0.5")
         state = [float(s) for s in truth(inputs, [Fraction(1, 1000)], 300)[0]]
         early = (state[3] > 0) == (float(x) > 0)  # ẍ(0) has the sign of -x
-        (hit, *_) = prove(inputs, [Fraction(12)], Fraction(1, 10**15)).proved.transits
+        (hit, *_) = prove(inputs, [Fraction(12)], Fraction(1, 10**15)).proved.zeros["xdot"]
         assert not early or hit.t.low < Fraction(1, 1000)
         first.append(early)
     assert sorted(first) == [False, True]

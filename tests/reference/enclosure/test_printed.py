@@ -20,7 +20,7 @@ pytest.importorskip("flint")
 import reference
 from reference.dataset.render import render
 from reference.dataset.sheets import scene_inputs
-from reference.enclosure.trusted.printed import asked, check_dataset
+from reference.enclosure.trusted.printed import asked, check_dataset, check_sections
 from reference.errors import DatasetError, FoucaultError
 from reference.scenes.scene import parse_scene
 from reference.scenes.shipped import scene_ids
@@ -218,12 +218,80 @@ def test_a_title_with_a_word_of_the_page_is_no_misprint(title, solution, tmp_pat
 def test_what_is_not_the_very_result_of_a_proof_is_not_written(solution, texts, tmp_path):
     """F5 of the audit: transits shifted between the proof and the tables were written."""
     proved, by = solution.proof.enclosure.proved, Fraction(1, 10**18)
-    moved = [replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by)) for z in proved.transits]
-    for forged in (replace(proved), replace(proved, transits=tuple(moved)), None):
+    moved = [replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by)) for z in proved.zeros["xdot"]]
+    for forged in (replace(proved), replace(proved, zeros={"xdot": tuple(moved)}), None):
         with pytest.raises(DatasetError, match="not what was proved"):
             proof = replace(solution.proof, enclosure=replace(solution.proof.enclosure, proved=forged))
             reference.write(replace(solution, proof=proof), tmp_path / "forged")
     assert [*tmp_path.iterdir()] == []
+
+
+@pytest.fixture(scope="module")
+def with_sections():
+    """A solution with sections, one of which has a zero that a proof cannot decide, and its texts."""
+    release, run = {"angle": "5", "azimuth": "30"}, {"t_end": "40", "grid_step": "20"}
+    scene = {"id": "own_plane", "release": release, "run": run}
+    words = ["highest", "gate 30@0"]
+    solution = reference.solve(scene, level="enclosed", digits=12, sections=words)
+    return solution, {name: text for name, text in render(solution).items() if isinstance(text, str)}
+
+
+def forged_sections(texts):
+    """Yield texts whose sections are not what was proved, each with what is wrong with it."""
+    table, manifest = texts["sections.csv"], json.loads(texts["manifest.json"])
+
+    def said(change):
+        document = json.loads(texts["manifest.json"])
+        change(document["sections"])
+        return texts | {"manifest.json": json.dumps(document)}
+
+    row = table.splitlines()[2]
+    cells = row.split(",")
+    for i, cell in enumerate(cells[1:-1], 1):
+        other = cell[:-1] + str((int(cell[-1]) + 5) % 10) if i != 3 else cell.replace("-", "+")
+        yield f"cell {i}", texts | {"sections.csv": table.replace(row, ",".join([*cells[:i], other, *cells[i + 1 :]]))}
+    other = table.replace(row, row.replace("highest", "gate 30@0"))
+    yield "a word of a row", texts | {"sections.csv": other}
+    yield "a row lost", texts | {"sections.csv": table.replace(row + "\n", "")}
+    yield "the header", texts | {"sections.csv": table.replace("section,k", "sections,k")}
+    yield "a bound of a row", texts | {"sections.csv": table.replace(row, ",".join([*cells[:-1], "1e-30"]))}
+    yield "a possible zero lost", said(lambda s: s["possible"]["gate 30@0"].pop())
+    for key, value in (("parity", "odd"), ("from_s", "0.001"), ("to_s", "0")):
+        yield key, said(lambda s, key=key, value=value: s["possible"]["gate 30@0"][0].update({key: value}))
+    yield "a bound", said(lambda s: s["bounds"].update({"x": "1e-30"}))
+    yield "decimals", said(lambda s: s["decimals"].update({"x": s["decimals"]["x"] + 1}))
+    yield "a count", said(lambda s: s["counts"].update({"highest": s["counts"]["highest"] + 1}))
+    yield "the order of counts", said(lambda s: s.update(counts=dict(reversed(s["counts"].items()))))
+    yield "the order of possible zeros", said(lambda s: s.update(possible=dict(reversed(s["possible"].items()))))
+    manifest["scene"]["run"]["sections"] = "highest"
+    yield "the scene's sections", texts | {"manifest.json": json.dumps(manifest)}
+    document = json.loads(texts["manifest.json"])
+    del document["sections"]
+    yield "no sections", texts | {"manifest.json": json.dumps(document)}
+
+
+def test_passages_that_are_not_what_was_proved_are_found(with_sections):
+    solution, texts = with_sections
+    proved = solution.proof.enclosure.proved
+    check_sections(texts, json.loads(texts["manifest.json"]), proved)
+    check_dataset(texts, proved)
+    for what, forged in forged_sections(texts):
+        with pytest.raises(REFUSED):
+            check_sections(forged, json.loads(forged["manifest.json"]), proved)
+            pytest.fail(what)
+        with pytest.raises(REFUSED):
+            check_dataset(forged, proved)
+            pytest.fail(what)
+    for forgery in (replace(proved), replace(proved, zeros={"xdot": proved.zeros["xdot"]})):
+        with pytest.raises(REFUSED):
+            check_dataset(texts, forgery)
+
+
+def test_sections_that_were_not_proved_are_found(with_sections, solution, texts):
+    _, others = with_sections
+    document = json.loads(texts["manifest.json"])
+    document["sections"] = json.loads(others["manifest.json"])["sections"]
+    refuse(solution, texts | {"sections.csv": others["sections.csv"]}, manifest=json.dumps(document))
 
 
 def test_a_table_that_is_not_the_proof_is_a_misprint_and_not_written(solution, tmp_path):

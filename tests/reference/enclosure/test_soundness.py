@@ -296,7 +296,7 @@ def other_digits(rng, proposed):
 def driven(rng, inputs, proposed, columns):
     """What a run gives whose driver goes on after exceptions, and has some of its own."""
     balls = SceneBalls(inputs, proposed[0].bits + 64)
-    course = Course(balls, [Fraction(0), SABOTAGED_END[inputs]], columns, transits=True)
+    course = Course(balls, [Fraction(0), SABOTAGED_END[inputs]], columns, words=("xdot",))
     source, faulty = ColumnSource(balls) if columns else None, rng.choice((0, 0, 0, 0, 0.1))
 
     for step in proposed:
@@ -324,7 +324,7 @@ def test_whole_runs_of_sabotaged_steps_and_drivers_claim_nothing_false(digits, s
             refused += 1
             continue
         assert all(contains(i, x) for i, x in zip(proved.states[-1], true_end(name), strict=True)), name
-        assert not false_claims(proved.transits, *true_transits(name)), name
+        assert not false_claims(proved.zeros["xdot"], *true_transits(name)), name
     assert 0 < refused < tried
     way = "digits" if digits else "lists of steps"
     tally(f"whole runs of sabotaged {way}: {tried}, {refused} refused, 0 false claims")
@@ -334,16 +334,16 @@ def test_false_claims_are_seen():
     inputs, end, _ = SABOTAGED["paris"]
     true = true_transits("paris")
     proof = prove(inputs, [end], Fraction(1, 10**20))
-    first, *others = proof.proved.transits
+    first, *others = proof.proved.zeros["xdot"]
     shifted = replace(first, t=replace(first.t, low=first.t.high, high=first.t.high + 1))
-    assert not false_claims(proof.proved.transits, *true)
+    assert not false_claims(proof.proved.zeros["xdot"], *true)
     for wrong in (
         others,
         [shifted, *others],
         [replace(first, direction=-first.direction), *others],
         [replace(first, parity="even"), *others],
         [replace(first, vy=replace(first.vy, low=first.vy.high)), *others],
-        [*proof.proved.transits, shifted],
+        [*proof.proved.zeros["xdot"], shifted],
     ):
         assert false_claims(wrong, *true)
 
