@@ -44,10 +44,13 @@ def misses(solution, engine):
     tables = [("state", solution.grid, truth.grid)]
     if solution.zeros.keys() != truth.zeros.keys():
         return ["xdot is identically zero in one of the two alone"]
-    if truth.transits is not None and not solution.possible:
-        if len(solution.transits) != len(truth.transits):
-            return [f"{len(solution.transits)} transits, not {len(truth.transits)}"]
-        tables.append(("transit", solution.transits, truth.transits))
+    for word, zeros in solution.zeros.items():
+        if zeros.possible:
+            continue
+        true = truth.zeros[word]
+        if zeros.directions != true.directions:
+            return [f"{len(zeros.directions)} zeros of {word}, not {len(true.directions)}, or in other directions"]
+        tables.append((word, zeros.table, true.table))
     for kind, table, other in tables:
         slack = Fraction(1, 1 << solution.proof.enclosure.bits) * max(1, scene.exact.length, scene.exact.t_end)
         for name in table.columns:

@@ -75,14 +75,19 @@ def other_times(rng, solution):
     return replace(solution, times=tuple(times))
 
 
+def with_transits(solution, **changes):
+    return replace(solution, zeros={**solution.zeros, "xdot": solution.zeros["xdot"]._replace(**changes)})
+
+
 def other_numbers(rng, solution):
     """What was proved is handed on with another number, row, direction or interval."""
     kind = rng.randrange(6)
     if kind == 4:
-        return replace(solution, directions=[-way for way in solution.directions])
+        return with_transits(solution, directions=[-way for way in solution.directions])
     if kind == 5:
-        return replace(solution, possible=() if solution.possible else ((Fraction(1), Fraction(2), "even"),))
-    name = rng.choice(("grid", "zeros"))
+        possible = () if solution.possible else ((Fraction(1), Fraction(2), "even"),)
+        return with_transits(solution, possible=possible)
+    name = rng.choice(("grid", "transits"))
     table = getattr(solution, name)
     rows, errors = [*table.values], [*table.errors]
     k = rng.randrange(1, len(rows))
@@ -96,7 +101,8 @@ def other_numbers(rng, solution):
         rows[k] = rows[k - 1]
     else:
         rows[k] = tuple(-value for value in rows[k])
-    return replace(solution, **{name: replace(table, values=rows, errors=errors)})
+    table = replace(table, values=rows, errors=errors)
+    return replace(solution, grid=table) if name == "grid" else with_transits(solution, table=table)
 
 
 # faults that change the texts

@@ -123,15 +123,19 @@ def with_rows(table, change):
     return replace(table, values=[*map(tuple, rows)], errors=[*map(tuple, errors)])
 
 
+def with_zeros(solved, word, **changes):
+    """Return the zeros of a solution, or of ranges, with those of one word changed."""
+    return {"zeros": {**solved.zeros, word: solved.zeros[word]._replace(**changes)}}
+
+
 def of_table(where, name, change, scene=PLAIN):
-    """A change of the grid, the transits (`zeros`), or a section."""
+    """A change of the grid, or of the zeros of a word."""
 
     def solution(solved):
-        if where in ("grid", "zeros"):
-            return replace(solved, **{where: with_rows(getattr(solved, where), change)})
-        passages = solved.sections[where]
-        changed = passages._replace(table=with_rows(passages.table, change))
-        return replace(solved, sections={**solved.sections, where: changed})
+        if where == "grid":
+            return replace(solved, grid=with_rows(solved.grid, change))
+        table = with_rows(solved.zeros[where].table, change)
+        return replace(solved, **with_zeros(solved, where, table=table))
 
     return Fault(f"{scene} {where}: {name}", solution, scene=scene)
 
@@ -171,10 +175,11 @@ def transits(name, keep, way=lambda direction: direction, possible=lambda solved
 
     def changed(solved):
         kept = [k for k in range(len(solved.directions)) for _ in range(keep(k))]
-        table = solved.zeros
+        table = solved.transits
         rows = replace(table, values=[table.values[k] for k in kept], errors=[table.errors[k] for k in kept])
         directions = [way(solved.directions[k]) for k in kept]
-        return replace(solved, zeros=rows, directions=directions, possible=possible(solved))
+        changes = {"table": rows, "directions": directions, "possible": possible(solved)}
+        return replace(solved, **with_zeros(solved, "xdot", **changes))
 
     return [Fault(f"{scene} transits: {name}", changed, scene=scene) for scene in (TWO_RUNS, DAMPED, FEW_DIGITS)]
 
@@ -204,8 +209,14 @@ def of_solution(name, change, scene=PLAIN):
     return Fault(f"{scene} solution: {name}", lambda solved: replace(solved, **change(solved)), scene=scene)
 
 
-def other_way(passages):
-    return passages._replace(directions=[-way for way in passages.directions])
+def turned(word):
+    """The zeros of a word in the other direction."""
+    return lambda solved: with_zeros(solved, word, directions=[-way for way in solved.zeros[word].directions])
+
+
+def undecided(*possible):
+    """Intervals that may hold transits."""
+    return lambda solved: with_zeros(solved, "xdot", possible=possible)
 
 
 def shifted(solved):
@@ -229,21 +240,23 @@ def other_check(**changes):
     return lambda solved: {"checks": (replace(solved.checks[0], **changes), *solved.checks[1:])}
 
 
-def other_section(solved):
-    return {"sections": {**solved.sections, "highest": other_way(solved.sections["highest"])}}
+def without(word):
+    return lambda solved: {"zeros": {other: zeros for other, zeros in solved.zeros.items() if other != word}}
 
 
 def sections_exchanged(solved):
-    return {"sections": dict(zip(solved.sections, reversed(solved.sections.values()), strict=True))}
+    exchanged = zip(solved.sections, reversed(solved.sections.values()), strict=True)
+    return {"zeros": {**solved.zeros, **dict(exchanged)}}
 
 
 OF_SOLUTION = [
-    of_solution("directions", lambda solved: {"directions": [-way for way in solved.directions]}),
-    of_solution("directions of a section", other_section),
-    of_solution("sections in the other order", lambda solved: {"sections": dict(reversed(solved.sections.items()))}),
+    of_solution("directions", turned("xdot")),
+    of_solution("directions of a section", turned("highest")),
+    of_solution("sections in the other order", lambda solved: {"zeros": dict(reversed(solved.zeros.items()))}),
     of_solution("a section for another", sections_exchanged),
-    of_solution("a section lost", lambda solved: {"sections": {"highest": solved.sections["highest"]}}),
-    of_solution("a possible transit that is none", lambda solved: {"possible": ((Fraction(1), Fraction(2), "even"),)}),
+    of_solution("a section lost", without("gate 30")),
+    of_solution("transits lost", without("xdot")),
+    of_solution("a possible transit that is none", undecided((Fraction(1), Fraction(2), "even"))),
     of_solution("the grid's times", lambda solved: {"times": (*solved.times[:-1], solved.times[-1] - TINY)}),
     of_solution("states of another proof", shifted),
     of_solution("a proof that is none", lambda solved: {"proof": None}),
@@ -275,14 +288,13 @@ OF_SOLUTION += [
 def possible(name, change):
     """A change of the first interval that nothing decides, of a transit and of a passage."""
 
-    def of_transit(solved):
-        return {"possible": change(*solved.possible)}
+    def of_word(word):
+        return lambda solved: with_zeros(solved, word, possible=change(*solved.zeros[word].possible))
 
-    def of_passage(solved):
-        word, passages = list(solved.sections.items())[-1]
-        return {"sections": {**solved.sections, word: passages._replace(possible=change(*passages.possible))}}
-
-    return [of_solution(f"possible transit {name}", of_transit, LAST), of_solution(f"passage {name}", of_passage, GATE)]
+    return [
+        of_solution(f"possible transit {name}", of_word("xdot"), LAST),
+        of_solution(f"passage {name}", of_word("gate 0@0"), GATE),
+    ]
 
 
 POSSIBLE = [
@@ -580,10 +592,10 @@ IN_MANIFEST = [
     manifest("sections/possible/highest", NOT_POSSIBLE),
 ]
 
-NUMERIC = [of_table(where, *case) for where in ("grid", "zeros", "gate 30") for case in NUMBERS.items()]
+NUMERIC = [of_table(where, *case) for where in ("grid", "xdot", "gate 30") for case in NUMBERS.items()]
 NUMERIC += [
     of_table(where, *case, scene=TWO_RUNS)
-    for where in ("grid", "zeros")
+    for where in ("grid", "xdot")
     for case in NUMBERS.items()
     if "less than it" not in case[0]  # which is within the bound of two runs
 ]
@@ -671,9 +683,11 @@ def intervals(which, name, change):
     """A change of the rows of intervals of the grid or the transits."""
 
     def changed(ranges):
-        rows = [list(row) for row in getattr(ranges, which).rows]
+        table = getattr(ranges, which)
+        rows = [list(row) for row in table.rows]
         change(rows)
-        return {which: replace(getattr(ranges, which), rows=tuple(map(tuple, rows)))}
+        table = replace(table, rows=tuple(map(tuple, rows)))
+        return {"grid": table} if which == "grid" else with_zeros(ranges, "xdot", table=table)
 
     return of_ranges(f"{which}, {name}", changed)
 
@@ -681,14 +695,6 @@ def intervals(which, name, change):
 def narrower(row):
     """The first interval without its lower half."""
     row[0] = Ends((row[0].low + row[0].high) / 2, row[0].high)
-
-
-def of_last_section(change):
-    def changed(ranges):
-        word, passages = list(ranges.sections.items())[-1]
-        return {"sections": {**ranges.sections, word: passages._replace(**change(passages))}}
-
-    return changed
 
 
 def other_inputs(change):
@@ -707,14 +713,15 @@ RANGES = [
     intervals("transits", "an interval that is too narrow", lambda rows: narrower(rows[0])),
     intervals("transits", "a row lost", lambda rows: rows.pop()),
     intervals("transits", "a row twice", lambda rows: rows.append(rows[-1])),
-    of_ranges("directions", lambda ranges: {"directions": [-way for way in ranges.directions]}),
+    of_ranges("directions", turned("xdot")),
     of_ranges("a width halved", lambda ranges: {"uncertain": {**ranges.uncertain, "pendulum.length": "0.00005"}}),
     of_ranges("a width lost", lambda ranges: {"uncertain": {"pendulum.length": ranges.uncertain["pendulum.length"]}}),
     of_ranges("times", lambda ranges: {"times": (*ranges.times[:-1], ranges.times[-1] - TINY)}),
-    of_ranges("a section lost", lambda ranges: {"sections": {"highest": ranges.sections["highest"]}}),
-    of_ranges("a section's directions", of_last_section(lambda part: other_way(part)._asdict())),
-    of_ranges("a possible passage lost", of_last_section(lambda part: {"possible": ()}), GATE),
-    of_ranges("a possible transit that is none", lambda ranges: {"possible": ((Fraction(1), Fraction(2), "even"),)}),
+    of_ranges("a section lost", without("gate 30")),
+    of_ranges("transits lost", without("xdot")),
+    of_ranges("a section's directions", turned("gate 30")),
+    of_ranges("a possible passage lost", lambda ranges: with_zeros(ranges, "gate 0@0", possible=()), GATE),
+    of_ranges("a possible transit that is none", undecided((Fraction(1), Fraction(2), "even"))),
     of_ranges("a copy of the proof", lambda ranges: {"proof": replace(ranges.proof, proved=copy(ranges.proof.proved))}),
     of_ranges("radius of the proof", lambda ranges: {"proof": replace(ranges.proof, radius=Fraction(1, 10**30))}),
     of_ranges("steps of the proof", lambda ranges: {"proof": replace(ranges.proof, steps=1)}),
