@@ -294,6 +294,19 @@ def test_sections_that_were_not_proved_are_found(with_sections, solution, texts)
     refuse(solution, texts | {"sections.csv": others["sections.csv"]}, manifest=json.dumps(document))
 
 
+@pytest.mark.parametrize("sought", [True, False])
+def test_no_transits_are_said_to_be_complete_only_where_a_proof_looked_for_them(sought):
+    """A proof that was not asked for transits has none, as one that found none."""
+    scene = reference.load_scene("paris")
+    made = {
+        word: reference.solve(scene, t_end="1", digits=12, level="enclosed", transits=word) for word in (True, False)
+    }
+    proved = made[sought].proof.enclosure.proved
+    check_dataset(render(made[sought]), proved)
+    with pytest.raises(ArithmeticError, match="all transits"):
+        check_dataset(render(made[not sought]), proved)
+
+
 def test_a_table_that_is_not_the_proof_is_a_misprint_and_not_written(solution, tmp_path):
     values = [*solution.grid.values]
     values[-1] = tuple(v + (1 << solution.grid.bits) // 10**17 for v in values[-1])
