@@ -4,9 +4,22 @@ from fractions import Fraction
 from itertools import pairwise
 from random import Random
 
+import mpmath as mp
 import numpy as np
 import pytest
-from enclosure_oracle import PARIS, carry, doubles, scanned, scene, steps, truth, unit_step
+from enclosure_oracle import (
+    PARIS,
+    acceleration,
+    carry,
+    constants,
+    doubles,
+    q,
+    scanned,
+    scene,
+    steps,
+    truth,
+    unit_step,
+)
 from enclosure_recurrence import prove
 from flint import arb, ctx
 from mutations import with_names
@@ -67,6 +80,21 @@ def test_transits_are_those_of_an_event_finder(name):
     for before, after in pairwise(proof.proved.zeros["xdot"]):
         assert before.direction == -after.direction
         assert before.t.high < after.t.low
+
+
+def test_each_column_of_a_transit_holds_what_it_is_called_by():
+    inputs = scene(drag="0.01", vx="0.2", rotation_rate="0.001")
+    (found, *_) = prove(inputs, [Fraction(20)], Fraction(1, 10**20)).proved.zeros["xdot"]
+    (state,) = truth(inputs, [middle(found.t)])
+    with mp.workprec(200):
+        state = [q(x) for x in state]
+        ax, _, _ = acceleration(constants(inputs), state)
+        expected = dict(zip(("x", "y", "z", "xdot", "vy", "vz"), state, strict=True)) | {"ax": ax}
+        for name in ("x", "y", "z", "vy", "ax"):
+            interval = getattr(found, name)
+            assert abs(q(middle(interval)) - expected[name]) < mp.mpf(10) ** -15, name
+            assert interval.low < interval.high < interval.low + Fraction(1, 10**15)
+    assert found.vx is found.vz is None
 
 
 @pytest.mark.parametrize("parts", [1, 2, 3])
