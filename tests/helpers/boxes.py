@@ -225,30 +225,36 @@ def outside(proved: ProvedBox, run: Run) -> list[str]:
         for time, value, state in zip(proved.times, run.grid.exact(name), proved.states, strict=True):
             check(f"{name} at {float(time)}:", value, state[i].low, state[i].high)
     for word, zeros in proved.zeros.items():
-        columns, rows, directions = columns_of(word), rows_of(run, word), []
-        if rows:
-            directions = run.zeros[word].directions
-        # the zeros that each row may be; a late one of some pendulums comes after the end
+        columns, rows = columns_of(word), rows_of(run, word)
+        directions = run.zeros[word].directions if rows else []
+        # which zeros each row may be
         near = [[z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING] for row in rows]
-        late = [z for z in zeros if z.t.high >= proved.times[-1]]
-        if all(z.parity == "one" for z in zeros):
-            if not len(zeros) - len(late) <= len(rows) <= len(zeros):
-                found.append(f"{len(rows)} zeros of {word}, {len(zeros)} proved")
-            own = [[z] for z in zeros[: len(rows)]]
-        else:
-            own = near
-        for row, direction, possible, inside in zip(rows, directions, own, near, strict=False):
-            if not inside:
-                found.append(f"{word} at {float(row[0])} is lost")
-            if len(possible) == 1 and possible[0].parity == "one":
-                for name, value in zip(columns, row, strict=True):
-                    interval = getattr(possible[0], name)
-                    check(f"{name} of {word}:", value, interval.low, interval.high)
-                if direction != possible[0].direction:
-                    found.append(f"direction of {word} at {float(row[0])}")
+        found += [f"{word} at {float(row[0])} is lost" for row, inside in zip(rows, near, strict=True) if not inside]
+
+        # each single zero has a row of its own, but for those that may come after the end
+        unused = [*near]
         for z in zeros:
-            if z.parity == "one" and z not in late and not any(z in inside for inside in near):
+            if z.parity != "one":
+                continue
+            first = next((k for k, inside in enumerate(unused) if z in inside), None)
+            if first is not None:
+                unused = unused[first + 1 :]
+            elif z.t.high < proved.times[-1]:
                 found.append(f"no zero of {word} in {float(z.t.low)} to {float(z.t.high)}")
+
+        # where all are single, rows are those in order, also where their intervals overlap
+        if all(z.parity == "one" for z in zeros):
+            near = [[z] for z in zeros[: len(rows)]]
+            if len(rows) > len(zeros):
+                found.append(f"{len(rows)} zeros of {word}, {len(zeros)} proved")
+        for row, direction, possible in zip(rows, directions, near, strict=False):
+            if [z.parity for z in possible] != ["one"]:
+                continue
+            for name, value in zip(columns, row, strict=True):
+                interval = getattr(possible[0], name)
+                check(f"{name} of {word}:", value, interval.low, interval.high)
+            if direction != possible[0].direction:
+                found.append(f"direction of {word} at {float(row[0])}")
     return found
 
 
