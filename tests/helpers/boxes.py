@@ -200,7 +200,7 @@ def rows_of(run: Run, word: str) -> list[tuple[Fraction, ...]]:
     return [*zip(*map(run.zeros[word].table.exact, columns_of(word)), strict=True)]
 
 
-def azimuths(run: Run, word: str) -> list[tuple[Fraction, Fraction]]:
+def azimuths(run: Run, word: str = "highest") -> list[tuple[Fraction, Fraction]]:
     """Return the time of each zero of a word, and its azimuth about the run's own plumb line in degrees."""
     found = []
     with mp.workprec(TRUTH_BITS):
