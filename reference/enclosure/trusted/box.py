@@ -171,7 +171,7 @@ class Windows:
                 own[0][:2], own[0][3:5] = self.balls.given[:2], self.balls.given[2:]
             states = tuple(tuple(map(interval, x)) for x in own)
             zeros = {word: self.in_own_time(found) for word, found in proved.zeros.items()}
-        FINISHED.add(result := ProvedBox(self.box, self.times, states, zeros))
+        FINISHED.add(result := ProvedBox(self.box, self.times, states, zeros, proved.still))
         return result
 
     def in_own_time(self, zeros: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -27,6 +27,9 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     )
     demand(said["level"] == said["scene"]["run"]["level"] == "enclosed", "misprint: the level")
     check_rows(texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True)))
+    # a table without transits is not one of which none was looked for
+    looked_for = XDOT in proved.zeros or proved.still
+    demand((said["scene"]["run"]["transits"] == "true") == looked_for, "misprint: whether transits were looked for")
     ones, others = check_zeros(texts["transits.csv"], TRANSITS, found, said["possible"], times[-1])
     words = [*sections]
     header, *parts = lines_of(texts["sections.csv"]) if words else [["section"]]

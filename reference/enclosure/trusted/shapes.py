@@ -87,6 +87,7 @@ class ProvedBox:
     times: tuple[Fraction, ...]
     states: tuple[State, ...]
     zeros: Zeros  # those that were requested; without xdot where that is identically zero
+    still: bool  # xdot is identically zero
 
 
 class Led(NamedTuple):

@@ -14,6 +14,7 @@ import reference
 from reference.commands import app
 from reference.dataset.manifest import text_of
 from reference.dataset.ranges import ends, ranges_id, verify_ranges, write_ranges
+from reference.enclosure.trusted.printed_box import check_ranges
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 
@@ -224,3 +225,14 @@ def test_line_ends_that_a_copy_changed_are_named(ranges, tmp_path, name):
     (folder / name).write_bytes(data.replace(b"\n", b"\r\n"))
     (problem,) = verify_ranges(folder)
     assert problem.startswith(name) and "its lines end with CR LF and not with LF" in problem
+
+
+def test_ranges_of_a_proof_that_looked_for_no_transits_do_not_say_that_there_are_none(tmp_path):
+    ranges = reference.prove_ranges("paris", BOX, t_end="5", transits=False)
+    folder = write_ranges(ranges, tmp_path / "out")
+    texts = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+    check_ranges(texts, ranges.proof.proved)
+    said = json.loads(texts["ranges.json"])
+    said["scene"]["run"]["transits"] = "true"
+    with pytest.raises(ArithmeticError, match="whether transits were looked for"):
+        check_ranges({**texts, "ranges.json": json.dumps(said)}, ranges.proof.proved)
