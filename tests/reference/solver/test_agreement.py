@@ -210,7 +210,7 @@ class TermsOfErrors:
         return 2 * self.form / (slope + sqrt(slope**2 - 4 * self.bend * self.form))
 
 
-# the solver's second rate is a difference over 1e-6 of a radian, and counts up to ten times as much at 0.99 of the largest
+# the solver's second rate is a difference over 1e-6 of a radian; near the largest errors it counts ten times as much
 NEAR = 1e-4
 
 

@@ -230,7 +230,7 @@ def test_two_cheap_runs_that_diverge_give_nothing_and_those_of_too_many_steps_ar
 def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(paris, asked, times):
     solution = solver.solve_at(paris, [*map(Fraction, asked)], 12)
     assert list(solution.times) == times
-    assert (solution.level, solution.scene.run.digits, solution.zeros) == ("self_consistent", 12, None)
+    assert (solution.level, solution.scene.run.digits, solution.zeros) == ("self_consistent", 12, {})
 
 
 def test_what_a_proof_and_ranges_are_asked_for_they_have_and_else_it_is_refused(paris):
