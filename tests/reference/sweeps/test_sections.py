@@ -83,7 +83,7 @@ def test_passages_of_limbs_are_those_of_scipy(drawn):
     tame = [i for i in range(len(many)) if KINDS[i % len(KINDS)] != "over"]
     for inputs, exact in ((many[i], truth[i]) for i in tame):
         for word, other in found(inputs, words, SPAN).items():
-            table, directions = exact[word]
+            table, directions, _ = exact[word]
             assert directions == [direction for _, direction in other], (word, inputs)
             assert np.abs(table["t"] - [t for t, _ in other]).max(initial=0) < NEAR, (word, inputs)
 
