@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compare.score.transit_matching import TransitErrors, transit_errors
+from compare import judge
+from compare.score.transit_matching import TransitErrors, judged_transits, transit_errors
+from reference import load
 
 TRUTH = np.arange(1, 21) * 8.2
 AX = 0.05 * (-1.0) ** np.arange(20)
@@ -183,6 +187,12 @@ def test_too_many_extra_ones_are_no_grazing_zeros(count, excused):
 
 
 def test_without_any_swing_a_time_has_no_weight():
-    made = transit_errors(TRUTH + 0.1, TRUTH, AX, 0.0, END, away=lambda _: pytest.fail("nothing to compare with"))
+    """And no extra transit is excused, as no velocity is a distance."""
+    golden = load("force_free")
+    times = golden.transits["t"]
+    score = judge({"t": golden.t, "x": golden.x, "y": golden.y}, golden.scene, explain=False)
+    still = replace(score.errors, speed_m_s=0.0)
+    made = judged_transits(times + 0.1, golden, still, 1.0)
     assert (made.max_conditioned_m, made.max_error_s) == (0.0, pytest.approx(0.1))
-    assert transit_errors(np.append(TRUTH, 167.0), TRUTH, AX, 0.0, END, away=np.zeros_like).extra == [167.0]
+    doubled = judged_transits(np.append(times, times[-1] + 1e-9), golden, still, 1.0)
+    assert (doubled.extra, doubled.undecided) == ([times[-1] + 1e-9], [])
