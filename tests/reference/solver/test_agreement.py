@@ -48,10 +48,18 @@ BEYOND_LIMBS = make_scene(
     ids=["beyond limbs", "at the longest steps"],
 )
 def test_a_tiny_swing_has_bounds_that_hold(scene):
-    solution = reference.solve(scene)
-    truth = run(Plan(scene.exact, "spin", real(512), solution.times, ("xdot",)))
-    assert solution.directions == truth.directions
-    for table, exact, columns in ((solution.grid, truth.grid, GRID), (solution.transits, truth.transits, TRANSITS)):
+    """Its height is beyond the digits of double, and so is the rate at which it is highest."""
+    words = ("xdot", "gate 30", "highest")
+    solution = reference.solve(scene, sections=words[1:])
+    truth = run(Plan(scene.exact, "spin", real(512), solution.times, words))
+    tables = [(solution.grid, truth.grid, GRID)]
+    for word in words:
+        found, exact = solution.zeros[word], truth.zeros[word]
+        assert found.directions == exact.directions
+        assert len(found.directions) > 1
+        assert max(found.table.bound("t")) < Fraction(1, 10**15)
+        tables.append((found.table, exact.table, columns_of(word)))
+    for table, exact, columns in tables:
         gaps = table.only(columns).distance(exact)
         for name in columns:
             bounds = table.bound(name)
@@ -307,6 +315,13 @@ def test_the_time_of_a_zero_is_unknown_where_the_form_may_only_graze_it(paris, w
     found = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), (word,)))
     table = with_zero_errors(found, dict.fromkeys(GRID, Fraction(1)), word, None)
     assert set(table.bound("t")) == {10**9}
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_a_run_that_ends_before_the_first_zero_has_no_errors_of_zeros(paris, word):
+    found = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(1)), (word,)))
+    table = with_zero_errors(found, dict.fromkeys(GRID, Fraction(1, 10**12)), word, None)
+    assert (len(table), table.columns) == (0, columns_of(word))
 
 
 @pytest.mark.parametrize(("units", "lacking"), [("1/4", 0), ("0.26", -1), ("1", 0), ("1.9", 1), ("1000", 10)])
