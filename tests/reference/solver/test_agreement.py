@@ -18,7 +18,7 @@ from reference.errors import IntegrationError
 from reference.model.force import acceleration, force
 from reference.model.sections import form_of
 from reference.model.start import Start
-from reference.numbers.columns import GRID, SECTION, TRANSITS
+from reference.numbers.columns import GRID, SECTION
 from reference.numbers.precision import DOUBLE, real, to_fraction, to_mpf
 from reference.numbers.table import Table
 from reference.numbers.zeros import Zeros, columns_of
