@@ -186,7 +186,7 @@ def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
     fast = {"rotation_rate": "0.01", "altitude": "100"}
     effective = reference.solve(make_scene(site={**fast, "gravity_is": "effective"}, run=run))
     on_axis = reference.solve(make_scene(site={**fast, "equatorial_radius": "0", "altitude": "0"}, run=run))
-    assert effective.transits is not None
+    assert len(effective.transits) > 0
     assert [effective.grid.exact(name) for name in GRID] == [on_axis.grid.exact(name) for name in GRID]
     assert effective.transits.exact("t") == on_axis.transits.exact("t")
     otherwise = reference.solve(make_scene(site=fast, run=run | {"digits": "9", "level": "computed"}))
