@@ -61,7 +61,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
     "reference/engines: passages": f"{PASSAGES} {SOLVER}sections.py",
     "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
-    "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}sections.py {SOLVER}solve.py",
+    "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}solution.py {SOLVER}sections.py {SOLVER}solve.py",
     "reference/solver: solve": f"{BITS} {SOLVER}solve.py {SOLVER}pilot.py",
 }
 SLOW = "ships few_digits killed two_processes script same_command ten_times picture collinear 1000000 recomputing "

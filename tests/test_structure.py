@@ -135,6 +135,7 @@ PUBLIC = {
     "reference.numbers.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType "
     "bits_of context digits_that_hold fixed_decimal real to_fraction to_mpf",
     "reference.numbers.table": "Table",
+    "reference.numbers.zeros": "XDOT",
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",

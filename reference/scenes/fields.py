@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from ..numbers.zeros import XDOT
 from .inputs import GravityIs, azimuth_of
 from .texts import OR_INF, NotNegative, Number, Positive, Refused, checked, within
 
@@ -140,5 +139,8 @@ class RunTable(SceneTable):
     @property
     def zeros(self) -> tuple[str, ...]:
         """The words of all zeros that are sought: `XDOT` for transits, and those of sections."""
+        # numpy, which it needs, is not loaded for a scene that is not solved, nor for help
+        from ..numbers.zeros import XDOT
+
         transits = (XDOT,) if self.transits else ()
         return (*transits, *(self.sections or ()))

@@ -11,8 +11,9 @@ from small_scenes import make_scene
 import reference
 from reference.engines.plan import Plan
 from reference.engines.registry import run
-from reference.numbers.columns import GRID, TRANSITS
+from reference.numbers.columns import GRID
 from reference.numbers.precision import real
+from reference.numbers.zeros import columns_of
 
 FINER_BITS = 60  # of the truth, more than the published run has
 SMALL_SWING_BITS = 70  # and as many more, as heyoka's numbers count from l where the rest position is off the vertical
@@ -34,6 +35,8 @@ def small_swing(random):
     release |= {"y": decimal(random.choice((0.0, random.uniform(-1, 1))) * amplitude)}
     if random.random() < 0.5:
         release |= {name: decimal(random.uniform(-1, 1) * amplitude * rate) for name in ("vx", "vy")}
+    # at rest on the vertical there is nothing to find
+    moving = any(float(value) for value in release.values())
     return make_scene(
         pendulum={"length": decimal(length), "drag": decimal(drag)},
         site={
@@ -48,6 +51,7 @@ def small_swing(random):
             "grid_step": f"{span / random.randint(1, 40):.6f}",
             "digits": random.randint(12, 30),
             "level": "self_consistent",
+            "sections": ["highest", "gate 33", "turn 71"] if moving else [],
         },
     )
 
@@ -62,23 +66,26 @@ def compared(solution, table, truth, columns):
 @pytest.mark.parametrize("engine", ["auto", "heyoka"])
 def test_every_bound_holds_against_another_code_and_none_is_zero(engine, size, tally):
     count = size(2, 100 if engine == "auto" else 25)
-    shares, numbers, transits = [], 0, 0
+    shares, numbers, transits, passages = [], 0, 0, 0
     for seed in range(count):
         scene = small_swing(Random(seed))
         solution = reference.solve(scene, engine=engine)
         prec = int(solution.run.number.split("(")[1][:-1]) + FINER_BITS + SMALL_SWING_BITS
-        truth = run(Plan(scene.exact, "spin", real(prec), solution.times, ("xdot",) * scene.run.transits))
+        truth = run(Plan(scene.exact, "spin", real(prec), solution.times, scene.run.zeros))
         found = [("grid", *each) for each in compared(solution, solution.grid, truth.grid, GRID)]
-        if solution.transits is not None:
-            assert solution.directions == truth.directions, seed
-        if truth.transits is not None and solution.transits is not None:  # None: xdot is identically zero
-            transits += len(solution.directions)
-            found += [("transits", *each) for each in compared(solution, solution.transits, truth.transits, TRANSITS)]
+        assert solution.zeros.keys() == truth.zeros.keys()  # without xdot where it is identically zero
+        for word, zeros in solution.zeros.items():
+            assert zeros.directions == truth.zeros[word].directions, (seed, word)
+            columns = columns_of(word)
+            found += [(word, *each) for each in compared(solution, zeros.table, truth.zeros[word].table, columns)]
+        transits += len(solution.directions)
+        passages += sum(len(zeros.directions) for zeros in solution.sections.values())
         for kind, name, row, error, bound in found:
             assert error <= bound and bound > 0, (seed, kind, name, row, float(error), float(bound))
         numbers += len(found)
         shares.append(max(error / bound for *_, error, bound in found))
     tally(
-        f"self_consistent, engine {engine}: {count} small and damped swings, {numbers} numbers ({transits} transits), "
+        f"self_consistent, engine {engine}: {count} small and damped swings, {numbers} numbers ({transits} transits, "
+        f"{passages} passages), "
         f"largest error/bound {float(max(shares)):.2g}, median of the scenes' largest {float(median(shares)):.2g}"
     )

@@ -9,6 +9,7 @@ from reference.engines.registry import engines
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.precision import GUARD_BITS, NumberType
+from reference.numbers.zeros import XDOT
 from reference.scenes.scene import Scene, parse_scene
 
 
@@ -23,10 +24,10 @@ def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
     return start.ctx, start.k, start.n, start.v
 
 
-def run_in_limbs(scene: Scene, prec: int, times: Any, transits: bool = True, report: Any = None) -> Run:
+def run_in_limbs(scene: Scene, prec: int, times: Any, zeros: tuple[str, ...] = (XDOT,), report: Any = None) -> Run:
     """Return a run of the engine limbs at a precision in bits."""
     limbs = engines()["limbs"]
-    return limbs.run(limbs.plan(scene.exact, prec, times, transits), report)
+    return limbs.run(limbs.plan(scene.exact, prec, times, zeros), report)
 
 
 def start_for(scene: Scene, number: NumberType) -> Start:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compare.score.transit_matching import TransitErrors, transit_errors
+from compare import judge
+from compare.score.transit_matching import TransitErrors, judged_transits, transit_errors
+from reference import load
 
 TRUTH = np.arange(1, 21) * 8.2
 AX = 0.05 * (-1.0) ** np.arange(20)
@@ -16,7 +20,7 @@ END = 170.0
 
 
 def against(found, truth=TRUTH, ax=AX, until=END, **more):
-    return transit_errors(np.asarray(found, dtype=float), truth, ax, OMEGA, until, **more)
+    return transit_errors(np.asarray(found, dtype=float), truth, ax / OMEGA, until, **more)
 
 
 def test_the_truth_matches_itself():
@@ -96,14 +100,14 @@ def test_a_pair_that_appears_where_the_truth_nearly_stands_still_is_no_fault():
     found = np.sort([*TRUTH, 42.0, 42.002])
     asked = []
 
-    def xdot(times):
+    def distance(times):
         asked.append(times)
-        return np.full(len(times), 1e-8)
+        return np.full(len(times), 1e-8 / OMEGA)
 
-    made = against(found, tolerance_m=1e-6, away=xdot)
+    made = against(found, tolerance_m=1e-6, away=distance)
     assert (made.extra, made.undecided) == ([], [42.0, 42.002])
     assert np.array_equal(asked[0], [42.0, 42.002])
-    assert against(found, tolerance_m=1e-9, away=xdot).extra == [42.0, 42.002]
+    assert against(found, tolerance_m=1e-9, away=distance).extra == [42.0, 42.002]
 
 
 def test_no_transits_at_all_are_all_missed_or_all_extra():
@@ -140,8 +144,8 @@ def test_half_a_swing_to_the_last_bit_is_within_it():
 def test_what_is_off_by_the_tolerance_to_the_last_bit_is_within_it():
     one = np.array([0.5])
     assert TransitErrors(one, one, [], [], one).shifted(0.5) == []
-    truth = np.array([8.0, 16.0, 16.5, 24.0])  # between the pair the bob is off by 4 m/s² * 0.5 s / 4 over 1 rad/s
-    pair = transit_errors(truth[[0, 3]], truth, np.full(4, 4.0), 1.0, 30.0, tolerance_m=0.5)
+    truth = np.array([8.0, 16.0, 16.5, 24.0])  # between the pair the bob is off by 4 m/s * 0.5 s / 4
+    pair = transit_errors(truth[[0, 3]], truth, np.full(4, 4.0), 30.0, tolerance_m=0.5)
     assert pair.undecided == [16.0, 16.5]
 
 
@@ -155,7 +159,7 @@ def test_a_motion_within_the_tolerance_and_no_more_excuses(part, excused):
     depth = 1e-5 * 0.002 / 4 / OMEGA  # of the parabola between the two zeros
     pair = against(TRUTH, PAIR, PAIR_AX, tolerance_m=part * depth)
     assert pair.undecided == ([42.0, 42.002] if excused else [])
-    one = against(np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8 / OMEGA, away=lambda t: np.full(len(t), -1e-8))
+    one = against(np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8, away=lambda t: np.full(len(t), -1e-8))
     assert one.undecided == ([42.0] if excused else [])
     end = against(TRUTH[:5], until=TRUTH[5] + 1e-6, tolerance_m=part * 1e-6 * 0.05 / OMEGA)
     assert end.undecided == ([TRUTH[5]] if excused else [])
@@ -173,16 +177,22 @@ def test_a_pair_is_excused_and_not_its_neighbours():
 def test_too_many_extra_ones_are_no_grazing_zeros(count, excused):
     asked = []
 
-    def xdot(times):
+    def distance(times):
         asked.append(len(times))
         return np.zeros(len(times))
 
-    made = against(np.sort([*TRUTH, *np.linspace(40.0, 40.5, count)]), away=xdot)
+    made = against(np.sort([*TRUTH, *np.linspace(40.0, 40.5, count)]), away=distance)
     assert (len(made.undecided), len(made.extra)) == (excused, count - excused)
     assert asked == ([count] if excused else [])
 
 
 def test_without_any_swing_a_time_has_no_weight():
-    made = transit_errors(TRUTH + 0.1, TRUTH, AX, 0.0, END, away=lambda _: pytest.fail("nothing to compare with"))
+    """And no extra transit is excused, as no velocity is a distance."""
+    golden = load("force_free")
+    times = golden.transits["t"]
+    score = judge({"t": golden.t, "x": golden.x, "y": golden.y}, golden.scene, explain=False)
+    still = replace(score.errors, speed_m_s=0.0)
+    made = judged_transits(times + 0.1, golden, still, 1.0)
     assert (made.max_conditioned_m, made.max_error_s) == (0.0, pytest.approx(0.1))
-    assert transit_errors(np.append(TRUTH, 167.0), TRUTH, AX, 0.0, END, away=np.zeros_like).extra == [167.0]
+    doubled = judged_transits(np.append(times, times[-1] + 1e-9), golden, still, 1.0)
+    assert (doubled.extra, doubled.undecided) == ([times[-1] + 1e-9], [])

@@ -51,12 +51,10 @@ def jitter(monkeypatch, share: int) -> list[str]:
     """Move every number that a run in double or long double computes by some units in the last place."""
     honest, types = Heyoka.run, []
 
-    def moved(table: Table | None, prec: int) -> Table | None:
+    def moved(table: Table, prec: int) -> Table:
         def noise(value: int, place: int) -> int:
             return value + (value * (place * 7919 % 13 - 6) * share >> prec)
 
-        if table is None:
-            return None
         rows = [tuple(noise(value, i + j) for j, value in enumerate(row)) for i, row in enumerate(table.values)]
         return Table(table.columns, table.bits, rows)
 
@@ -66,7 +64,8 @@ def jitter(monkeypatch, share: int) -> list[str]:
         if not plan.number.hardware:
             return found
         prec = plan.number.prec
-        return replace(found, grid=moved(found.grid, prec), transits=moved(found.transits, prec), steps=found.steps + 1)
+        zeros = {word: part._replace(table=moved(part.table, prec)) for word, part in found.zeros.items()}
+        return replace(found, grid=moved(found.grid, prec), zeros=zeros, steps=found.steps + 1)
 
     monkeypatch.setattr(Heyoka, "run", run)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})  # one core, so that nothing escapes to a child

@@ -178,7 +178,6 @@ def test_let_go_at_rest_at_the_pole_the_bob_comes_to_rest_once_a_half_swing(leve
     solution = solve(load_scene("pole"), t_end="20", digits=20, level=level)
     height, climb, azimuth, _ = start_in_cylinder_coordinates({"x": "0.3", "y": "0.4"})
     path = SphericalPendulum(height, climb, azimuth, number(RATE))
-    assert solution.transits is not None
     half = 2 * path.quarter / path.w
     assert_column(solution.transits, "t", [half, 2 * half], digits=20)
 
@@ -217,7 +216,6 @@ def test_a_planar_pendulum_swings_as_sn_with_the_period_of_the_complete_integral
     assert_column(solution.grid, "x", x)
     assert_column(solution.grid, "z", z)
     assert not any(solution.grid.exact("y"))
-    assert solution.transits is not None
     assert_column(solution.transits, "t", planar.transits(number("150")))
 
 
@@ -230,7 +228,6 @@ def test_a_tiny_planar_swing_is_within_the_bound_that_a_single_run_states() -> N
 def test_without_rotation_the_paper_s_amplitude_has_the_paper_s_period() -> None:
     # Mathar VII: 4 sqrt(l/g) K(sin(φ0/2)) = 16.423225 s and 0.06088938 Hz, released 0.5 m aside.
     solution = solve(scene({"x": "0.5", "y": "0"}, "20", "20", rotation_rate="0"), digits=DIGITS)
-    assert solution.transits is not None
     assert_column(solution.transits, "t", PlanarPendulum(MP.asin(number("0.5") / 67)).transits(number("20")))
     period = solution.transits.exact("t")[1]
     assert round(period, 6) == Fraction("16.423225")
@@ -241,7 +238,6 @@ def test_without_rotation_the_paper_s_amplitude_has_the_paper_s_period() -> None
 def test_a_planar_swing_off_the_axes_has_the_same_period(level: str) -> None:
     # The paper's own release without rotation, x = 0.3 and y = 0.4; at its transits vy is exactly zero.
     solution = solve(scene({"x": "0.3", "y": "0.4"}, "20", "20", rotation_rate="0"), digits=20, level=level)
-    assert solution.transits is not None
     expected = PlanarPendulum(MP.asin(number("0.5") / 67)).transits(number("20"))
     assert_column(solution.transits, "t", expected, digits=20)
 
@@ -365,7 +361,6 @@ def test_the_bob_swings_in_the_paper_s_apparent_gravity() -> None:
     # -ax l/x is g' but for 5 Ω² l = 1.8e-6 m/s². (48) writes N + h for N + h - l: another Ω² l.
     release = {"x": "1e-6", "y": decimals(-number(LENGTH) * MP.sin(plumb_angle()), 30)}
     transits = solve(scene(release, "20", "20"), digits=15).transits
-    assert transits is not None
     measured = -number(transits.exact("ax")[0]) * 67 / number(transits.exact("x")[0])
     assert abs(measured - apparent_gravity()) <= 6 * number(RATE) ** 2 * 67
     assert MP.nstr(apparent_gravity(), 6) == MP.nstr(measured, 6) == "9.79195"
@@ -457,8 +452,7 @@ def test_the_mirror_image_on_an_earth_that_turns_the_other_way_is_a_solution(see
     for name, (value, unit) in last_row(one).items():
         expected = -mirrored[name][0] if name in ("x", "vx") else mirrored[name][0]
         assert abs(number(value - expected)) <= unit + mirrored[name][1]
-    assert one.transits is not None
-    assert other.transits is not None
+    assert len(one.transits) > 0
     assert one.directions == [-direction for direction in other.directions]
     unit = last_unit([number("30")], 20)
     for t, expected in zip(one.transits.exact("t"), other.transits.exact("t"), strict=True):

@@ -100,12 +100,15 @@ def test_what_was_made_before_the_option_says_nothing_of_a_whole_confirmation(ma
         assert bool(problems_of(old)) == (word == "sampled")
 
 
-def test_a_proof_of_other_numbers_is_not_confirmed(solved):
-    scene, times = solved["none"].scene, solved["none"].times
+@pytest.mark.parametrize("word", ["xdot", "gate 30"])
+def test_a_proof_of_other_zeros_is_not_confirmed(word):
+    proof = reference.solve(PARIS, **SHORT, sections=["gate 30"])
+    scene, times = proof.scene, proof.times
     problem = ProofTask(scene, AUTO, run_pilot(scene.exact, times))
     witness = run(confirming_plan(scene, times, problem.pilot, first_prec(scene, problem.pilot, AUTO)))
-    assert confirmed(problem, solved["none"], "whole", witness).proof.confirmed == "whole"
-    forged = replace(solved["none"], directions=solved["none"].directions[:-1])
+    assert confirmed(problem, proof, "whole", witness).proof.confirmed == "whole"
+    zeros = proof.zeros[word]
+    forged = replace(proof, zeros=proof.zeros | {word: zeros._replace(directions=zeros.directions[:-1])})
     with pytest.raises(IntegrationError, match="does not confirm"):
         confirmed(problem, forged, "whole", witness)
 

@@ -42,7 +42,7 @@ def enclosed():
 
 def finer(scene, prec=300):
     """A run far finer than the balls, in a formulation that the proof does not use."""
-    return run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), transits=scene.run.transits))
+    return run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), scene.run.zeros))
 
 
 def test_an_enclosed_file_is_digit_for_digit_the_confirmed_one(enclosed):
@@ -156,11 +156,11 @@ def test_the_cpu_seconds_of_an_audit_are_told():
 
 def test_xdot_identically_zero_has_no_transits_to_enclose():
     planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run=SHORT)
-    assert reference.solve(planar).zeros is None
+    assert reference.solve(planar).zeros == {}
 
 
 def test_transits_can_be_left_out():
-    assert reference.solve(make_scene(run=SHORT), transits=False, engine="limbs").zeros is None
+    assert reference.solve(make_scene(run=SHORT), transits=False, engine="limbs").zeros == {}
 
 
 def solved_with(change, scene, engine="limbs"):
@@ -176,10 +176,15 @@ def solved_with(change, scene, engine="limbs"):
     return guarded(proved(problem, lying), problem.pilot)
 
 
+def with_transits(proved, transits):
+    return replace(proved, zeros=proved.zeros | {"xdot": tuple(transits)})
+
+
 def test_what_cannot_be_decided_is_said_and_its_row_left_out(tmp_path):
     def doubt(proved):
-        unsure = replace(proved.transits[3], parity="odd", direction=0)
-        return replace(proved, transits=[*proved.transits[:3], unsure, *proved.transits[4:]])
+        transits = list(proved.zeros["xdot"])
+        transits[3] = replace(transits[3], parity="odd", direction=0)
+        return with_transits(proved, transits)
 
     path = write(solved_with(doubt, make_scene(run=SHORT)), tmp_path / "doubt")
     manifest = load(path).manifest
@@ -212,10 +217,10 @@ def test_a_run_that_ends_at_a_transit_is_written_with_what_is_possible_up_to_its
 
 def test_a_possible_transit_is_reported_within_the_run():
     def doubt(proved):
-        first, last = proved.transits[0], proved.transits[-1]
+        first, *others, last = proved.zeros["xdot"]
         early = replace(first, parity="odd", t=replace(first.t, low=Fraction(-1, 10**14)))
         late = replace(last, parity="odd", t=replace(last.t, high=proved.times[-1] + Fraction(1, 10**14)))
-        return replace(proved, transits=[early, *proved.transits[1:-1], late])
+        return with_transits(proved, [early, *others, late])
 
     early, late = solved_with(doubt, make_scene(run=SHORT)).possible
     assert (early[0], late[1]) == (0, 120)
@@ -234,14 +239,15 @@ def test_a_state_outside_its_ball_names_time_and_component(engine, shift):
 
 def test_a_transit_that_heyoka_does_not_see_is_named():
     with pytest.raises(IntegrationError, match="heyoka finds 14 transits, the enclosure 13"):
-        solved_with(lambda proved: replace(proved, transits=proved.transits[:-1]), make_scene(run=SHORT))
+        solved_with(lambda proved: with_transits(proved, proved.zeros["xdot"][:-1]), make_scene(run=SHORT))
 
 
 def test_a_transit_that_heyoka_sees_elsewhere_is_named():
     def shift(proved):
-        late = proved.transits[4]
-        moved = replace(late, t=replace(late.t, low=late.t.low + 1, high=late.t.high + 1))
-        return replace(proved, transits=[*proved.transits[:4], moved, *proved.transits[5:]])
+        transits = list(proved.zeros["xdot"])
+        t = transits[4].t
+        transits[4] = replace(transits[4], t=replace(t, low=t.low + 1, high=t.high + 1))
+        return with_transits(proved, transits)
 
     with pytest.raises(IntegrationError, match="does not find transit 5 of the enclosure, at t = "):
         solved_with(shift, make_scene(run=SHORT))
@@ -328,22 +334,30 @@ def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(m
         reference.solve(scene, engine="limbs", audit=True)
 
 
-@pytest.mark.parametrize("transits", [True, False])
-def test_an_audit_that_proves_other_digits_is_refused(transits):
-    solution = reference.solve(
-        make_scene(run={**SHORT, "t_end": "30", "digits": 20, "transits": transits}), engine="limbs"
-    )
+@pytest.mark.parametrize("words", [("xdot",), ("gate 30",), ("xdot", "gate 30"), ()], ids=", ".join)
+def test_an_audit_that_proves_other_digits_is_refused(words):
+    asked = {"transits": "xdot" in words, "sections": [word for word in words if word != "xdot"]}
+    solution = reference.solve(make_scene(run={**SHORT, "t_end": "30", "digits": 20, **asked}), engine="limbs")
     digits = proved_digits(solution)
     assert audited(solution, digits, 1.0).proof.audited
-    others = [replace(solution, directions=[*solution.directions, 1])]
-    for name in ("grid", "zeros") if transits else ("grid",):
-        table = getattr(solution, name)
-        *rows, last = table.values
-        spoilt = replace(table, values=[*rows, (*last[:-1], last[-1] + (1 << table.bits))])
-        others.append(replace(solution, **{name: spoilt}))
+    assert tuple(solution.zeros) == words
+    others = [replace(solution, grid=spoilt(solution.grid))]
+    for word, zeros in solution.zeros.items():
+        for change in (
+            {"table": spoilt(zeros.table)},
+            {"directions": [*zeros.directions, 1]},
+            {"possible": ((Fraction(1), Fraction(2), "odd"),)},
+        ):
+            others.append(replace(solution, zeros=solution.zeros | {word: zeros._replace(**change)}))
     for other in others:
         with pytest.raises(IntegrationError, match="FLINT alone proves other digits"):
             audited(other, digits, 1.0)
+
+
+def spoilt(table):
+    """Return a table with another last number."""
+    *rows, last = table.values
+    return replace(table, values=[*rows, (*last[:-1], last[-1] + (1 << table.bits))])
 
 
 def test_an_audit_without_a_proof_is_refused():

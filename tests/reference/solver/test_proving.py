@@ -1,4 +1,4 @@
-"""A run with event detection refuses a proof whose transits it does not see: in number, direction, order and time."""
+"""A run with event detection refuses a proof whose zeros it does not see: in number, direction, order and time."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -13,7 +13,7 @@ from reference.solver.proving import guarded
 
 @pytest.fixture(scope="module")
 def proved():
-    return reference.solve("paris", t_end="60", digits=18, level="enclosed")
+    return reference.solve("paris", t_end="60", digits=18, level="enclosed", sections=["gate 30"])
 
 
 @pytest.fixture(scope="module")
@@ -21,57 +21,70 @@ def pilot(proved):
     return run_pilot(proved.scene.exact, proved.times)
 
 
-def with_times(solution, times):
-    """Return a solution whose transits are said to be at other times."""
-    zeros = solution.zeros
-    place = zeros.columns.index("t")
-    rows = [list(row) for row in zeros.values]
+# the word of the zeros, and what messages call one of them
+KINDS = pytest.mark.parametrize(("word", "name"), [("xdot", "transit"), ("gate 30", "gate 30 passage")])
+
+
+def with_times(solution, word, times):
+    """Return a solution whose zeros of a word are said to be at other times."""
+    table = solution.zeros[word].table
+    place = table.columns.index("t")
+    rows = [list(row) for row in table.values]
     for row, t in zip(rows, times, strict=True):
-        row[place] = round(t * 2**zeros.bits)
-    return replace(solution, zeros=replace(zeros, values=[tuple(row) for row in rows]))
+        row[place] = round(t * 2**table.bits)
+    return changed(solution, word, table=replace(table, values=[tuple(row) for row in rows]))
 
 
-def without(solution, k):
-    """Return a solution that lacks one of its transits."""
-    zeros = solution.zeros
-    values, errors = ([*column[:k], *column[k + 1 :]] for column in (zeros.values, zeros.errors))
-    directions = [*solution.directions[:k], *solution.directions[k + 1 :]]
-    return replace(solution, zeros=replace(zeros, values=values, errors=errors), directions=directions)
+def changed(solution, word, **zeros):
+    return replace(solution, zeros=solution.zeros | {word: solution.zeros[word]._replace(**zeros)})
 
 
+def without(solution, word, k):
+    """Return a solution that lacks one of the zeros of a word."""
+    table, directions, _ = solution.zeros[word]
+    values, errors = ([*column[:k], *column[k + 1 :]] for column in (table.values, table.errors))
+    directions = [*directions[:k], *directions[k + 1 :]]
+    return changed(solution, word, table=replace(table, values=values, errors=errors), directions=directions)
+
+
+@KINDS
 @pytest.mark.parametrize("k", [0, 3, 6])
 @pytest.mark.parametrize("way", [-1, 1])
-def test_a_transit_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(proved, pilot, k, way):
+def test_a_zero_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(proved, pilot, word, name, k, way):
     """In double a time near 60 s has a last bit of 7e-15 s; xdot has errors near 1e-15 m/s, over its slope of 0.04."""
-    times = proved.zeros.exact("t")
+    times = proved.zeros[word].table.exact("t")
     for off, seen in ((Fraction(1, 10**13), True), (Fraction(1, 10**9), False)):
-        moved = with_times(proved, [t + way * off * (i == k) for i, t in enumerate(times)])
-        if seen:
-            assert guarded(moved, pilot).guard.transit_s >= off * Fraction(9, 10)
-        else:
-            with pytest.raises(IntegrationError, match=f"does not find transit {k + 1} of the enclosure"):
+        moved = with_times(proved, word, [t + way * off * (i == k) for i, t in enumerate(times)])
+        if not seen:
+            with pytest.raises(IntegrationError, match=f"does not find {name} {k + 1} of the enclosure"):
                 guarded(moved, pilot)
+            continue
+        guard = guarded(moved, pilot).guard
+        assert word != "xdot" or guard.transit_s >= off * Fraction(9, 10)
 
 
-def test_another_direction_is_refused(proved, pilot):
-    first, second, *others = proved.directions
+@KINDS
+def test_another_direction_is_refused(proved, pilot, word, name):
+    first, second, *others = proved.zeros[word].directions
     assert guarded(proved, pilot).guard.number == "double"
-    with pytest.raises(IntegrationError, match="does not find transit 2"):
-        guarded(replace(proved, directions=[first, -second, *others]), pilot)
+    with pytest.raises(IntegrationError, match=f"does not find {name} 2"):
+        guarded(changed(proved, word, directions=[first, -second, *others]), pilot)
 
 
-def test_transits_in_another_order_are_refused(proved, pilot):
-    first, second, third, *others = proved.zeros.exact("t")
-    with pytest.raises(IntegrationError, match="does not find transit 2"):
-        guarded(with_times(proved, [third, second, first, *others]), pilot)
+@KINDS
+def test_zeros_in_another_order_are_refused(proved, pilot, word, name):
+    first, second, third, *others = proved.zeros[word].table.exact("t")
+    with pytest.raises(IntegrationError, match=f"does not find {name} 2"):
+        guarded(with_times(proved, word, [third, second, first, *others]), pilot)
 
 
-def test_a_transit_that_is_missing_is_refused_unless_some_are_undecided(proved, pilot):
-    fewer = without(proved, 2)
-    with pytest.raises(IntegrationError, match="finds 7 transits, the enclosure 6"):
+@KINDS
+def test_a_zero_that_is_missing_is_refused_unless_some_are_undecided(proved, pilot, word, name):
+    fewer = without(proved, word, 2)
+    with pytest.raises(IntegrationError, match=f"finds 7 {name}s, the enclosure 6"):
         guarded(fewer, pilot)
-    t = proved.zeros.exact("t")[2]
-    undecided = replace(fewer, possible=((t - 1, t + 1, "odd"),))
+    t = proved.zeros[word].table.exact("t")[2]
+    undecided = changed(fewer, word, possible=((t - 1, t + 1, "odd"),))
     assert guarded(undecided, pilot).guard is not None
 
 

@@ -1,4 +1,4 @@
-"""Digits after the point of grid and transits, and numbers that an error leaves undecided."""
+"""Digits after the point of grid and zeros, and numbers that an error leaves undecided."""
 
 from __future__ import annotations
 
@@ -17,16 +17,15 @@ from reference.numbers import columns
 from reference.numbers.columns import GRID, SECTION, TRANSITS, GridColumns
 from reference.numbers.precision import DOUBLE
 from reference.numbers.table import Table
+from reference.numbers.zeros import Zeros
 from reference.solver.solution import (
     SAMPLED,
     CrossCheck,
-    Passages,
     UndecidedRounding,
     check_decided,
+    decimals_of_zeros,
     exact_decimals,
     grid_decimals,
-    section_decimals,
-    transit_decimals,
 )
 from reference.solver.swing import NO_SECTION, UNDECIDED
 
@@ -35,38 +34,55 @@ SURE, OPEN = Fraction(1, 10**12), Fraction(1)
 
 @pytest.fixture(scope="module")
 def solution():
-    solved = reference.solve(reference.load_scene("paris"), t_end="60", digits=6, level="computed")
+    short = {"t_end": "60", "digits": 6, "level": "computed"}
+    solved = reference.solve(reference.load_scene("paris"), sections=["gate 30"], **short)
+    errors = {word: dict.fromkeys(zeros.table.columns, SURE) for word, zeros in solved.zeros.items()}
     return replace(
         solved,
         grid=solved.grid.with_errors(dict.fromkeys(GRID, SURE)),
-        zeros=solved.transits.with_errors(dict.fromkeys(TRANSITS, SURE)),
+        zeros={word: with_errors(zeros, errors[word]) for word, zeros in solved.zeros.items()},
     )
 
 
+def with_errors(zeros, errors):
+    return zeros._replace(table=zeros.table.with_errors(errors))
+
+
 def test_transits_have_the_decimals_of_the_grid_and_their_own_for_time_and_acceleration(solution):
-    grid, transits = grid_decimals(solution), transit_decimals(solution)
+    grid, transits = grid_decimals(solution), decimals_of_zeros(solution, "xdot")
     assert {name: transits[name] for name in ("x", "y", "z", "vy")} == {
         name: grid[name] for name in ("x", "y", "z", "vy")
     }
     assert (transits["t"], transits["ax"]) == (4, 7)  # 57 s and 0.04 m/s² with six digits
-    assert transit_decimals(replace(solution, zeros=None)) == {}
 
 
-@pytest.mark.parametrize("kind", ["grid", "transits"])
-def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_transits(solution, kind):
+@pytest.mark.parametrize("word", ["xdot", "gate 30"])
+def test_zeros_that_a_solution_has_not_have_no_decimals(solution, word):
+    assert decimals_of_zeros(solution, word)
+    assert decimals_of_zeros(replace(solution, zeros={}), word) == {}
+
+
+@pytest.mark.parametrize("kind", ["grid", "xdot", "gate 30"])
+def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_zeros(solution, kind):
     check_decided(solution)
-    check_decided(replace(solution, zeros=None))
-    table = getattr(solution, kind)
-    errors = dict.fromkeys(GRID if kind == "grid" else TRANSITS, SURE) | {"y": OPEN}
+    check_decided(replace(solution, zeros={}))
+    if kind == "grid":
+        unsure = replace(solution, grid=solution.grid.with_errors(dict.fromkeys(GRID, SURE) | {"y": OPEN}))
+    else:
+        zeros = solution.zeros[kind]
+        zeros = with_errors(zeros, dict.fromkeys(zeros.table.columns, SURE) | {"y": OPEN})
+        unsure = replace(solution, zeros=solution.zeros | {kind: zeros})
     with pytest.raises(UndecidedRounding, match="of y = "):
-        check_decided(replace(solution, **{kind.replace("transits", "zeros"): table.with_errors(errors)}))
+        check_decided(unsure)
 
 
-@pytest.mark.parametrize(("of_grid", "of_transits"), [(OPEN, 2 * OPEN), (2 * OPEN, OPEN)])
-def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, of_grid, of_transits):
+@pytest.mark.parametrize("word", ["xdot", "gate 30"])
+@pytest.mark.parametrize(("of_grid", "of_zeros"), [(OPEN, 2 * OPEN), (2 * OPEN, OPEN)])
+def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, word, of_grid, of_zeros):
     grid = solution.grid.with_errors(dict.fromkeys(GRID, SURE) | {"y": of_grid})
-    transits = solution.transits.with_errors(dict.fromkeys(TRANSITS, SURE) | {"y": of_transits})
-    unsure = replace(solution, grid=grid, zeros=transits)
+    zeros = solution.zeros[word]
+    zeros = with_errors(zeros, dict.fromkeys(zeros.table.columns, SURE) | {"y": of_zeros})
+    unsure = replace(solution, grid=grid, zeros=solution.zeros | {word: zeros})
     with pytest.raises(UndecidedRounding) as caught:
         check_decided(unsure)
     assert (caught.value.width, caught.value.column) == (2 * OPEN * 10 ** grid_decimals(unsure)["y"], "y")
@@ -92,9 +108,14 @@ def test_the_motion_at_any_time_takes_a_golden_function(solution):
 
 @pytest.mark.parametrize("words", [("early", "late"), ("late", "early")])
 def test_passages_have_the_decimals_of_the_grid_and_those_of_the_latest_time(solution, words):
+    """Transits, which have a file of their own, count for none of them."""
     rows = {"early": (1, *[0] * 6), "late": (57, *[0] * 6)}
-    sections = {word: Passages(Table(SECTION, 0, [rows[word]]), [1]) for word in words}
-    assert section_decimals(replace(solution, sections=sections)) == grid_decimals(solution) | {"t": 4}
+    zeros = {word: Zeros(Table(SECTION, 0, [rows[word]]), [1]) for word in words}
+    zeros |= {"xdot": Zeros(Table(TRANSITS, 0, [(5700, *[0] * 5)]), [1])}
+    of_zeros = replace(solution, zeros=zeros)
+    for word in words:
+        assert decimals_of_zeros(of_zeros, word) == grid_decimals(solution) | {"t": 4}
+    assert decimals_of_zeros(of_zeros, "xdot")["t"] == 2
 
 
 def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(solution):
@@ -106,9 +127,9 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
     assert float(found.swing.hz[0]) == pytest.approx(1 / 16.4355, rel=1e-4)
     for sections, reason in (
         ({"lowest": lowest}, NO_SECTION),
-        ({"highest": Passages(highest.table, highest.directions, ((SURE, OPEN, "even"),))}, UNDECIDED),
+        ({"highest": Zeros(highest.table, highest.directions, ((SURE, OPEN, "even"),))}, UNDECIDED),
     ):
-        solved = replace(found, sections=sections)
+        solved = replace(found, zeros=sections)
         assert solved.swing_or_reason == reason
         assert solved.swing is None
 
@@ -120,7 +141,17 @@ def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
     assert (check.engine, check.formulation, check.number) == ("heyoka", "spin", "double")
     assert (check.position_m, check.velocity_m_s, check.transit_s) == (Fraction(2, 7), Fraction(5, 7), None)
     assert SAMPLED == 10  # "a tenth" in help, pages and what is written
-    assert len(replace(solution, zeros=None).transits) == 0 < len(solution.transits)
+
+
+def test_transits_are_the_zeros_of_xdot_and_sections_the_others(solution):
+    assert list(solution.zeros) == ["xdot", "gate 30"]
+    transits = solution.zeros["xdot"]
+    assert (solution.transits, solution.directions, solution.possible) == transits
+    assert solution.sections == {"gate 30": solution.zeros["gate 30"]}
+    assert len(solution.transits) > 0
+    without = replace(solution, zeros={})
+    assert (len(without.transits), without.directions, without.possible, without.sections) == (0, [], (), {})
+    assert without.transits.columns == TRANSITS
 
 
 def told_by_mypy(program, *words):

@@ -186,7 +186,7 @@ def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
     fast = {"rotation_rate": "0.01", "altitude": "100"}
     effective = reference.solve(make_scene(site={**fast, "gravity_is": "effective"}, run=run))
     on_axis = reference.solve(make_scene(site={**fast, "equatorial_radius": "0", "altitude": "0"}, run=run))
-    assert effective.transits is not None
+    assert len(effective.transits) > 0
     assert [effective.grid.exact(name) for name in GRID] == [on_axis.grid.exact(name) for name in GRID]
     assert effective.transits.exact("t") == on_axis.transits.exact("t")
     otherwise = reference.solve(make_scene(site=fast, run=run | {"digits": "9", "level": "computed"}))
@@ -230,7 +230,7 @@ def test_two_cheap_runs_that_diverge_give_nothing_and_those_of_too_many_steps_ar
 def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(paris, asked, times):
     solution = solver.solve_at(paris, [*map(Fraction, asked)], 12)
     assert list(solution.times) == times
-    assert (solution.level, solution.scene.run.digits, solution.zeros) == ("self_consistent", 12, None)
+    assert (solution.level, solution.scene.run.digits, solution.zeros) == ("self_consistent", 12, {})
 
 
 def test_what_a_proof_and_ranges_are_asked_for_they_have_and_else_it_is_refused(paris):

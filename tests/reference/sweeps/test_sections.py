@@ -38,7 +38,7 @@ def drawn(pytestconfig):
     words.append(f"{words[3]}@0")
     limbs = engines()["limbs"]
     plans = [limbs.plan(inputs, 110, (Fraction(0), SPAN)) for inputs in many]
-    return many, words, [run(replace(plan, sections=tuple(words))).passages for plan in plans]
+    return many, words, [run(replace(plan, zeros=tuple(words))).zeros for plan in plans]
 
 
 def mean_interval(times, directions):
@@ -57,7 +57,7 @@ def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, e
         columns, unsure = passages(solver, word, rows_of(many, word), base, errors)
         for i, exact in enumerate(truth):
             row = {name.removeprefix(f"{word}: "): values[i] for name, values in columns.items()}
-            times, directions = exact[word][0].exact("t"), exact[word][1]
+            times, directions = exact[word].table.exact("t"), exact[word].directions
             undecided += bool(unsure[i])
             if unsure[i]:
                 continue
@@ -83,7 +83,7 @@ def test_passages_of_limbs_are_those_of_scipy(drawn):
     tame = [i for i in range(len(many)) if KINDS[i % len(KINDS)] != "over"]
     for inputs, exact in ((many[i], truth[i]) for i in tame):
         for word, other in found(inputs, words, SPAN).items():
-            table, directions = exact[word]
+            table, directions, _ = exact[word]
             assert directions == [direction for _, direction in other], (word, inputs)
             assert np.abs(table["t"] - [t for t, _ in other]).max(initial=0) < NEAR, (word, inputs)
 
