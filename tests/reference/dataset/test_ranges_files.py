@@ -14,7 +14,7 @@ import reference
 from reference.commands import app
 from reference.dataset.manifest import text_of
 from reference.dataset.ranges import ends, ranges_id, verify_ranges, write_ranges
-from reference.enclosure.trusted.printed_box import check_ranges
+from reference.enclosure.trusted.printed_box import check_ranges, end_of
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 
@@ -236,3 +236,10 @@ def test_ranges_of_a_proof_that_looked_for_no_transits_do_not_say_that_there_are
     said["scene"]["run"]["transits"] = "true"
     with pytest.raises(ArithmeticError, match="whether transits were looked for"):
         check_ranges({**texts, "ranges.json": json.dumps(said)}, ranges.proof.proved)
+
+
+def test_the_ends_of_an_uncertain_flattening_are_those_of_its_inverse():
+    """1/f = 298.257223564 ± 1: f between 1/299.257223564 and 1/297.257223564."""
+    inputs = reference.load_scene("paris").exact
+    low, high = (end_of(inputs, {"site.inverse_flattening": "±1"}, side).flattening for side in (1, -1))
+    assert (1 / low, 1 / high) == (Fraction("299.257223564"), Fraction("297.257223564"))

@@ -6,6 +6,7 @@ import mpmath as mp
 import pytest
 from enclosure_oracle import acceleration, constants, scene, start, truth
 from flint import arb, ctx, fmpz, fmpz_poly
+from small_scenes import make_scene
 
 from reference.enclosure.trusted.balls import ball, fixed, interval, size, total, upper
 from reference.enclosure.trusted.defect import Piece
@@ -24,6 +25,16 @@ def test_a_size_is_that_of_the_farthest_point():
     assert size([arb(0, 3), arb(0), arb(0, 4)]) >= 5
     assert size([arb(-3, 1), arb(0), arb(0)]) >= 4
     assert total(fmpz_poly([1, -1, 1]), 1) == 1.5
+
+
+def test_the_pull_at_the_pivot_is_gravity_and_the_centrifugal_force_of_a_sphere():
+    """On the equator of a sphere that turns at 0.01/s, at 6.4e6 m: 9.8 - 0.01² 6.4e6 = -630.2 m/s², for 2 m of cord."""
+    fields = {"latitude": "0", "altitude": "0", "gravity": "9.8", "rotation_rate": "0.01", "equatorial_radius": "6.4e6"}
+    scene_there = make_scene(pendulum={"length": "2"}, site={**fields, "inverse_flattening": "inf"})
+    balls = SceneBalls(scene_there.exact, 128)
+    east, north, up = balls.turned(balls.c, -1)
+    assert east.is_zero() and north.contains(0)
+    assert up.overlaps(arb("630.2") / 2)
 
 
 @pytest.mark.parametrize("prec", [4, 64])
