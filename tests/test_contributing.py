@@ -99,6 +99,7 @@ def test_a_column_is_made_and_verified_at_levels_of_runs_and_of_proof(copy, tmp_
         out = str(tmp_path / level)
         lines += [["generate", "paris", "--t-end", "120", "--digits", "20", "--level", level, "--out", out]]
         lines += [["verify", out]]
+    lines += [["generate", "paris", "--t-end", "5", "--uncertain", "length=±0.001", "--out", str(tmp_path / "ranges")]]
     run = [sys.executable, "-c", IN_TURN, json.dumps(lines)]
     done = subprocess.run(run, check=False, cwd=copy, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

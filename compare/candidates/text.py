@@ -1,7 +1,7 @@
 """The dialect of a text: what separates its fields, which mark its decimals have, how its times are written.
 
-A text is taken apart in one way from its first row to its last. `Dialect.split` gives the fields of a line, `plain`
-the number in a field. `reading.js` has the same rules for the pages that read files in the browser.
+A text is taken apart in one way from its first row to its last. `split` gives the fields of a line, `plain` the
+number in a field. `reading.js` has the same rules for the pages that read files in the browser.
 """
 
 from __future__ import annotations

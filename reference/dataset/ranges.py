@@ -12,7 +12,7 @@ from typing import Any
 
 from ..engines.plan import Report
 from ..errors import DatasetError, FoucaultError, InputError, checked_path
-from ..numbers.columns import GRID, SECTION, TRANSITS
+from ..numbers.columns import SECTION, STATE, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..numbers.zeros import XDOT, Zeros
 from ..scenes.scene import parse_scene
@@ -130,7 +130,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
             scene,
             {name: width.removeprefix("±") for name, width in manifest["uncertain"].items()},
             tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
-            Intervals(GRID, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
+            Intervals(STATE, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
             zeros,
             manifest["proof"]["engine"],
             derivatives=manifest["proof"].get("derivatives") is True,
@@ -245,7 +245,7 @@ def _table(first: Sequence[str], columns: Sequence[str], rows: Sequence[Sequence
 
 def _texts(ranges: Ranges) -> dict[str, str]:
     """Return the files of ranges, sealed."""
-    tables = {GRID_FILE: _table(["t"], GRID, _grid_rows(ranges))}
+    tables = {GRID_FILE: _table(["t"], STATE, _grid_rows(ranges))}
     tables[TRANSITS_FILE] = _table(["k", "direction"], TRANSITS, _zero_rows(ranges.transits, ranges.directions))
     if sections := ranges.sections.items():
         rows = [[word, *row] for word, zeros in sections for row in _zero_rows(zeros.table, zeros.directions)]

@@ -1,4 +1,4 @@
-"""CSV files of a dataset, from tables that are rounded already: decimals, and their nearest doubles."""
+"""CSV files of a dataset: its tables rounded to their decimals, and the nearest doubles."""
 
 from __future__ import annotations
 

@@ -3,7 +3,9 @@
 The zeros of a step's polynomial are counted by Descartes' rule: in Bernstein's form its coefficients change sign as
 often as it has zeros, or 2, 4, ... times oftener. One change at most is certain; any other piece is halved. This is
 done in doubles, until rounding shows: then a piece's own series is made from the integers. Signs at places are those of
-integers, and that at a step's start is that at the end of the step before. All engines are served alike.
+integers, and that at a step's start is that at the end of the step before.
+
+Sections are found here for every engine; the zeros of xdot by each engine as it runs.
 
 A zero at the release that no digit of the run tells from it, as that of every velocity at rest, does not count.
 """

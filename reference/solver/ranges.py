@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import InputError, counted, unknown
-from ..numbers.columns import GRID, TRANSITS, Framed, data_frame
+from ..numbers.columns import STATE, TRANSITS, Framed, data_frame
 from ..numbers.precision import Array, double_below
 from ..numbers.zeros import XDOT, Undecided, Zeros, sections_of
 from ..scenes.scene import Scene, full_name
@@ -220,7 +220,7 @@ class Ranges:
         times = [zero.times[j] for zero in derivatives.zeros.get(XDOT, ()) if zero.times]
         complete = len(times) == len(self.transits) > 0
         return Derivative(
-            Intervals(GRID, tuple(row[j] for row in derivatives.states)),
+            Intervals(STATE, tuple(row[j] for row in derivatives.states)),
             Intervals(("t",), tuple((x,) for x in times) if complete else ()),
             _mean(times, self._swings) if complete and self._swings > 0 else None,
             self._precession(j),

@@ -1,6 +1,6 @@
 """Frequency and precession of a solved scene, as intervals, from its highest points.
 
-Those of samples: compare/observed/swing_plane.py; of a sweep's rows: sweeps/estimate.py.
+Those of samples: compare/observed/swing_plane.py; of a sweep's rows: sweeps/highest_points.py.
 """
 
 from __future__ import annotations

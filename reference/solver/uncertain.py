@@ -11,7 +11,7 @@ from typing import Any
 from ..engines.plan import Report
 from ..engines.registry import checked
 from ..errors import InputError, unknown
-from ..numbers.columns import GRID
+from ..numbers.columns import STATE
 from ..numbers.precision import fixed_decimal
 from ..scenes.inputs import RELEASES, SITE
 from ..scenes.scene import AnyScene, Scene, checked_value, full_name
@@ -166,7 +166,7 @@ def prove_ranges(
         scene,
         texts,
         tuple(times),
-        Intervals(GRID, proof.proved.states),
+        Intervals(STATE, proof.proved.states),
         {word: separated(zeros, word, end, Intervals) for word, zeros in proof.proved.zeros.items()},
         feeds[-1].begun,
         proof,

@@ -1,4 +1,4 @@
-"""TRUSTED. The files of ranges, read back as texts and held against what was proved for a box of inputs."""
+"""TRUSTED. The ends of a box of inputs; the files of ranges, read back and compared with what was proved."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
