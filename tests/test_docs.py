@@ -49,7 +49,7 @@ TUTORIAL, SCENE, MEASURED, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/api.md",
 )
 INDENTED = None
-BESIDE = {ORACLE: ["compare/score"]}  # where the files are that a page names without a folder
+BESIDE = {ORACLE: ["compare/score", "compare/diagnosis"]}  # where the files are that a page names without a folder
 EVERYWHERE = ["compare", "reference", "tests", "docs"]
 # what the blocks of each page are in; all but formulas, and what Sphinx itself carries out, is run
 LANGUAGES = {
@@ -231,9 +231,10 @@ def test_the_lines_of_python_on_a_page_print_what_it_shows(page):
 
 
 def test_the_programs_and_the_test_of_the_page_on_python_pass(tmp_path, typed):
-    program, gates, box, limits, name = write_files(API, tmp_path)
+    program, gates, swing, box, limits, name = write_files(API, tmp_path)
     assert -67 < float(typed(f"python {program}", tmp_path)) < -66.99
     assert 8.21 < Fraction(typed(f"python {gates}", tmp_path)) < 8.22  # half a swing
+    assert re.match(r"16\.4355\d+ ± \de-1\d s", typed(f"python {swing}", tmp_path))
     low, high = map(float, typed(f"python {box}", tmp_path).split())
     assert low < 599.898 < high < low + 0.01  # what the point's own transit is: 599.8984 s
     assert typed(f"python {limits}", tmp_path).startswith("pendulum.length moves the period by 1.2e-04 s at most: 93.")

@@ -131,12 +131,12 @@ def study(
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
-    from ..report.approximations import Swept, document_of, report_of
-
-    swept: Swept = {}
-    report = report_of(scene, swept)
-    report.check(out)
     with stoppable("nothing was kept"), progress() as show:
+        from ..report.approximations import Swept, document_of, report_of
+
+        swept: Swept = {}
+        report = report_of(scene, swept)
+        report.check(out)
         document = document_of(scene, swept, show(scene.id, unit="tables"))
     finish(document, report.text, report.write(document, out), as_json)
 

@@ -8,6 +8,7 @@ finer run. For `computed` there is one run only, and for `enclosed` a proof (`en
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -16,6 +17,7 @@ from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run, run_both
 from ..errors import InputError, UnreachableError, in_words
+from ..model.start import Start
 from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..numbers.zeros import XDOT
@@ -105,6 +107,9 @@ def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = Non
         IntegrationError: a run stopped.
     """
     scene, every = scene.with_values(["run.level=confirmed"]), tuple(sorted({Fraction(0), *times}))
+    if scene.run.transits:  # a run that finds them is not ended by its pace
+        radians = math.ceil(Start.of(scene.exact, LONG_DOUBLE.prec).fastest_rate * float(every[-1]))
+        check_reach(radians, LONG_DOUBLE.prec, scene.run.digits)  # about one a step
     fine = Plan(scene.exact, "momentum", LONG_DOUBLE, every, (XDOT,) if scene.run.transits else ())
     published = run(fine, report, Pace(scene.exact, every[-1]))
     witness = run(replace(fine, formulation="spin", number=DOUBLE))

@@ -70,9 +70,11 @@ def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(size, foucault,
         "compare.score.judge.golden_of",
         "compare.studies.study.golden_of",
         "reference.commands.generate_all.solve",
+        "reference.commands.proved.prove_ranges",
         "reference.commands.proved.solve",
-        "reference.dataset.ranges.solve",
+        "reference.dataset.ranges.prove_ranges",
         "reference.dataset.verify.solve",
+        "reference.solver.uncertain.prove_ranges",
         "reference.solver.solve.solve",  # last: the others would keep what stands here when they are imported
     ):
         monkeypatch.setattr(place, stop)

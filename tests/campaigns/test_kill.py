@@ -32,9 +32,7 @@ ORPHANS_END_S = 10.0
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OFTEN = {
     ("dataset", signal.SIGKILL),
-    ("dataset", signal.SIGINT),
     ("sweep", signal.SIGINT),
-    ("sweep in processes", signal.SIGKILL),
     ("study", signal.SIGKILL),
 }
 ENDS = [

@@ -131,6 +131,7 @@ def test_a_scene_that_fails_costs_only_itself(tmp_path):
     assert foucault_of(project, *words).returncode == 3
 
 
+@pytest.mark.long
 def test_a_cluster_makes_the_same_bytes(foucault, tmp_path):
     pytest.importorskip("distributed")
     project = own_project(tmp_path / "own", ["paris"])

@@ -224,6 +224,8 @@ def test_two_cheap_runs_that_diverge_give_nothing_and_those_of_too_many_steps_ar
     stiff = reference.load_scene("creeping", ["run.transits=false"])
     with pytest.raises(UnreachableError, match="Stiff"):
         solver.roughly(stiff, [Fraction(10**7)])
+    with pytest.raises(UnreachableError, match="out of reach"):
+        solver.roughly(reference.load_scene("paris"), [Fraction(10**12)])
 
 
 @pytest.mark.parametrize(("asked", "times"), [([], [0, 60]), ([0], [0, 60]), ([17], [0, 17]), ([90, 17], [0, 17, 90])])
