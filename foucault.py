@@ -126,7 +126,8 @@ def _open_closed_streams() -> None:
 
 def _run() -> tuple[str | int | None, str, bool] | None:
     """Run a command; return how it ended, as `_end` takes it, or None where it simply did."""
-    from reference.errors import FoucaultError, Stopped, plain_lines, plain_output
+    from reference.errors import FoucaultError, Stopped
+    from reference.plain_text import plain_lines, plain_output
     from reference.system.interruption import terminable
 
     signals: list[int] = []
@@ -161,7 +162,7 @@ def _report(error: Exception) -> str:
     """Return what a user is to do about an error that nobody foresaw, and what a maintainer needs, its traceback."""
     import traceback
 
-    from reference.errors import plain_lines
+    from reference.plain_text import plain_lines
 
     asked = "Please report the command, what `foucault --version` prints, and all that follows."
     lines = "".join(traceback.format_exception(error)).rstrip()

@@ -42,9 +42,9 @@ if TYPE_CHECKING:
     from .solver.uncertain import prove_ranges as prove_ranges
     from .sweeps.scene_swing import EstimatedSwing as EstimatedSwing
     from .sweeps.scene_swing import swing as swing
-    from .sweeps.sweep import Swept as Swept
     from .sweeps.sweep import load_sweep as load_sweep
     from .sweeps.sweep import sweep as sweep
+    from .sweeps.swept import Swept as Swept
 
 __getattr__, __dir__, __all__ = lazy(
     __name__,

@@ -29,6 +29,7 @@ FLOORS = {
         ["system"],
         ["numbers"],
         ["errors"],
+        ["plain_text"],
     ],
     "reference/engines": [
         ["registry", "trajectory"],
@@ -109,21 +110,24 @@ def test_a_library_has_one_door():
 
 # the names of reference that compare uses: what changes here, changes for others too
 PUBLIC = {
-    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution Swept "
-    "UnreachableError load load_ranges load_scene parse_scene prove_ranges scene_ids solve trajectory write",
+    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution "
+    "Swept UnreachableError load load_ranges load_scene parse_scene prove_ranges scene_ids "
+    "solve trajectory write",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections Uncertain "
-    "Workers check_workers chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
-    "reference.dataset.render": "MEANING",
+    "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections "
+    "Uncertain Workers check_workers chosen completion emit option refuse "
+    "replacements scene_argument stoppable widths_by_name",
     "reference.dataset.golden": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
     "reference.dataset.place": "RANGES changes golden_folder",
+    "reference.dataset.render": "MEANING",
     "reference.dataset.sheets": "by_field",
-    "reference.engines.heyoka.model": "Numbers Propagator RoundedModel compiled",
+    "reference.engines.heyoka.conversions": "Numbers",
+    "reference.engines.heyoka.model": "RoundedModel",
+    "reference.engines.heyoka.propagator": "Propagator compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "MAX_STEPS Variants",
-    "reference.errors": "BeyondDoublesError Stopped checked_path counted did_you_mean finite in_words plain plain_json "
-    "plain_lines shortened usable",
+    "reference.errors": "BeyondDoublesError Stopped checked_path counted did_you_mean in_words usable",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
     "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero",
@@ -132,14 +136,16 @@ PUBLIC = {
     "reference.model.sections": "form_of",
     "reference.model.start": "Start scaled",
     "reference.numbers.columns": "POSITION STATE VELOCITY",
-    "reference.numbers.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType "
-    "bits_of context digits_that_hold fixed_decimal real to_fraction to_mpf",
+    "reference.numbers.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS "
+    "NumberType bits_of context digits_that_hold fixed_decimal real "
+    "to_fraction to_mpf",
     "reference.numbers.table": "Table",
     "reference.numbers.zeros": "XDOT",
+    "reference.plain_text": "finite plain plain_json plain_lines shortened",
+    "reference.scenes.fields": "LEVELS RunTable",
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",
-    "reference.scenes.fields": "LEVELS RunTable",
     "reference.solver.ranges": "Intervals",
     "reference.solver.sensitivity": "Sensitivity digits_lost",
     "reference.solver.solve": "roughly",

@@ -133,7 +133,7 @@ def integrated(
     Raises:
         IntegrationError: the motion comes to a singularity, or needs more than `MAX_STEPS` steps.
     """
-    from reference.engines.heyoka.model import Propagator
+    from reference.engines.heyoka.propagator import Propagator
     from reference.engines.trajectory import MAX_STEPS
 
     used = case.k.entries("turn", "pull", "centrifugal", "drag")

@@ -34,8 +34,8 @@ import numpy as np
 
 from reference import InputError
 from reference.errors import checked_path, counted
-from reference.errors import plain as printable
 from reference.numbers.precision import Array
+from reference.plain_text import plain as printable
 from reference.scenes.scene import MAX_ROWS
 from reference.system.documents import open_at_once
 

@@ -15,8 +15,9 @@ from reference import FoucaultError, InputError, Ranges, Scene, load_ranges, loa
 from reference.commands.progress import progress
 from reference.commands.terminal import emit, refuse, stoppable
 from reference.dataset.place import RANGES, golden_folder
-from reference.errors import Stopped, plain
+from reference.errors import Stopped
 from reference.numbers.precision import Array
+from reference.plain_text import plain
 from reference.solver.ranges import Intervals
 from reference.solver.uncertain import exact_texts, widths_of
 

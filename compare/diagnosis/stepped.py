@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from reference.engines.heyoka.model import compiled
+from reference.engines.heyoka.propagator import compiled
 from reference.model.constants import Constants
 from reference.model.force import acceleration
 from reference.numbers.precision import Array

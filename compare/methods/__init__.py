@@ -24,7 +24,8 @@ from collections.abc import Mapping, Sequence
 from reference import InputError
 from reference.system.imports import Registry
 
-from .method import LONGEST_NAME, Family, Method, file_name
+from .external import LONGEST_NAME, file_name
+from .method import Family, Method
 
 METHODS: Mapping[str, Method] = Registry(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))
 

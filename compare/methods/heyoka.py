@@ -45,7 +45,8 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
     """
-    from reference.engines.heyoka.model import Numbers, RoundedModel
+    from reference.engines.heyoka.conversions import Numbers
+    from reference.engines.heyoka.model import RoundedModel
 
     start = Start.of(problem.scene.exact, number.prec + GUARD_BITS)
     formulation = carried(FORMULATIONS[problem.formulation], start, Numbers(number).of)

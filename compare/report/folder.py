@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.errors import plain_json, usable
+from reference.errors import usable
+from reference.plain_text import plain_json
 from reference.system.checksums import SUMS, sums_text
 from reference.system.workspace import replace_file
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from reference.errors import counted, shortened
+from reference.errors import counted
 from reference.numbers.precision import Array
+from reference.plain_text import shortened
 
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
 from .motion import POINTS, Motion

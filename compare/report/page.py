@@ -17,7 +17,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
-from reference.errors import plain_lines
+from reference.plain_text import plain_lines
 
 from ..candidates.text import is_number
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from reference import Golden, Solution, load
 from reference.dataset.place import golden_folder
-from reference.errors import shortened
 from reference.numbers.precision import Array
+from reference.plain_text import shortened
 from reference.scenes.scene import AnyScene, as_scene
 
 from ..candidates.candidate import Candidate

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from reference.errors import shortened
+from reference.plain_text import shortened
 from reference.status import Status
 
 from ..observed.least_squares import largest_so_far

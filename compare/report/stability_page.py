@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from reference import load_scene
-from reference.errors import shortened
+from reference.plain_text import shortened
 from reference.status import Status
 
 from ..studies.campaign import machine

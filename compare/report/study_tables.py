@@ -12,7 +12,7 @@ from statistics import median
 from textwrap import wrap
 from typing import Any
 
-from reference.errors import shortened
+from reference.plain_text import shortened
 from reference.status import Status
 from reference.system.documents import texts_of
 

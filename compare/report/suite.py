@@ -16,7 +16,8 @@ from string import Template
 from typing import Any
 from xml.etree import ElementTree
 
-from reference.errors import plain_lines, usable
+from reference.errors import usable
+from reference.plain_text import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
 from ..score.document import of_outcome

@@ -21,7 +21,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 from pydantic import TypeAdapter
 
 from reference import IntegrationError
-from reference.errors import finite, usable
+from reference.errors import usable
+from reference.plain_text import finite
 from reference.status import Status
 from reference.system import cache
 from reference.system.checksums import is_sound, sealed_line

@@ -18,7 +18,7 @@ from reference.status import Status
 
 from ..candidates.candidate import Candidate
 from ..methods import METHODS
-from ..methods.method import external
+from ..methods.external import external
 from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
 from ..truth import Report, golden_of
 from .campaign import Counted, campaign, machine

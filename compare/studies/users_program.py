@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from reference import Golden, InputError, Scene
-from reference.errors import plain, shortened
+from reference.plain_text import plain, shortened
 from reference.status import Status
 
 from ..candidates.candidate import Candidate, NotFiniteError
 from ..candidates.external import SETTING, CrashedError, OutOfTimeError, arguments, run_program
 from ..candidates.read import read, read_stream
 from ..methods import METHODS
-from ..methods.method import LONGEST_NAME
+from ..methods.external import LONGEST_NAME
 from ..truth import truth_at
 from .campaign import load_per_core
 from .row import Row

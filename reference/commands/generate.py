@@ -130,8 +130,8 @@ def command(
             raise InputError("--level", level, "enclosed, together with uncertain inputs", "Ranges are always proved.")
         _generate_ranges(scene, widths, engine, out, as_json)
         return
+    from ..dataset.making import making_of
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.record import making_of
     from ..dataset.write import check_target, summary, write
     from ..solver.solve import solve
 

@@ -13,9 +13,9 @@ import typer
 
 from ..dataset.evidence import check_evidence
 from ..dataset.files import read_files
+from ..dataset.making import making_of
 from ..dataset.manifest import Content
 from ..dataset.place import dataset_id, default_folder, ships
-from ..dataset.record import making_of
 from ..dataset.render import check_proved, render
 from ..dataset.sheets import scene_inputs
 from ..dataset.write import check_target, summary, write_texts

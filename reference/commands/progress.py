@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import typer
 
-from ..errors import plain, terminal_of
+from ..plain_text import plain, terminal_of
 from ..system.machine_code import announced_to
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice

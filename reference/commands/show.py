@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Annotated, Any
@@ -10,9 +9,9 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import FoucaultError, InputError, NotInstalledError, UnreachableError
-from ..scenes.fields import SceneTable
-from ..scenes.scene import Scene, load_scene, parse_scene
-from ..scenes.shipped import WITHOUT_FUNCTION, flag_meanings, scene_ids
+from ..scenes.scene import Scene, load_scene
+from ..scenes.shipped import flag_meanings
+from .template import scene_file
 from .terminal import AsJson, Assignments, Uncertain, emit, option, refuse, scene_argument, widths_by_name
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean
@@ -27,25 +26,6 @@ TEMPLATE = option("--template", "Print the scene as a TOML file to begin with, e
 EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
 PROVED = option("--proved", "Also prove intervals of period and precession over the run, which takes as long as that.")
 SENSITIVITY = option("--sensitivity", "Also show how many digits the flow costs between release and end.")
-BEGIN = """\
-# A scene of the Foucault pendulum. docs/scene.md explains each field, drag and the azimuth with an example.
-# Numbers stand in quotes, so that they are taken exactly as written. A field that you leave out has its default.
-"""
-COLUMN = 34  # where comments begin
-
-
-def scenes(as_json: AsJson = False) -> None:
-    """List the scenes that come with the project."""
-    every = [load_scene(name) for name in scene_ids()]
-    if as_json:
-        emit({"scenes": [scene.model_dump(exclude_none=True) for scene in every]})
-        return
-    width = max((len(scene.id) for scene in every), default=0)
-    for scene in every:
-        flags = f"  [{', '.join(scene.flags)}]" if scene.flags else ""
-        megabytes = WITHOUT_FUNCTION.get(scene.id)
-        lacking = f"  (without a golden function, which takes {megabytes} MB)" if megabytes else ""
-        typer.echo(f"{scene.id:{width}}  {scene.title}{flags}{lacking}")
 
 
 def command(
@@ -157,8 +137,8 @@ def _compiled(scene: Scene) -> dict[str, Any]:
     Raises:
         UnreachableError: `generate` refuses the scene.
     """
+    from ..dataset.making import making_of
     from ..dataset.place import dataset_id, default_folder
-    from ..dataset.record import making_of
     from ..engines.heyoka.system import lines_and_left_out
     from ..solver.choice import first_plan, need_flint, pilot_for
 
@@ -223,36 +203,3 @@ def _motion_line(motion: dict[str, Any]) -> str:
     texts = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
     texts += left_out_texts(motion["left_out"])
     return f"[motion, over {motion['over_s']} s, errors estimated] {', '.join(texts)}"
-
-
-def scene_file(scene: Scene | None) -> str:
-    """Return a scene as a TOML file with comments; without one, the defaults with a measured g and a release."""
-    template = {"id": "mine", "title": "my pendulum", "site": {"gravity_is": "effective"}}
-    scene = scene or parse_scene({**template, "release": {"angle": "5", "azimuth": "0"}})
-    parts = [BEGIN, *_lines(scene)]
-    for name in Scene.model_fields:
-        if isinstance(table := getattr(scene, name), SceneTable):
-            parts += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
-    if scene.uncertain:
-        meaning = Scene.model_fields["uncertain"].description
-        widths = (f"{_toml(name)} = {_toml(width)}" for name, width in scene.uncertain.items())
-        parts += ["", f"[uncertain]  # {meaning}", *widths]
-    return "\n".join(parts) + "\n"
-
-
-def _lines(table: SceneTable) -> Iterator[str]:
-    """Yield a line for each field of a table, commented out where it has no value."""
-    for name, info in type(table).model_fields.items():
-        value = getattr(table, name)
-        if isinstance(value, SceneTable | dict):
-            continue
-        example = ["highest", "gate 30"] if name == "sections" else "0"
-        written = f"{'# ' if value is None else ''}{name} = {_toml(example if value is None else value)}"
-        extra: Any = info.json_schema_extra or {}
-        unit = f"{extra['unit']}; " if extra else ""
-        yield f"{written:{COLUMN}}  # {unit}{info.description}"
-
-
-def _toml(value: Any) -> str:
-    """Return a value as TOML writes it, which of texts, lists, whole numbers and truth values is what JSON writes."""
-    return json.dumps(value, ensure_ascii=False)

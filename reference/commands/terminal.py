@@ -8,7 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError, Stopped, check_whole, did_you_mean, in_words, plain_json
+from ..errors import InputError, Stopped, check_whole, did_you_mean, in_words
+from ..plain_text import plain_json
 from ..scenes.scene import Scene, field_names, full_name
 from ..scenes.shipped import scene_ids
 

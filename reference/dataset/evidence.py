@@ -15,8 +15,9 @@ from ..errors import DatasetError
 from ..numbers.precision import rounded_up
 from ..scenes.shipped import DATA_VERSION
 from ..solver.solution import Proof, Solution
+from .making import Making
 from .manifest import MANIFEST, Content
-from .record import PACKAGES, Making
+from .record import PACKAGES
 
 ROUNDED_UP = Fraction(11, 10)  # a number that is rounded up to two digits is larger by a tenth at most
 RUN = ("formulation", "number", "order", "steps")

@@ -12,8 +12,9 @@ from ..scenes.fields import Confirmation, Level
 from ..solver.solution import SAMPLED, Solution
 from ..system.documents import texts_of
 from .function import FunctionRecord
+from .making import CONFIRM, Making
 from .manifest import ALWAYS, FORMAT, FUNCTION, MANIFEST, Content, Decimal, FileRecord, Manifest, Name, Part, Text
-from .record import CONFIRM, Making, manifest_of
+from .record import manifest_of
 from .sheets import (
     GRID_HEADER,
     NUMBERS,

@@ -14,8 +14,9 @@ from ..scenes.shipped import golden_root, seals
 from ..solver.solve import solve
 from .checks import function, motion, physics, read_back, scene_check
 from .files import Files, read_files, read_manifest
+from .making import AUDIT, Making
 from .manifest import MANIFEST, Content, Manifest, differences
-from .record import AUDIT, Making, generator
+from .record import generator
 from .render import render
 
 MAX_PROBLEMS = 20  # sentences returned at most

@@ -17,9 +17,9 @@ from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
 from .evidence import check_evidence
+from .making import OPTIONS
 from .manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL, Content
 from .place import RANGES, ships
-from .record import OPTIONS
 from .render import check_proved, render
 from .sheets import column_bounds
 from .verify import problems_of

@@ -40,7 +40,7 @@ class Variants:
     )  # fmt: skip
 
     def __init__(self) -> None:
-        from .heyoka.model import Propagator
+        from .heyoka.propagator import Propagator
 
         self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=len(self._PARAMETERS))
 
@@ -122,7 +122,7 @@ def integrate(
         IntegrationError: heyoka stops before the last time, also because `max_steps` do not suffice, or a state is
             not finite.
     """
-    from .heyoka.model import Propagator
+    from .heyoka.propagator import Propagator
 
     _check_number(number)
     check_whole("max_steps", max_steps, 0, "a whole number of steps, or 0 for any number")
@@ -173,7 +173,8 @@ def trajectory(
     _check_number(number)
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
-    from .heyoka.model import Numbers, RoundedModel
+    from .heyoka.conversions import Numbers
+    from .heyoka.model import RoundedModel
 
     try:
         model = RoundedModel(carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number)

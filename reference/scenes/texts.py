@@ -13,7 +13,8 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema, WrapValidator
 from pydantic_core import ErrorDetails
 
-from ..errors import InputError, did_you_mean, is_plain
+from ..errors import InputError, did_you_mean
+from ..plain_text import is_plain
 from .inputs import as_read
 
 MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory

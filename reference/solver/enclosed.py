@@ -25,8 +25,9 @@ from ..scenes.scene import Scene
 from ..system.workers import Emit, Parent
 from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
+from .guard import guarded
 from .pilot import MAX_RAISES, check_reach, run_pilot
-from .proving import ProofTask, guarded, proved
+from .proving import ProofTask, proved
 from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start

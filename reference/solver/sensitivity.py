@@ -117,7 +117,7 @@ class Sensitivity:
 
     def _along(self, slope: Array) -> Array:
         """Return the response to a change of start, constants and length."""
-        from ..engines.heyoka.model import Propagator
+        from ..engines.heyoka.propagator import Propagator
 
         size = len(_MODEL.variables)
         base = np.array([float(part) for part in _parts(self.scene.exact)])

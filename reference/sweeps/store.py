@@ -15,7 +15,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError, plain_json, usable
+from ..errors import InputError, usable
+from ..plain_text import plain_json
 from ..system.checksums import SUMS, sums_text
 from ..system.documents import json_document, regular
 from ..system.imports import needed

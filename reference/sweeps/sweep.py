@@ -3,30 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property
-from itertools import chain
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..engines import AUTO
-from ..errors import InputError, check_whole, checked_path, counted, unknown
-from ..numbers.columns import Framed, data_frame
+from ..errors import InputError, check_whole, checked_path
 from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
-from ..status import Status
-from ..system.imports import missing, needed
+from ..system.imports import needed
 from ..system.workers import usable_cores
-from .axes import TEXTS
 from .driver import Executor, drive, on_this_machine
 from .part import Part, Tally
-from .promote import Audit, audited
+from .promote import audited
 from .request import Request, request
-from .store import PLAN, TRANSITS, Store
+from .store import PLAN, Store
+from .swept import Swept
 
 MOST_IN_MEMORY = 100_000  # rows
 PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
@@ -34,116 +27,6 @@ ROWS_OF_FRAME = "Of a data frame write rows.to_csv(FILE, index=False), and give 
 LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # audited rows: at least, at most, else one in AUDITED
 
 Report = Callable[[int], None]
-
-
-@dataclass(frozen=True, repr=False)
-class Swept(Framed):
-    """A sweep that is done: its columns as arrays, in memory or read from its folder.
-
-    Attributes:
-        request: the sweep: the scene, what varies, what is computed.
-        store: its folder, if it has one.
-        solved: its rows, if it has none.
-        tally: counts by status and costs; of the rows that were computed now, where a folder was gone on with.
-        audit: what solving a sample again has found, if it was done.
-        compile_s: CPU seconds of compiling.
-        audit_s: CPU seconds of the audit.
-        wall_s: seconds from the start to the end.
-    """
-
-    request: Request
-    store: Store | None = None
-    solved: Part = field(default_factory=Part, repr=False)
-    tally: Tally = field(default_factory=Tally)
-    audit: Audit | None = None
-    compile_s: float = 0.0
-    audit_s: float = 0.0
-    wall_s: float = 0.0
-
-    def __len__(self) -> int:
-        return self.request.table.count
-
-    def __repr__(self) -> str:
-        """Return the scene, and how many rows there are of each status."""
-        counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return f"Swept({self.request.scene.id}: {counted(len(self), 'row')}, {counts}; {self.request.solved_by})"
-
-    def to_pandas(self) -> Any:
-        """Return the rows as a pandas.DataFrame: the values of the fields, then the columns.
-
-        Raises:
-            InputError: pandas is not installed.
-        """
-        return data_frame(self.columns())
-
-    @cached_property
-    def counts(self) -> dict[str, int]:
-        """How many rows there are of each status."""
-        counts = sum(map(Counter, self._statuses()), Counter[str]())
-        return dict(sorted(counts.items()))
-
-    @property
-    def first_bad(self) -> int:
-        """The first row that is not ok; only where there is one."""
-        statuses = chain.from_iterable(self._statuses())
-        return next(row for row, status in enumerate(statuses) if status != Status.OK.value)
-
-    def _statuses(self) -> Iterator[Any]:
-        """Yield the status of every row; of a folder part by part, so that memory does not grow with the rows."""
-        if self.store is None:
-            yield self["status"]
-            return
-        for part in range(self.request.parts):
-            yield self.store.read(["status"], parts=[part])["status"]
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the columns."""
-        return tuple(column.name for column in self.request.columns)
-
-    def columns(self, names: Iterable[str] | None = None) -> dict[str, Any]:
-        """Return columns as arrays of shape (rows,), all if no names are given; `pandas.DataFrame` takes them."""
-        chosen = list(self.names if names is None else names)
-        for name in chosen:
-            if name not in self.names:
-                raise unknown("column", name, "a column of this sweep", self.names, "")
-        if self.store is not None:
-            return self.store.read(chosen)
-        return {name: self.solved.columns[name] for name in chosen}
-
-    def __getitem__(self, name: str) -> Any:
-        """Return one column, shape (rows,)."""
-        return self.columns([name])[name]
-
-    def grid(self, name: str) -> Any:
-        """Return a column on the grid of the axes: an xarray.DataArray where xarray is installed, else an array.
-
-        Of a list of rows it is the column itself.
-        """
-        table = self.request.table
-        values = self[name].reshape(table.shape)
-        if table.typed is None or missing(["xarray"]):
-            return values
-        import xarray
-
-        coords = {key: list(texts) if key in TEXTS else np.array(texts, float) for key, texts in table.values.items()}
-        return xarray.DataArray(values, coords=coords, dims=list(coords), name=name)
-
-    def transits(self) -> dict[str, Any]:
-        """Return row, t_s and direction of every transit, if they were wanted.
-
-        Raises:
-            InputError: they were not.
-        """
-        if not self.request.run_options.times:
-            raise unknown("transits", "transits", "a sweep with --want transit-times", (), "Sweep again with it.")
-        return self.store.read(kind=TRANSITS) if self.store is not None else self.solved.transits
-
-    def rows(self, most: int | None = None) -> Iterator[dict[str, Any]]:
-        """Yield the first rows, each as a mapping from column to Python value; None where there is no number."""
-        columns = {name: values[:most].tolist() for name, values in self.columns().items()}
-        for row in zip(*columns.values(), strict=True):
-            yield {name: None if value != value else value for name, value in zip(columns, row, strict=True)}
 
 
 def sweep(

@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..system.checksums import SUMS, check_sums
 from ..system.documents import json_document
 from .store import SUMMARY, Store
-from .sweep import Swept
+from .swept import Swept
 
 
 def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:

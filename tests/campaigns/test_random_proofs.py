@@ -138,7 +138,7 @@ def test_a_guard_that_cannot_be_made_refuses_nothing_and_says_so(monkeypatch, tm
         raise IntegrationError("the sign of xdot does not fit.")
 
     scene = reference.load_scene("paris", ["run.t_end=60", "run.level=enclosed", "run.digits=20"])
-    monkeypatch.setattr("reference.solver.proving.run", fails)
+    monkeypatch.setattr("reference.solver.guard.run", fails)
     solution = reference.solve(scene)
     assert solution.not_checked == "the sign of xdot does not fit."
     path = reference.write(solution, tmp_path / "paris")

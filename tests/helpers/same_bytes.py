@@ -34,8 +34,8 @@ def confirmed() -> list[str]:
 def made_again(name: str) -> dict[str, str | bytes]:
     """Return the files of a dataset that ships, made as `generate NAME` makes it."""
     import reference
+    from reference.dataset.making import making_of
     from reference.dataset.place import default_folder
-    from reference.dataset.record import making_of
     from reference.dataset.render import render
     from reference.scenes.scene import load_scene
 

@@ -9,7 +9,7 @@ from reference.scenes.scene import Scene
 from reference.sweeps.part import Promote, solve_part
 from reference.sweeps.promote import Promoted, promoted
 from reference.sweeps.request import request
-from reference.sweeps.sweep import Swept
+from reference.sweeps.swept import Swept
 
 LEFT = "left to the solver"
 

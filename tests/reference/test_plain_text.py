@@ -10,18 +10,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from reference.errors import (
-    DatasetError,
-    InputError,
-    PlainStream,
-    UnreachableError,
-    is_plain,
-    plain,
-    plain_json,
-    plain_lines,
-    plain_output,
-    terminal_of,
-)
+from reference.errors import DatasetError, InputError, UnreachableError
+from reference.plain_text import PlainStream, is_plain, plain, plain_json, plain_lines, plain_output, terminal_of
 
 DANGEROUS = ["\x1b[31m", "\x1b]0;title\x07", "\x9b2J", "\x00", "\r", "\x7f"]
 DANGEROUS += ["\u202e", "\u2028", "\ufeff", "\udcff", "\ud800"]

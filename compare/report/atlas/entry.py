@@ -13,7 +13,8 @@ from pydantic import TypeAdapter
 from reference import Golden, InputError, load, load_scene, scene_ids
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.place import changes
-from reference.errors import shortened, usable
+from reference.errors import usable
+from reference.plain_text import shortened
 from reference.scenes.shipped import data_root, in_checkout
 from reference.status import Status
 from reference.system.documents import json_document

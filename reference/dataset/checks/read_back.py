@@ -11,8 +11,9 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from ...errors import LONGEST_VALUE, shortened
+from ...errors import LONGEST_VALUE
 from ...numbers.columns import GRID, TRANSITS
+from ...plain_text import shortened
 from ..files import Files
 from ..manifest import differences
 from ..render import CONFIRMED, MEANING

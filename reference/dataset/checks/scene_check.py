@@ -6,17 +6,19 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
-from ...errors import LONGEST_VALUE, shortened
+from ...errors import LONGEST_VALUE
 from ...model.algebra import dot
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes
 from ...numbers.columns import GRID, STATE
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
+from ...plain_text import shortened
 from ...solver.solution import exact_decimals
 from ..files import Files
+from ..making import ENGINE, OPTIONS, Making, command
 from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
-from ..record import ENGINE, OPTIONS, Making, bounds_of, command, completeness, following
+from ..record import bounds_of, completeness, following
 from ..render import derived_texts
 from ..sheets import NUMBERS, Sheet, by_field
 

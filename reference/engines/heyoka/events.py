@@ -37,7 +37,7 @@ from ..passages import SPARE_BITS, Places, forms, signs_of
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
-    from .model import Numbers
+    from .conversions import Numbers
     from .stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up

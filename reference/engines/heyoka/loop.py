@@ -23,7 +23,7 @@ from ..row_zeros import (
     describe_highest_points,
     describe_transits,
 )
-from .model import Numbers
+from .conversions import Numbers
 from .system import as_pairs, rates
 
 PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")

@@ -25,8 +25,8 @@ from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep
 from ...numbers.zeros import XDOT, Zeros
 from ..plan import MOST_TURN, Pace, Plan, Report, Run
+from .conversions import Numbers
 from .events import march
-from .model import Numbers
 from .stepper import Stepper, Zero
 
 SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits

@@ -9,7 +9,7 @@ import pytest
 from compare.candidates.external import arguments, run_program
 from compare.candidates.read import read, read_transits
 from reference import FoucaultError
-from reference.errors import is_plain
+from reference.plain_text import is_plain
 
 HEAD, GOOD = b"t,x,y\n", b"t,x,y\n0,1,2\n1,1,2\n"
 FIELDS = [

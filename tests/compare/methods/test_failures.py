@@ -12,7 +12,7 @@ from small_scenes import make_scene
 
 from compare import study
 from compare.methods import METHODS, gauss_legendre
-from compare.methods.method import external
+from compare.methods.external import external
 from compare.methods.rhs.problem import Problem
 from reference import InputError
 

@@ -20,8 +20,8 @@ from compare.score.transit_matching import judged_transits
 from reference import InputError, Solution, load, load_scene, solve, trajectory
 from reference.dataset.manifest import Possible
 from reference.engines.trajectory import Variants
-from reference.errors import plain
 from reference.numbers.columns import STATE
+from reference.plain_text import plain
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 OWN = """id = "mine"

@@ -19,9 +19,9 @@ pytest.importorskip("flint")
 import reference
 from reference import DatasetError, InputError
 from reference.dataset.files import read_files, read_manifest
+from reference.dataset.making import making_of
 from reference.dataset.manifest import FUNCTION, MANIFEST
 from reference.dataset.place import dataset_id
-from reference.dataset.record import making_of
 from reference.dataset.verify import problems_of, recompute, verify
 from reference.numbers.columns import STATE
 from reference.numbers.function import GoldenFunction

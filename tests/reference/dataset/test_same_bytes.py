@@ -20,8 +20,8 @@ from sampled import one_in
 import reference
 from reference.commands.generate_all import jobs
 from reference.dataset.files import read_manifest
+from reference.dataset.making import AUDIT, Making, command, making_of
 from reference.dataset.place import default_folder
-from reference.dataset.record import AUDIT, Making, command, making_of
 from reference.dataset.render import render
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError

@@ -20,9 +20,9 @@ from small_scenes import make_scene
 import reference
 from reference.dataset.files import read_files
 from reference.dataset.golden import load
+from reference.dataset.making import Making, command
 from reference.dataset.manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL
 from reference.dataset.place import dataset_id, default_folder, golden_folder
-from reference.dataset.record import Making, command
 from reference.dataset.render import MOST, render
 from reference.dataset.sheets import Sheet, nearest_doubles, scene_inputs
 from reference.dataset.verify import problems_of, verify

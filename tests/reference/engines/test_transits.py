@@ -11,8 +11,8 @@ import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
 from reference import solve, sweep
+from reference.engines.heyoka.conversions import Numbers
 from reference.engines.heyoka.events import march
-from reference.engines.heyoka.model import Numbers
 from reference.engines.heyoka.stepper import Stepper, Zero
 from reference.engines.heyoka.system import system_of
 from reference.engines.plan import Plan

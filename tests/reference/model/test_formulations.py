@@ -10,7 +10,7 @@ import pytest
 from sampled import one_in
 from small_scenes import make_scene, model_at
 
-from reference.engines.heyoka.model import Numbers
+from reference.engines.heyoka.conversions import Numbers
 from reference.engines.heyoka.system import system_of
 from reference.model.algebra import cross, dot, minus, plus, product
 from reference.model.carried import carried, constant_variables

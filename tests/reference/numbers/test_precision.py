@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reference.engines.heyoka.model import Numbers
+from reference.engines.heyoka.conversions import Numbers
 from reference.numbers.precision import (
     DOUBLE,
     LONG_DOUBLE,

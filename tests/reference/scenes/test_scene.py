@@ -16,7 +16,7 @@ from sampled import one_in
 from schemas import path_of, schema_of
 from small_scenes import make_scene
 
-from reference.commands.show import scene_file
+from reference.commands.template import scene_file
 from reference.commands.terminal import replacements
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs

@@ -28,9 +28,10 @@ from reference.engines.registry import engines, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.precision import fixed_decimal, real
 from reference.solver.enclosed import audited, proved_digits
+from reference.solver.guard import guarded
 from reference.solver.pilot import run_pilot
 from reference.solver.proof_steps import Feed
-from reference.solver.proving import ProofTask, guarded, proved
+from reference.solver.proving import ProofTask, proved
 
 SHORT = {"t_end": "120", "digits": 30, "level": "enclosed"}
 

@@ -7,8 +7,8 @@ import pytest
 
 import reference
 from reference.errors import IntegrationError
+from reference.solver.guard import guarded
 from reference.solver.pilot import run_pilot
-from reference.solver.proving import guarded
 
 
 @pytest.fixture(scope="module")

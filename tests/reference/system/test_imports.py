@@ -16,7 +16,7 @@ from reference import InputError
 from reference.system.imports import Registry
 
 INTERFACES = {
-    "compare.methods": ("METHODS", {"fixed_step", "library", "method", "rhs", "tableau"}),
+    "compare.methods": ("METHODS", {"external", "fixed_step", "library", "method", "rhs", "tableau"}),
     "compare.approximations": ("APPROXIMATIONS", {"approximation", "case"}),
 }
 FILE = """
