@@ -12,7 +12,7 @@ import numpy.typing as npt
 from reference import InputError, Scene, UnreachableError
 from reference.numbers.precision import Array
 
-from .case import Case
+from .case import PaperCase
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -56,7 +56,7 @@ class Motion(Approximation):
         rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's rest position.
     """
 
-    path: Callable[[Case, Array], Array]
+    path: Callable[[PaperCase, Array], Array]
     rest: Callable[[Scene], Any] | None = None
 
     def trajectory(self, scene: Scene, times: npt.ArrayLike) -> Array:
@@ -78,7 +78,7 @@ class Motion(Approximation):
         if grid.ndim != 1 or not len(grid) or grid[0] < 0 or not np.all(np.diff(grid) > 0):
             raise InputError("times", f"{grid.shape} numbers", "increasing times in s, the first not negative")
         try:
-            case = Case.of_scene(scene)
+            case = PaperCase.of_scene(scene)
             rows = self.path(case, grid) if grid[0] == 0 else self.path(case, np.insert(grid, 0, 0.0))[1:]
         except OverflowError:
             rows = np.array([np.inf])
@@ -97,7 +97,7 @@ class Quantity(Approximation):
         unit: unit of both.
     """
 
-    formula: Callable[[Case], Any]
+    formula: Callable[[PaperCase], Any]
     truth: Callable[[Scene], Any]
     unit: str
 
@@ -108,4 +108,4 @@ class Quantity(Approximation):
             InputError: the scene is outside the domain.
         """
         self.check(scene)
-        return self.formula(Case.of_scene(scene))
+        return self.formula(PaperCase.of_scene(scene))

@@ -25,11 +25,11 @@ Derivatives = Callable[[State, Constants, Functions], State]
 
 
 @dataclass(frozen=True)
-class Case(Start):
+class PaperCase(Start):
     """A scene's start, with its numbers as mpf in SI units under the names used in the source papers."""
 
     @classmethod
-    def of_scene(cls, scene: Scene) -> Case:
+    def of_scene(cls, scene: Scene) -> PaperCase:
         """Return the case of a scene."""
         return cls.of(scene.exact, PREC)
 
@@ -80,9 +80,9 @@ class Case(Start):
         return self.latitude + self.tilt
 
     @cached_property
-    def plumb(self) -> PlumbAxes:
+    def plumb(self) -> PlumbLine:
         """Axes of the plumb line along the apparent gravity, Gastebois 4.2."""
-        return PlumbAxes(-self.ctx.sin(self.tilt), self.ctx.cos(self.tilt))
+        return PlumbLine(-self.ctx.sin(self.tilt), self.ctx.cos(self.tilt))
 
     @property
     def rest_angle(self) -> Any:
@@ -97,7 +97,7 @@ class Case(Start):
 
 
 @dataclass(frozen=True)
-class PlumbAxes:
+class PlumbLine:
     """Axes east, north and up of a plumb line that hangs along n = (0, sin θ, -cos θ)."""
 
     sin: Any
@@ -115,7 +115,7 @@ class PlumbAxes:
 
 
 def integrated(
-    variables: Sequence[str], derivatives: Derivatives, start: Sequence[Any], case: Case, times: Array
+    variables: Sequence[str], derivatives: Derivatives, start: Sequence[Any], case: PaperCase, times: Array
 ) -> Array:
     """Integrate a system with the constants of a case and return its states at the times.
 
@@ -148,7 +148,7 @@ def integrated(
 
 def lowest_point(scene: Scene) -> Vector:
     """Return the point straight below the suspension, (0, 0, -l) in m."""
-    return (0, 0, -Case.of_scene(scene).length)
+    return (0, 0, -PaperCase.of_scene(scene).length)
 
 
 def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:

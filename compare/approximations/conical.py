@@ -10,18 +10,18 @@ from reference import Scene
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import SWINGING, Case, lowest_point
+from .case import SWINGING, PaperCase, lowest_point
 
 _CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
 
 
-def _circle(case: Case) -> tuple[Any, Any]:
+def _circle(case: PaperCase) -> tuple[Any, Any]:
     """Return the radius in m and the angular velocity in rad/s, sqrt(g/(l cos φ)) in the sense of the release."""
     ctx, (x, y, z), (vx, vy, _) = case.ctx, case.position, case.velocity
     return ctx.hypot(x, y), ctx.sign(x * vy - y * vx) * ctx.sqrt(case.gravity / -z)
 
 
-def _path(case: Case, times: Array) -> Array:
+def _path(case: PaperCase, times: Array) -> Array:
     x, y, z = (float(part) for part in case.position)
     _, omega = _circle(case)
     place = complex(x, y) * np.exp(1j * float(omega) * times)
@@ -31,7 +31,7 @@ def _path(case: Case, times: Array) -> Array:
 
 
 def _on_a_circle(scene: Scene) -> str | None:
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     radius, omega = _circle(case)
     x, y, _ = case.position
     circular = (-y * omega, x * omega)

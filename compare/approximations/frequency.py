@@ -15,37 +15,37 @@ from reference.model.constants import Vector
 
 from ..observed.swing_plane import frequency, precession_period
 from .approximation import Quantity
-from .case import RELEASED_AT_REST, SWINGING, Case, at_rest, under_gravity
+from .case import RELEASED_AT_REST, SWINGING, PaperCase, at_rest, under_gravity
 from .mathar import slow_down
 
 
-def harmonic(case: Case) -> Any:
+def harmonic(case: PaperCase) -> Any:
     """Return sqrt(g/l)/2π."""
     return case.ctx.sqrt(case.gravity / case.length) / (2 * case.ctx.pi)
 
 
-def planar(case: Case) -> Any:
+def planar(case: PaperCase) -> Any:
     """Return 1/(4 sqrt(l/g) K(sin(φ0/2))), with φ0 counted from the vertical."""
     quarter = case.ctx.ellipk((1 + case.position[2] / case.length) / 2)
     return case.ctx.sqrt(case.gravity / case.length) / (4 * quarter)
 
 
-def turntable(case: Case, gravity: Any) -> Any:
+def turntable(case: PaperCase, gravity: Any) -> Any:
     """Return sqrt(gravity/l + (Ω sin φ)²)/2π, the frequency of Mathar (51)-(52)."""
     return case.ctx.sqrt(gravity / case.length + case.turn**2) / (2 * case.ctx.pi)
 
 
-def anharmonic(case: Case) -> Any:
+def anharmonic(case: PaperCase) -> Any:
     """Return the frequency on a turntable with g', divided by 2K/π."""
     return turntable(case, case.apparent_gravity) / slow_down(case)
 
 
-def _over_tilted_sine(case: Case) -> Any:
+def _over_tilted_sine(case: PaperCase) -> Any:
     """Return T_p/sin λ_a, λ_a = λ + α."""
     return abs(2 * case.ctx.pi / (case.k.rate * case.ctx.sin(case.apparent_latitude)))
 
 
-def _spherical(case: Case) -> Any:
+def _spherical(case: PaperCase) -> Any:
     """Return T_p/sin λ_a (1 + 3/8 r0²/L0²), with r0 counted from the plumb line."""
     x, y, _ = case.plumb.inward(case.position)
     return _over_tilted_sine(case) * (1 + 3 * (x**2 + y**2) / (8 * case.length**2))
@@ -72,7 +72,7 @@ _SWING = (
         drops="the cord: the bob is nearer to the axis than the suspension",
         needs=(under_gravity,),
         formula=lambda case: case.apparent_gravity,
-        truth=lambda scene: Case.of_scene(scene).pull_at_rest,
+        truth=lambda scene: PaperCase.of_scene(scene).pull_at_rest,
         unit="m/s²",
     ),
     _frequency(
@@ -137,7 +137,7 @@ _SWING = (
 )
 
 
-def line_of_46(case: Case, angle: Any, sign: int = -1) -> Any:
+def line_of_46(case: PaperCase, angle: Any, sign: int = -1) -> Any:
     """Return ±R̂Ω² sin(ϕ∓φ) ∓ Ω² cos(ϕ∓φ) sin(ϕ∓φ) + (g/l) sin φ, (46), at an angle φ from the vertical, in 1/s².
 
     The upper sign, 1, is that of a cord that leans to the north.
@@ -148,7 +148,7 @@ def line_of_46(case: Case, angle: Any, sign: int = -1) -> Any:
     return far - sign * square * ctx.cos(tilted) * ctx.sin(tilted) + case.k.gravity * ctx.sin(angle)
 
 
-def series(case: Case) -> Vector:
+def series(case: PaperCase) -> Vector:
     """Return the coefficients of Ω², Ω⁴ and Ω⁶ in (47), for the lower sign: positive to the south."""
     ctx, cord, g, latitude = case.ctx, case.length, case.gravity, case.latitude
     n = case.axis_distance / case.k.cos  # N + h
@@ -160,18 +160,18 @@ def series(case: Case) -> Vector:
     return tuple(ctx.sin(2 * latitude) * (n - cord) * term for term in terms)
 
 
-def _series(case: Case, terms: int) -> Any:
+def _series(case: PaperCase, terms: int) -> Any:
     """Return the series (47) up to Ω^(2 terms)."""
     return sum(c * case.k.rate ** (2 * i + 2) for i, c in enumerate(series(case)[:terms]))
 
 
-def triangle(case: Case) -> Any:
+def triangle(case: PaperCase) -> Any:
     """Return the angle of (50): the sine rule in the triangle of g, RΩ² and g'."""
     return case.ctx.asin(case.outward * case.k.sin / case.apparent_gravity)
 
 
 def _pulled(scene: Scene) -> str | None:
-    pulled = Case.of_scene(scene).apparent_gravity
+    pulled = PaperCase.of_scene(scene).apparent_gravity
     return None if pulled else "Gravity and centrifugal force cancel: there is no triangle"
 
 
@@ -183,7 +183,7 @@ def _not_at_a_pole(scene: Scene) -> str | None:
 _rest_angle = partial(
     Quantity,
     needs=(under_gravity,),
-    truth=lambda scene: Case.of_scene(scene).rest_angle,
+    truth=lambda scene: PaperCase.of_scene(scene).rest_angle,
     unit="rad",
 )
 

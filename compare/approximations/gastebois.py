@@ -22,18 +22,18 @@ from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import RELEASED_AT_REST, SWINGING, Case, hung, integrated
+from .case import RELEASED_AT_REST, SWINGING, PaperCase, hung, integrated
 
 Pair = Sequence[Any]
 
 
 def hanging(scene: Scene) -> Any:
     """Return his rest position in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     return (0, case.length * case.plumb.sin, -case.length * case.plumb.cos)
 
 
-def _any_amplitude(case: Case, times: Array) -> Array:
+def _any_amplitude(case: PaperCase, times: Array) -> Array:
     """Return rows of 7.2: the model, with the apparent gravity at the suspension everywhere."""
     model, case = FORMULATIONS["spin"], replace(case, k=replace(case.k, centrifugal=(0, 0, 0, 0)))
     states = integrated(model.variables, model.derivatives, case.state(model), case, times)
@@ -41,7 +41,7 @@ def _any_amplitude(case: Case, times: Array) -> Array:
     return np.column_stack((*place, *speed)) * float(case.length)
 
 
-def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
+def turntable_frequency(case: PaperCase, gravity: Any, turn: Any) -> Any:
     """Return ω = (gravity/l + Ω_z²)^(1/2) in rad/s.
 
     Raises:
@@ -77,18 +77,18 @@ def oscillation(place: Pair, speed: Pair, omega: Any, turn: Any, times: Array) -
     return first + second, 1j * (slow * second - fast * first)
 
 
-def small_angles(case: Case) -> tuple[Any, Any]:
+def small_angles(case: PaperCase) -> tuple[Any, Any]:
     """Return ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a, in rad/s."""
     turn = case.k.rate * case.ctx.sin(case.apparent_latitude)
     return turntable_frequency(case, case.apparent_gravity, turn), turn
 
 
-def _rows(case: Case, z: Any, rate: Any) -> Array:
+def _rows(case: PaperCase, z: Any, rate: Any) -> Array:
     """Return rows along the scene's axes from Z = x + i y and Z' along the plumb line's."""
     return case.plumb.outward(hung(z.real, z.imag, rate.real, rate.imag, case.length))
 
 
-def _any_release(case: Case, times: Array) -> Array:
+def _any_release(case: PaperCase, times: Array) -> Array:
     """Return rows of 6.1."""
     omega, turn = small_angles(case)
     place, speed = case.plumb.inward(case.position)[:2], case.plumb.inward(case.velocity)[:2]
@@ -114,7 +114,7 @@ def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -
     return x, y, cu * along + su * across + turn * y, -su * along + cu * across - turn * x
 
 
-def _ellipse(case: Case, times: Array, sense: int) -> Array:
+def _ellipse(case: PaperCase, times: Array, sense: int) -> Array:
     """Return rows of that motion, X along the release: `sense` 0 is 6.2, 1 is 6.3."""
     omega, turn = small_angles(case)
     east, north, _ = case.plumb.inward(case.position)

@@ -18,16 +18,16 @@ from reference.model.force import tension
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, PlumbAxes, hung, underneath, without_drag
+from .case import PaperCase, PlumbLine, hung, underneath, without_drag
 
 
-def plumb_line(case: Case) -> PlumbAxes:
+def plumb_line(case: PaperCase) -> PlumbLine:
     """Return the axes of the plumb line along the full model's rest position, Mathar (46)."""
     _, y, z = case.rest
-    return PlumbAxes(case.ctx.mpf(y), -z)
+    return PlumbLine(case.ctx.mpf(y), -z)
 
 
-def stiffness(case: Case) -> tuple[Any, Any, Any]:
+def stiffness(case: PaperCase) -> tuple[Any, Any, Any]:
     """Return a and b in 1/s², and Ω_n in rad/s."""
     plumb = plumb_line(case)
     xx, yy, yz, zz = case.k.centrifugal
@@ -37,7 +37,7 @@ def stiffness(case: Case) -> tuple[Any, Any, Any]:
     return pull - xx, pull - across, turn
 
 
-def _path(case: Case, times: Array) -> Array:
+def _path(case: PaperCase, times: Array) -> Array:
     ctx = case.ctx
     plumb = plumb_line(case)
     a, b, turn = stiffness(case)
@@ -54,7 +54,7 @@ def _path(case: Case, times: Array) -> Array:
 
 
 def _stable(scene: Scene) -> str | None:
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     try:
         a, b, _ = stiffness(case)
     except UnreachableError:

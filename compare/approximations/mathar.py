@@ -23,7 +23,7 @@ from reference.model.constants import Constants
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import RELEASED_AT_REST, SWINGING, Case, hung, integrated, lowest_point, underneath
+from .case import RELEASED_AT_REST, SWINGING, PaperCase, hung, integrated, lowest_point, underneath
 from .gastebois import oscillation, turntable_frequency
 
 VARIABLES = ("x", "y", "vx", "vy")
@@ -84,7 +84,7 @@ def truncated(k: Constants, items: frozenset[Item]) -> Constants:
     return k
 
 
-def _path(case: Case, times: Array, items: frozenset[Item]) -> Array:
+def _path(case: PaperCase, times: Array, items: frozenset[Item]) -> Array:
     """Integrate (43) without the terms of `items`; return rows x, y, z, vx, vy, vz."""
     start, less = (*case.n[:2], *case.v[:2]), replace(case, k=truncated(case.k, items))
     try:
@@ -107,13 +107,15 @@ def _without(*items: Item, **fields: Any) -> Motion:
     )
 
 
-def slow_down(case: Case) -> Any:
+def slow_down(case: PaperCase) -> Any:
     """Return 2K/π, the period over the harmonic one; K has the modulus sin(φ0/2), φ0 counted from the rest position."""
     cosine = dot(case.position, case.rest) / case.length
     return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
 
 
-def _harmonic(case: Case, times: Array, apparent: bool = True, about_rest: bool = True, slowed: bool = False) -> Array:
+def _harmonic(
+    case: PaperCase, times: Array, apparent: bool = True, about_rest: bool = True, slowed: bool = False
+) -> Array:
     """Return rows of (51)-(52): ω² = ω0² + (Ω sin φ)², with ω0² = g/l about the vertical as printed.
 
     Args:

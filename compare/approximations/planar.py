@@ -10,7 +10,7 @@ from reference import Scene
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import Case, at_rest, lowest_point, under_gravity, without_drag
+from .case import PaperCase, at_rest, lowest_point, under_gravity, without_drag
 
 _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
 
@@ -34,7 +34,7 @@ def sn_cn(u: Array, modulus: Any, ctx: Any) -> tuple[Array, Array]:
     return sn, cn
 
 
-def _path(case: Case, times: Array) -> Array:
+def _path(case: PaperCase, times: Array) -> Array:
     """Return rows of sin(φ/2) = k sn(K + ω0 t), φ' = 2 k ω0 cn(K + ω0 t), k = sin(φ0/2), ω0² = g/l."""
     ctx, (x, y, z) = case.ctx, case.position
     aside = ctx.hypot(x, y)

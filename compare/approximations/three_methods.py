@@ -13,15 +13,15 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from .approximation import Motion
-from .case import SWINGING, Case, hung, lowest_point
+from .case import SWINGING, PaperCase, hung, lowest_point
 
 
-def _rates(case: Case) -> tuple[float, float]:
+def _rates(case: PaperCase) -> tuple[float, float]:
     """Return ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
     return float(case.ctx.sqrt(case.gravity / case.length + case.turn**2)), float(case.turn)
 
 
-def _rotating_frame(case: Case, times: Array) -> Array:
+def _rotating_frame(case: PaperCase, times: Array) -> Array:
     """Method 1: x' = x cos ω_p t - y sin ω_p t, y' = x sin ω_p t + y cos ω_p t; x, y oscillate, ω_p = -ω sin α.
 
     The primed coordinates are those of the ground: the paper substitutes into their equations of motion.
@@ -36,7 +36,7 @@ def _rotating_frame(case: Case, times: Array) -> Array:
     return hung(x * c - y * s, x * s + y * c, across * c - along * s, across * s + along * c, case.length)
 
 
-def _coriolis_theorem(case: Case, times: Array) -> Array:
+def _coriolis_theorem(case: PaperCase, times: Array) -> Array:
     """Method 2: the vector x in a frame turning at ω_p = -ω sin α k, where ẋ = ẋ' + ω_p × x'."""
     w, turn = _rates(case)
     rotate = np.array([[0.0, turn], [-turn, 0.0]])  # ω_p ×
@@ -53,7 +53,7 @@ def _coriolis_theorem(case: Case, times: Array) -> Array:
     return hung(x, y, vx, vy, case.length)
 
 
-def _complex_variable(case: Case, times: Array) -> Array:
+def _complex_variable(case: PaperCase, times: Array) -> Array:
     """Method 3: z = w exp(-i ω_P t), w = A sin ω̃t + B cos ω̃t, ω_P = ω sin α."""
     w, p = _rates(case)
     b = complex(case.position[0], case.position[1])

@@ -19,7 +19,7 @@ SI_UNITS = ("", "s", "m", "m/s")
 COMMAS = "Numbers with a decimal comma cannot be told apart between commas: separate the columns by semicolons."
 
 
-class Line(NamedTuple):
+class HeaderLine(NamedTuple):
     """A line above the first row."""
 
     number: int
@@ -41,7 +41,7 @@ class Header:
     name: str
     needed: Sequence[str]
     naming: Naming
-    lines: list[Line] = field(default_factory=list)
+    lines: list[HeaderLine] = field(default_factory=list)
 
     @property
     def decides(self) -> bool:
@@ -65,7 +65,7 @@ class Header:
         """
         if says_nothing(text):
             return
-        self.lines.append(Line(number, text, comment))
+        self.lines.append(HeaderLine(number, text, comment))
         if len(self.lines) > MOST:
             if not comment:
                 where, expected = f"{self.name}: line {number}", "a row of numbers before it"
@@ -156,7 +156,7 @@ class Header:
                     where, got, expected, "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark."
                 )
 
-    def _unequal(self, number: int, count: int, line: Line, named: int, separator: str) -> InputError:
+    def _unequal(self, number: int, count: int, line: HeaderLine, named: int, separator: str) -> InputError:
         """Return the error for a first row with another number of fields than the header."""
         expected = f"{named} as in the header, line {line.number}"
         what_to_do = "Is the line cut off?" if count < named else "Name each column, or say --columns."
@@ -164,7 +164,7 @@ class Header:
             what_to_do = f"{what_to_do} {COMMAS}"
         return InputError(f"{self.name}: line {number}", f"{count} fields", expected, what_to_do)
 
-    def _named(self, line: Line, count: int) -> list[str] | None:
+    def _named(self, line: HeaderLine, count: int) -> list[str] | None:
         """Return the words of a line that names the columns, or is meant to; None for another."""
         ways = [(way, _columns(way)) for way in self._ways(line)]
         fitting = [(way, named) for way, named in ways if len(way) == count]
@@ -181,7 +181,7 @@ class Header:
         """Return into how many words a line can be taken apart so that they name all columns that are needed."""
         return {len(way) for way in self._ways(self.lines[i]) if set(self.needed) <= _columns(way)}
 
-    def _ways(self, line: Line) -> list[list[str]]:
+    def _ways(self, line: HeaderLine) -> list[list[str]]:
         """Return the ways to take a line apart; where one names all columns that are needed, no less likely one."""
         ways = words(line.text)
         separators = [separator for separator in SEPARATORS if separator and separator in line.text]

@@ -188,7 +188,7 @@ def _binary(data: bytes) -> tuple[str, str] | None:
 
 
 @dataclass(frozen=True)
-class Reading:
+class TextReading:
     """A way to read the rows of a text.
 
     Attributes:
@@ -232,7 +232,7 @@ class ColumnReader:
         self.header = Header(name, needed, naming)
         self.rows: list[str] = []
         self.lines = array("l")  # the number of each row's line
-        self.readings: list[Reading] = []  # ways to read the first row
+        self.readings: list[TextReading] = []  # ways to read the first row
         self.conventions: list[Deviation] = []
         self.notes: list[str] = []
         self.transits: list[float] = []  # that comments of foucPend name
@@ -326,7 +326,7 @@ class ColumnReader:
         refusals, readings = [], []
         for separator, share in separators:
             try:
-                readings.append(Reading(separator, *self.header.layout(text, separator, line)))
+                readings.append(TextReading(separator, *self.header.layout(text, separator, line)))
             except InputError as error:
                 refusals.append((share, error))
         if not readings:
@@ -342,7 +342,7 @@ class ColumnReader:
         self.readings = [reading for reading in readings if reading.fits(text)] or readings[:1]
         return True
 
-    def _only_reading(self) -> Reading:
+    def _only_reading(self) -> TextReading:
         """Return the one way to read all rows.
 
         Raises:
@@ -361,7 +361,7 @@ class ColumnReader:
                     raise InputError(f"{self.name}: line {line}", got[:80], expected, advice)
         return (possible or self.readings)[0]
 
-    def _sure_mark(self, reading: Reading) -> str | None:
+    def _sure_mark(self, reading: TextReading) -> str | None:
         """Return the decimal mark of all numbers if a look at the rows shows it; None if each has to be looked at."""
         marks = [mark for mark in ',."' if mark != reading.separator and any(mark in row for row in self.rows)]
         if len(marks) != 1 or marks == ['"']:
@@ -371,7 +371,7 @@ class ColumnReader:
         proven = any(mark in number and not GROUPED.fullmatch(number) for number in some)
         return mark if proven else None
 
-    def _counted(self, reading: Reading, i: int, mark: str) -> str:
+    def _counted(self, reading: TextReading, i: int, mark: str) -> str:
         """Return a row, with points for commas if the decimal mark is a comma.
 
         Raises:
@@ -383,7 +383,7 @@ class ColumnReader:
             self._refuse_count(reading, i)
         return row.replace(",", ".") if mark == "," else row
 
-    def _refuse_count(self, reading: Reading, i: int) -> None:
+    def _refuse_count(self, reading: TextReading, i: int) -> None:
         count = len(without_end(split(self.rows[i], reading.separator)))
         expected = f"{reading.width} as in the first row"
         advice = "Is the line cut off?"
@@ -391,7 +391,7 @@ class ColumnReader:
             advice = COMMAS if reading.separator == "," else "Are there two numbers in one field?"
         raise InputError(f"{self.name}: line {self.lines[i]}", f"{count} fields", expected, advice)
 
-    def _spell_plainly(self, reading: Reading) -> None:
+    def _spell_plainly(self, reading: TextReading) -> None:
         """Put the numbers of the columns that are read in place of the rows, with points and separated by blanks.
 
         Rows in which a position is missing are left out.
@@ -443,7 +443,7 @@ class ColumnReader:
             advice = HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
         return InputError(f"{self.name}: line {line}: {name}", field[:40], "a number", advice)
 
-    def _clock(self, texts: Sequence[str], reading: Reading) -> list[str]:
+    def _clock(self, texts: Sequence[str], reading: TextReading) -> list[str]:
         """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
 
         Raises:
@@ -460,7 +460,7 @@ class ColumnReader:
         self.clock_s = float(times[0])
         return counted_from(times[0], times)
 
-    def _check_marks(self, columns: Sequence[Sequence[str]], reading: Reading) -> None:
+    def _check_marks(self, columns: Sequence[Sequence[str]], reading: TextReading) -> None:
         """Refuse numbers whose marks may be decimal or not."""
         commas_separate = reading.separator == ","
         doubtful = doubtful_number(columns, commas_separate)

@@ -27,7 +27,7 @@ from reference.scenes.shipped import golden_root, seals
 from .options import announce, completion_of_lists, listed
 
 if TYPE_CHECKING:
-    from ..report.motion import Motion
+    from ..report.motion import PicturedMotion
 
 PICTURES = ("path", "sphere", "plane", "transits")
 SOURCE = typer.Argument(
@@ -79,7 +79,7 @@ def plot(
     typer.echo(f"{target}: the picture")
 
 
-def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> Motion:
+def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> PicturedMotion:
     """Return the motion of a dataset if the word means one, of a file, or else of a scene."""
     from reference.dataset.place import golden_folder
 

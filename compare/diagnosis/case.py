@@ -12,7 +12,7 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from .phasors import sinc
-from .programs import NAMES, Pendulum, Program
+from .programs import NAMES, Program, SphericalPendulum
 
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention has to explain
@@ -26,7 +26,7 @@ FINEST = 1e-2  # of the tolerance: smaller residuals are rounding and steps of a
 
 
 @dataclass(frozen=True)
-class Rows:
+class FileRows:
     """The rows of a file, made right: times in s, positions in m (x, y and perhaps z), half a unit of its last digit.
 
     Attributes:
@@ -55,7 +55,7 @@ class Rows:
         """Whether smaller numbers are rounded by less: single precision, or a number of digits."""
         return any(convention.id in ("single_precision", "digits") for convention in self.conventions)
 
-    def changed(self, convention: Deviation, **fields: object) -> Rows:
+    def changed(self, convention: Deviation, **fields: object) -> FileRows:
         """Return the rows with some fields replaced, and what is to be said of that."""
         return replace(self, conventions=(*self.conventions, convention), **fields)  # type: ignore[arg-type]
 
@@ -80,7 +80,7 @@ def first_least(residuals: Sequence[float], resolution: float = 0.0) -> int:
 
 
 @dataclass(frozen=True)
-class Model:
+class NamedModel:
     """A named simplification that the file is exact within.
 
     Attributes:
@@ -113,7 +113,7 @@ class Explanation:
 
     conventions: tuple[Deviation, ...] = ()
     causes: tuple[Deviation, ...] = ()
-    model: Model | None = None
+    model: NamedModel | None = None
     corrected_m: float = math.nan
     slip: str = ""
     explained: float = 0.0
@@ -153,7 +153,7 @@ class Explanation:
 
 
 @dataclass(frozen=True)
-class Case:
+class FileCase:
     """A file that is to be explained.
 
     Attributes:
@@ -166,10 +166,10 @@ class Case:
         intervals: between the rows of the whole file, from the release on; 0 if it begins later.
     """
 
-    rows: Rows
+    rows: FileRows
     truth: Array
     right: Program
-    pendulum: Pendulum
+    pendulum: SphericalPendulum
     frequency: float
     allowed_m: float
     intervals: int = 0
@@ -211,7 +211,7 @@ class Case:
         length, rate, swing = self.right.length, max(abs(self.right.rate), 1e-6), math.sqrt(self.pull)
         return np.array([*[rate] * 3, *[self.pull] * 3, swing, *[length] * 2, *[length * swing] * 2, length, 1.0, 1.0])
 
-    def part(self, count: int) -> Case:
+    def part(self, count: int) -> FileCase:
         """Return the case of the first `count` rows."""
         rows = replace(self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count])
         return replace(self, rows=rows, truth=self.truth[:count])
@@ -247,7 +247,7 @@ class Case:
         explained = 1 - rest / self.error if self.error else 0.0
         return Explanation(self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m)
 
-    def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
+    def pendulum_of(self, program: Program) -> tuple[SphericalPendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
         theta = program.theta()
         theta[NAMES.index("gradient")] = program.gradient * program.pace**2

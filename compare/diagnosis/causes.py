@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from .case import Case
+from .case import FileCase
 from .phasors import METHODS
 from .programs import Program
 
@@ -77,7 +77,7 @@ def shortest_decimal(value: float, doubt: float) -> tuple[float, int]:
     return float(f"{value:.{PRINTED_DIGITS}g}"), PRINTED_DIGITS
 
 
-def causes_of(case: Case, kind: str) -> Iterator[Cause]:
+def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
     """Yield every cause that the program of a case may have as a member of a family: sphere, linear or angle."""
     right, released, cord = case.right, case.released, case.rows.cord
     yield from _gravity(right)

@@ -18,7 +18,7 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
-from .case import Rows, largest
+from .case import FileRows, largest
 from .phasors import as_angles, fit_phasors, sinc
 
 NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
@@ -52,13 +52,13 @@ def is_release(row: Array, release: Array, noise: float) -> bool:
     return bool(np.abs(row[:2] - release[:2]).max() <= NEAR * size + 2 * noise)
 
 
-def digits(rows: Rows) -> Rows:
+def digits(rows: FileRows) -> FileRows:
     """Find the rounding of the rows: half a unit of the last digit printed, in the file's unit."""
     values = rows.positions[np.abs(rows.positions) > 0]
     if not len(values):
         return rows
     size = float(np.abs(values).max())
-    exact = Rows(rows.times, rows.positions, 4 * np.finfo(float).eps * size)
+    exact = FileRows(rows.times, rows.positions, 4 * np.finfo(float).eps * size)
     if len(values) < 20:
         return exact
 
@@ -87,7 +87,7 @@ def digits(rows: Rows) -> Rows:
     return exact
 
 
-def heights(rows: Rows, length: float) -> Rows:
+def heights(rows: FileRows, length: float) -> FileRows:
     """Find the vertical: another column, upside down, from the lowest point; or no height of a sphere at all."""
     if rows.positions.shape[1] < 3:
         return rows
@@ -127,7 +127,7 @@ def heights(rows: Rows, length: float) -> Rows:
     return _flat(rows)
 
 
-def _offset_of_heights(rows: Rows, length: float) -> float:
+def _offset_of_heights(rows: FileRows, length: float) -> float:
     """Return by how much z is too high in every row, in m; 0 if it is not, or counted from the lowest point.
 
     It is 0 as well where the rows keep a distance from the suspension: then their cord may have another length.
@@ -145,14 +145,14 @@ def _offset_of_heights(rows: Rows, length: float) -> float:
     return offset
 
 
-def _flat(rows: Rows) -> Rows:
+def _flat(rows: FileRows) -> FileRows:
     """Leave the heights out of the explanation."""
     plane = np.ascontiguousarray(rows.plane)
     finer = float(np.abs(plane).max() / np.abs(rows.positions).max()) if rows.relative else 1.0
     return replace(rows, positions=plane, noise=rows.noise * finer)
 
 
-def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
+def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRows:
     """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
     first, last = rows.positions[[0, -1]]
     released = any(is_release(row, release, rows.noise) for row in (first, last))
@@ -187,7 +187,7 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     return replace(rows, starts=False)
 
 
-def _in_metres(rows: Rows, scale: float, text: str, length: float) -> Rows:
+def _in_metres(rows: FileRows, scale: float, text: str, length: float) -> FileRows:
     """Return the rows over a scale, with what is said of it; as they are where nothing is.
 
     Heights are left out where they are not those of the cord then.
@@ -206,7 +206,7 @@ def _in_metres(rows: Rows, scale: float, text: str, length: float) -> Rows:
     return made if np.abs(p[:, 2] - below).max() < 1e-3 * length else _flat(made)
 
 
-def _renamed(rows: Rows, order: tuple[int, int], signs: tuple[int, int]) -> Rows:
+def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> FileRows:
     """Return the rows with the horizontal axes in another order and with other signs, and what is said of that."""
     word, text = AXES_SAID[order, signs]
     if not text:
@@ -216,7 +216,7 @@ def _renamed(rows: Rows, order: tuple[int, int], signs: tuple[int, int]) -> Rows
     return rows.changed(convention, positions=np.column_stack([plane, rows.positions[:, 2:]]))
 
 
-def clock(rows: Rows, release: Array) -> Rows:
+def clock(rows: FileRows, release: Array) -> FileRows:
     """Find rows in reverse order, and a clock that does not start at 0."""
     first, last = (is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
     if last and not first and len(rows.times) > 2:
@@ -224,14 +224,14 @@ def clock(rows: Rows, release: Array) -> Rows:
     return _from_zero(rows, release) if first and 0 < rows.times[0] < rows.times[-1] else rows
 
 
-def _from_zero(rows: Rows, release: Array) -> Rows:
+def _from_zero(rows: FileRows, release: Array) -> FileRows:
     """Return the rows with a clock that starts at 0, and what is said of that."""
     text = f"starts its clock at {rows.times[0]:.10g} s and not at 0"
     convention = Deviation("clock_offset", text, float(np.hypot(*release[:2])))
     return rows.changed(convention, times=rows.times - rows.times[0], starts=True)
 
 
-def other_conventions(rows: Rows, release: Array) -> Iterator[Rows]:
+def other_conventions(rows: FileRows, release: Array) -> Iterator[FileRows]:
     """Yield rows that were made right as those of other conventions between which row 0 does not decide."""
     if 0 < rows.times[0] < rows.times[-1]:  # a clock that starts late, and a release that is off
         yield _from_zero(rows, release)
@@ -239,7 +239,7 @@ def other_conventions(rows: Rows, release: Array) -> Iterator[Rows]:
         yield _renamed(rows, (1, 0), (1, 1) if release[0] * release[1] > 0 else (-1, -1))
 
 
-def _reversed(rows: Rows) -> Rows:
+def _reversed(rows: FileRows) -> FileRows:
     """Return the rows in reverse order, their clock turned round as well, and what is said of that."""
     positions = rows.positions[::-1].copy()
     text = "has its rows in reverse order: the release stands last"
@@ -247,7 +247,7 @@ def _reversed(rows: Rows) -> Rows:
     return rows.changed(convention, times=rows.times[-1] - rows.times[::-1], positions=positions)
 
 
-def unit_of_time(rows: Rows, frequency: float, length: float) -> Rows:
+def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
     """Find the unit of time by the frequency of the swing."""
     if not frequency or len(rows.times) < 12:
         return rows
@@ -277,7 +277,7 @@ def unit_of_time(rows: Rows, frequency: float, length: float) -> Rows:
     return rows
 
 
-def rounded_clock(rows: Rows, frequency: float) -> Rows:
+def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
     """Undo the rounding of times to single precision, or add to the noise how far the bob moves meanwhile."""
     even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
     late = float(np.abs(rows.times - even).max())
@@ -290,14 +290,14 @@ def rounded_clock(rows: Rows, frequency: float) -> Rows:
     return replace(rows, noise=rows.noise + late * frequency * float(np.abs(rows.plane).max()))
 
 
-def shifted(rows: Rows, release: Array, frequency: float, length: float) -> Rows:
+def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> FileRows:
     """Find a clock that is off, the rows in order or reversed: the fitted motion passes the release some rows away."""
     if not frequency or len(rows.times) < 12:
         return rows
     goal = as_angles(np.array([complex(release[0], release[1])]), length)[0]
     moving = complex(release[3], release[4])
     spacing = float(np.median(np.diff(rows.times)))
-    passed: list[tuple[float, int, Rows]] = []
+    passed: list[tuple[float, int, FileRows]] = []
     for ordered in (rows, _reversed(rows)):
         plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
         fitted = fit_phasors(ordered.times, plane, frequency)

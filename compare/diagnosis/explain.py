@@ -13,13 +13,13 @@ from reference.numbers.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import Deviation
-from .case import AS_IF, HARMLESS, Case, Explanation, Model, Rows, largest
+from .case import AS_IF, HARMLESS, Explanation, FileCase, FileRows, NamedModel, largest
 from .causes import NAMED
 from .conventions import ROUGHLY, axes, clock, digits, heights, other_conventions, rounded_clock, shifted, unit_of_time
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
 from .gate import SHARE
-from .programs import Pendulum, Program
+from .programs import Program, SphericalPendulum
 from .slips import falls, growth, slip
 from .stepped import of_steps
 
@@ -75,7 +75,7 @@ class KnownScene:
         """The frequency of its swing in rad/s."""
         return math.sqrt(abs(self.right.theta()[5]))
 
-    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True) -> Rows:
+    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True) -> FileRows:
         """Return the rows of a file in the scene's conventions.
 
         Args:
@@ -86,21 +86,23 @@ class KnownScene:
         """
         start, length, frequency = self.start, self.right.length, self.frequency
         positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
-        rows = heights(digits(Rows(times, positions, 0.0)), length)
+        rows = heights(digits(FileRows(times, positions, 0.0)), length)
         rows = clock(axes(rows, start, length, rename), start)
         rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
         return rows if rows.starts or not late else shifted(rows, start, frequency, length)
 
-    def case(self, rows: Rows, allowed_m: float) -> Case:
+    def case(self, rows: FileRows, allowed_m: float) -> FileCase:
         """Return what is to be explained of rows, of which some are taken."""
         chosen = _sample(len(rows.times))
         rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
         since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
         truth = self.model.states(self.scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
         right, frequency = self.right, self.frequency
-        pendulum = Pendulum(self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate)))
+        pendulum = SphericalPendulum(
+            self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate))
+        )
         intervals = round(float(rows.times[-1] / rows.times[1])) if rows.times[0] == 0 < rows.times[-1] else 0
-        return Case(rows, truth, right, pendulum, frequency, allowed_m, intervals)
+        return FileCase(rows, truth, right, pendulum, frequency, allowed_m, intervals)
 
 
 def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
@@ -130,7 +132,7 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     return best
 
 
-def first_good_explanation(case: Case, scene: Scene) -> Explanation:
+def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
         return _plain(case)
@@ -146,12 +148,12 @@ def first_good_explanation(case: Case, scene: Scene) -> Explanation:
     return second or _of_approximation(case, scene, named) or named or _plain(case)
 
 
-def _plain(case: Case) -> Explanation:
+def _plain(case: FileCase) -> Explanation:
     """Return the explanation that has no cause."""
     return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
 
 
-def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Explanation | None:
+def _of_approximation(case: FileCase, scene: Scene, named: Explanation | None) -> Explanation | None:
     """Return the approximation of the source papers that leaves next to nothing, of equal ones the first.
 
     None if there is none, or causes explain the rows as well.
@@ -160,7 +162,7 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     count = rows.positions.shape[1]
     if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
         return None
-    best: tuple[Deviation, Model, Array] | None = None
+    best: tuple[Deviation, NamedModel, Array] | None = None
     least = max(CLOSELY * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5)
     for word, motion in APPROXIMATIONS.items():
         if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
@@ -171,7 +173,7 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
         if rest < (least if best is None else least / 2):
             least, costs = rest, largest(positions - truth)
             text = f"solves {motion.title} ({motion.where}) instead of the full equations"
-            best = Deviation(word, text, costs, "model"), Model(word, motion.title, largest(left), costs), left
+            best = Deviation(word, text, costs, "model"), NamedModel(word, motion.title, largest(left), costs), left
     if best is None or (named is not None and best[1].exact_to_m > PLAINLY * named.corrected_m):
         return None
     cause, model, left = best

@@ -15,9 +15,9 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ..observed.least_squares import best_change
-from .case import EQUAL, Case, first_least, rms
+from .case import EQUAL, FileCase, first_least, rms
 from .phasors import ComplexArray, Phasors, as_angles, fit_phasors
-from .programs import NAMES, Pendulum, Program, phasors_of, theta_of
+from .programs import NAMES, Program, SphericalPendulum, phasors_of, theta_of
 
 LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")  # numbers that two phasors tell
 STEPS = 16  # Gauss-Newton steps in one window at most
@@ -29,7 +29,7 @@ WINDOWS = 8.0  # ratio of the lengths of one window and the one before
 
 
 @dataclass(frozen=True)
-class Fit:
+class FamilyFit:
     """The best theta of a family, what is left, and how the rows answer to each number.
 
     Attributes:
@@ -47,7 +47,7 @@ class Fit:
     slopes: Array
 
 
-def fits_of(case: Case) -> Iterator[Fit]:
+def fits_of(case: FileCase) -> Iterator[FamilyFit]:
     """Yield the fits of the families: linear, linear in the angle, and the sphere."""
     rows, right = case.rows, case.right
     plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
@@ -66,7 +66,7 @@ def fits_of(case: Case) -> Iterator[Fit]:
         yield sphere
 
 
-def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
+def _sphere(case: FileCase, phasors: Phasors | None, rest: float) -> FamilyFit | None:
     """Return the best spherical pendulum; None if nothing fits, or the phasors fit and it is plainly another motion."""
     rows, right, floor = case.rows, case.right, case.floor
     nominal = right.theta()
@@ -92,7 +92,7 @@ def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
     return fit_pendulum(case, case.pendulum, guesses)
 
 
-def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
+def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Program) -> FamilyFit:
     """Return two phasors as a fit of theta, with the slopes by central differences."""
     theta = np.zeros(len(NAMES))
     theta[11] = right.length
@@ -117,7 +117,7 @@ def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Progr
     answer = float(np.linalg.norm(slopes[:, free.index(5)]))
     slopes = np.pad(slopes, (0, 1))
     slopes[-1, -1] = answer * abs(xx - yy) / 2
-    return Fit(kind, theta, rest, (*free, 12), slopes)
+    return FamilyFit(kind, theta, rest, (*free, 12), slopes)
 
 
 def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:
@@ -136,7 +136,7 @@ def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:
     return sorted(set(ends))
 
 
-def fit_pendulum(case: Case, pendulum: Pendulum, guesses: Sequence[Array]) -> Fit | None:
+def fit_pendulum(case: FileCase, pendulum: SphericalPendulum, guesses: Sequence[Array]) -> FamilyFit | None:
     """Fit theta by Gauss-Newton from the best of some guesses, the span growing; None if nothing fits all rows.
 
     A number that the rows do not determine stays near its guess: it is held there as loosely as `WIDTHS` says.
@@ -159,7 +159,7 @@ def fit_pendulum(case: Case, pendulum: Pendulum, guesses: Sequence[Array]) -> Fi
     return best if best.rest <= HOPELESS * size else None
 
 
-def _nearest_of_equals(case: Case, fits: Sequence[Fit], guesses: Sequence[Array]) -> tuple[Fit, Array]:
+def _nearest_of_equals(case: FileCase, fits: Sequence[FamilyFit], guesses: Sequence[Array]) -> tuple[FamilyFit, Array]:
     """Return the fit that leaves least, and its guess; of fits that leave as little, the nearest to its guess."""
     enough = EQUAL * max(min(fit.rest for fit in fits), case.resolution)
     equals = [(fit, guess) for fit, guess in zip(fits, guesses, strict=True) if fit.rest <= enough]
@@ -169,14 +169,14 @@ def _nearest_of_equals(case: Case, fits: Sequence[Fit], guesses: Sequence[Array]
     return equals[first_least(moves)]
 
 
-def _left(case: Case, pendulum: Pendulum, theta: Array) -> float:
+def _left(case: FileCase, pendulum: SphericalPendulum, theta: Array) -> float:
     """Return the root mean square in m that a pendulum leaves of rows, infinity where it makes none."""
     rows = case.rows
     left = rms(rows.positions - pendulum.rows(theta, rows.times, rows.positions.shape[1]))
     return left if math.isfinite(left) else math.inf
 
 
-def _in_window(case: Case, pendulum: Pendulum, theta: Array, guess: Array, nudges: Array) -> Fit:
+def _in_window(case: FileCase, pendulum: SphericalPendulum, theta: Array, guess: Array, nudges: Array) -> FamilyFit:
     """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped.
 
     One more step is taken from where the residual is rounding: up to it the numbers that rows hardly tell are those of
@@ -214,7 +214,7 @@ def _in_window(case: Case, pendulum: Pendulum, theta: Array, guess: Array, nudge
         theta = best + scales * _step(slopes, residual, (best - guess) / scales, hold, damping[0])
     if slopes is None:
         slopes = pendulum.slopes(best, times, columns, scales, nudges)
-    return Fit("sphere", best, least, tuple(range(len(NAMES))), slopes / scales / root)
+    return FamilyFit("sphere", best, least, tuple(range(len(NAMES))), slopes / scales / root)
 
 
 def _step(slopes: Array, left: Array, off: Array, noise: float, damping: float) -> Array:

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..candidates.candidate import Deviation
-from .case import AS_IF, EQUAL, HARMLESS, Case, Explanation, Model, largest, rms
+from .case import AS_IF, EQUAL, HARMLESS, Explanation, FileCase, NamedModel, largest, rms
 from .causes import Cause, causes_of
-from .families import Fit, fits_of
+from .families import FamilyFit, fits_of
 from .gate import CLEAN, Evidence, divides, hedged, is_typed, loose, supported_causes, without_doubtful_steps
 from .programs import NAMES, Program
-from .readings import Reader, Reading, adjusted
+from .readings import CauseReading, Reader, adjusted
 
 TRIED = 6  # readings of a family that are run
 CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
@@ -43,7 +43,7 @@ TITLES = {
 }  # fmt: skip
 
 
-def best_of(case: Case, stepped: bool = False) -> Reading | None:
+def best_of(case: FileCase, stepped: bool = False) -> CauseReading | None:
     """Return the best reading of all families; None if it leaves too much for anything to be named.
 
     Args:
@@ -75,12 +75,12 @@ def best_of(case: Case, stepped: bool = False) -> Reading | None:
     return best if best.rest <= max(share * case.error, noise) else None
 
 
-def _price(reading: Reading) -> float:
+def _price(reading: CauseReading) -> float:
     """Return the score of a reading in decades, with what a simpler family costs: less is better."""
     return reading.score + EXTRA[reading.reader.right.kind]
 
 
-def _is_tied(case: Case, run: Sequence[Reading]) -> bool:
+def _is_tied(case: FileCase, run: Sequence[CauseReading]) -> bool:
     """Return whether a reading of another motion, with nothing in common with the best one, is about as likely."""
     best = run[0]
     groups = {cause.group for cause in best.causes}
@@ -89,12 +89,12 @@ def _is_tied(case: Case, run: Sequence[Reading]) -> bool:
     return any(not _is_same_motion(case, reading, best) for reading in rivals)
 
 
-def _is_same_motion(case: Case, reading: Reading, other: Reading) -> bool:
+def _is_same_motion(case: FileCase, reading: CauseReading, other: CauseReading) -> bool:
     """Return whether two readings move alike, as no rotation and neither of its two forces do."""
     return rms(case.positions(reading.program) - case.positions(other.program)) <= case.resolution
 
 
-def _first_of_equals(case: Case, run: list[Reading], places: dict[int, int]) -> Reading:
+def _first_of_equals(case: FileCase, run: list[CauseReading], places: dict[int, int]) -> CauseReading:
     """Return the best reading; of those that are as good, the surest, and then the first of the catalogue.
 
     Args:
@@ -106,14 +106,14 @@ def _first_of_equals(case: Case, run: list[Reading], places: dict[int, int]) -> 
     equals = [reading for reading in run if _price(reading) <= least + math.log10(EQUAL)]
     kinds = list(EXTRA)
 
-    def order(reading: Reading) -> tuple[int, int, list[int]]:
+    def order(reading: CauseReading) -> tuple[int, int, list[int]]:
         in_catalogue = sorted(places[id(cause)] for cause in reading.causes)
         return unsure_causes(case, reading), kinds.index(reading.reader.right.kind), in_catalogue
 
     return min(equals, key=order)
 
 
-def unsure_causes(case: Case, reading: Reading) -> int:
+def unsure_causes(case: FileCase, reading: CauseReading) -> int:
     """Return how many numbers of a reading nobody typed, and steps that do not clearly divide the spacing of rows."""
     spacing = float(np.ptp(case.rows.times[:2]))
     clean = clean_share(case, reading.reader.right.kind)
@@ -131,7 +131,7 @@ def unsure_causes(case: Case, reading: Reading) -> int:
     return unsure
 
 
-def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> list[Reader]:
+def readers_of(case: FileCase, fits: Sequence[FamilyFit], floor: float | None = None) -> list[Reader]:
     """Return what reads a case, for each family that fits it about as well as the best.
 
     Args:
@@ -146,8 +146,8 @@ def readers_of(case: Case, fits: Sequence[Fit], floor: float | None = None) -> l
 
 
 def ranked(
-    case: Case, readers: Sequence[Reader], causes_of: Callable[[str], Sequence[Cause]], tried: int = TRIED
-) -> list[Reading]:
+    case: FileCase, readers: Sequence[Reader], causes_of: Callable[[str], Sequence[Cause]], tried: int = TRIED
+) -> list[CauseReading]:
     """Return the likeliest readings of a case, their programs run and the near ones polished, the best first.
 
     Args:
@@ -156,7 +156,7 @@ def ranked(
         causes_of: the causes that a family may have.
         tried: number of readings of a family that are run.
     """
-    run: list[Reading] = []
+    run: list[CauseReading] = []
     places: dict[int, int] = {}
     numbers = case.rows.plane[int(case.released) :].size  # as many that are fitted make any rows
     for reader in sorted(readers, key=lambda reader: reader.fit.rest):
@@ -179,7 +179,7 @@ def ranked(
     return [best, *sorted((reading for reading in run if reading is not best), key=_price)]
 
 
-def polished(case: Case, reading: Reading) -> Reading:
+def polished(case: FileCase, reading: CauseReading) -> CauseReading:
     """Return the best reading with its fitted numbers moved to where its program, run, leaves least.
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
@@ -194,7 +194,7 @@ def polished(case: Case, reading: Reading) -> Reading:
     return reading.reader.scored(reading.causes, program, size / math.sqrt(len(goal)))
 
 
-def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) -> Explanation:
+def explanation_of(case: FileCase, reading: CauseReading, step: Deviation | None = None) -> Explanation:
     """Return the explanation that the best reading of a case makes up, and a step that was taken from its rows."""
     rows, reader = case.rows, reading.reader
     kind, reading = reader.right.kind, _without_needless(case, reading)
@@ -225,7 +225,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     return replace(explanation, model=model) if explanation.causes else explanation
 
 
-def _may_be_a_clock(case: Case, program: Program) -> bool:
+def _may_be_a_clock(case: FileCase, program: Program) -> bool:
     """Return whether a clock of another pace explains the rows as well, with the scene's own g, length and rate.
 
     A clock that runs fast by a factor k makes g look smaller by k² and the rotation slower by k.
@@ -239,13 +239,13 @@ def _may_be_a_clock(case: Case, program: Program) -> bool:
     return rms(case.left(clock)) <= RIVAL * max(rms(case.left(program)), case.floor)
 
 
-def clean_share(case: Case, kind: str) -> float:
+def clean_share(case: FileCase, kind: str) -> float:
     """Return the share of what an integrator does that its leading error may leave."""
     width = float(np.hypot(*case.rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
     return max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
 
 
-def _with(reading: Reading, reported: Sequence[Deviation]) -> Program:
+def _with(reading: CauseReading, reported: Sequence[Deviation]) -> Program:
     """Return the program that has, of the causes of a reading, those that are reported."""
     words = {cause.id.removeprefix(f"{AS_IF}.") for cause in reported}
     drift = {"site.gravity", "pendulum.length", "pendulum.drag"} if "integrator_loose" in words else set()
@@ -255,7 +255,7 @@ def _with(reading: Reading, reported: Sequence[Deviation]) -> Program:
     return reading.reader.without(reading, [cause for cause in reading.causes if cause not in kept]).program
 
 
-def _without_needless(case: Case, reading: Reading) -> Reading:
+def _without_needless(case: FileCase, reading: CauseReading) -> CauseReading:
     """Return a reading without the causes without which what is left is within the tolerance as well."""
     while reading.causes:
         fewer = [reading.reader.without(reading, [cause]) for cause in reading.causes]
@@ -267,7 +267,7 @@ def _without_needless(case: Case, reading: Reading) -> Reading:
     return reading
 
 
-def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
+def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
     kind = reading.reader.right.kind
     changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (kind != "sphere")
@@ -293,7 +293,7 @@ def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
         before = after
 
 
-def _model_of(kind: str, right: Program, causes: Sequence[Deviation], exact: float, costs: float) -> Model | None:
+def _model_of(kind: str, right: Program, causes: Sequence[Deviation], exact: float, costs: float) -> NamedModel | None:
     """Return the model that causes make up; None if one of them is no simplification with a name."""
     words = [cause.id for cause in causes]
     if kind != "sphere":
@@ -301,4 +301,4 @@ def _model_of(kind: str, right: Program, causes: Sequence[Deviation], exact: flo
     if not words or any(word not in TITLES for word in words):
         return None
     titles = TITLES if right.gravity_reading != "effective" else TITLES | {"no_centrifugal": TITLES["uniform_gravity"]}
-    return Model("+".join(words), ", ".join(titles[word] for word in words), exact, costs)
+    return NamedModel("+".join(words), ", ".join(titles[word] for word in words), exact, costs)

@@ -19,12 +19,12 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ..observed.least_squares import gauss_newton, solved
-from .case import Case, Explanation, Rows
+from .case import Explanation, FileCase, FileRows
 from .causes import NAMED, causes_of
-from .families import Fit, windows
+from .families import FamilyFit, windows
 from .fitted import sized
 from .programs import NAMES, Program
-from .readings import Reader, Reading
+from .readings import CauseReading, Reader
 
 PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
 LEAST = 24  # rows, twice the numbers that are fitted
@@ -59,7 +59,7 @@ class Formula:
         """The same formula with the other sign of β."""
         return replace(self, beta=-self.beta, coefficients=self.coefficients * np.array([[1], [-1], [1], [-1], [1]]))
 
-    def fit(self, times: Array, right: Program) -> Fit:
+    def fit(self, times: Array, right: Program) -> FamilyFit:
         """Return its rates as a fit of theta: of that they give β and ω² alone."""
         theta = right.theta()
         turn, pull = NAMES.index("turn_z"), NAMES.index("pull_z")
@@ -69,7 +69,7 @@ class Formula:
         pulled = -by_omega / (2 * self.omega)
         turned = by_beta + by_omega * self.beta / self.omega
         slopes = np.column_stack([turned.ravel(), pulled.ravel()]) / math.sqrt(len(times))
-        return Fit("linear", theta, self.rest, (turn, pull), slopes)
+        return FamilyFit("linear", theta, self.rest, (turn, pull), slopes)
 
     def slips(self, program: Program, same: float) -> list[str]:
         """Return what is said of each coefficient that differs by more than `same` from that of a linear model.
@@ -99,7 +99,7 @@ class Formula:
         return sentences
 
 
-def of_formula(case: Case) -> Explanation | None:
+def of_formula(case: FileCase) -> Explanation | None:
     """Return what is known of rows that follow a closed formula with a slip; None if they do not, or with too many."""
     formula = fit_formula(case.rows, case.right)
     if formula is None or formula.rest > case.floor:
@@ -109,7 +109,7 @@ def of_formula(case: Case) -> Explanation | None:
     rates = [cause for cause in named if cause.stage in ("gravity", "model", "input")]
     releases = [cause for cause in named if cause.stage == "release"]
     same = max(SAME * float(np.hypot(case.right.x, case.right.y)), 10 * case.rows.noise)
-    best: tuple[float, Reading, str] | None = None
+    best: tuple[float, CauseReading, str] | None = None
     for turned in (formula, formula.mirrored):
         fit = turned.fit(case.rows.times, case.right)
         reader = Reader(replace(case.right, kind="linear"), fit, case.floor, fit.rest)
@@ -131,7 +131,7 @@ def of_formula(case: Case) -> Explanation | None:
     return replace(case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price), slip=text)
 
 
-def fit_formula(rows: Rows, right: Program) -> Formula | None:
+def fit_formula(rows: FileRows, right: Program) -> Formula | None:
     """Return the formula that leaves least, from the rates of the scene's own swing; None if the rows are too few.
 
     The span grows, so that no turn of the phase is lost. A formula and its mirror image leave as much: one is fitted.

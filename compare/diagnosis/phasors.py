@@ -191,7 +191,7 @@ def _left(times: Array, rows: ComplexArray, rates: ComplexArray) -> tuple[Comple
 
 
 @dataclass(frozen=True)
-class Method:
+class FixedStepMethod:
     """A fixed-step integrator.
 
     Attributes:
@@ -264,12 +264,12 @@ def _taylor(order: int) -> tuple[float, ...]:
 
 
 METHODS = (
-    Method("semi_implicit_euler", "semi-implicit (symplectic) Euler", kick=True),
-    Method("semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", kick=False),
-    Method("explicit_euler", "explicit Euler", _taylor(1)),
-    Method("leapfrog", "leapfrog (Verlet)"),
-    Method("leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", late=True),
-    Method("rk2", "a Runge-Kutta method of order 2 (midpoint, Heun)", _taylor(2)),
-    Method("rk3", "a Runge-Kutta method of order 3", _taylor(3)),
-    Method("rk4", "a Runge-Kutta method of order 4", _taylor(4)),
+    FixedStepMethod("semi_implicit_euler", "semi-implicit (symplectic) Euler", kick=True),
+    FixedStepMethod("semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", kick=False),
+    FixedStepMethod("explicit_euler", "explicit Euler", _taylor(1)),
+    FixedStepMethod("leapfrog", "leapfrog (Verlet)"),
+    FixedStepMethod("leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", late=True),
+    FixedStepMethod("rk2", "a Runge-Kutta method of order 2 (midpoint, Heun)", _taylor(2)),
+    FixedStepMethod("rk3", "a Runge-Kutta method of order 3", _taylor(3)),
+    FixedStepMethod("rk4", "a Runge-Kutta method of order 4", _taylor(4)),
 )

@@ -1,8 +1,8 @@
 """Programs: the numbers of a scene as a program may read them, its choices, the `theta` that follows, its motion.
 
 A `Program` is the scene's numbers and a handful of choices; each mistake changes one of them. `theta` is what the
-motion depends on (`NAMES`), so that many programs are held against one fit without running any. A `Pendulum` runs one:
-it swings on the sphere by a free vector Ω and a free pull, whatever a program calls them.
+motion depends on (`NAMES`), so that many programs are compared with one fit without running any. A `SphericalPendulum`
+runs one: it swings on the sphere by a free vector Ω and a free pull, whatever a program calls them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
 from ..observed.least_squares import by_differences
-from .phasors import Method, Phasors
+from .phasors import FixedStepMethod, Phasors
 
 NAMES = (
     "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",
@@ -74,7 +74,7 @@ class Program:
     kind: str = "sphere"
     late: float = 0.0
     pace: float = 1.0
-    method: Method | None = None
+    method: FixedStepMethod | None = None
     step: float = 0.0
     nominal_rate: float = 0.0
 
@@ -209,7 +209,7 @@ def theta_of(phasors: Phasors, theta: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Pendulum:
+class SphericalPendulum:
     """The spherical pendulum of a `theta`, in the units of the file.
 
     Attributes:

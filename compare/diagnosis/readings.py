@@ -19,9 +19,9 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ..observed.least_squares import best_change, by_differences, gauss_newton
-from .case import Case, first_least
+from .case import FileCase, first_least
 from .causes import Cause
-from .families import Fit
+from .families import FamilyFit
 from .programs import Program
 
 ENOUGH = 5000  # combinations that are tried
@@ -37,7 +37,7 @@ SMALLEST = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-
 
 
 @dataclass(frozen=True)
-class Reading:
+class CauseReading:
     """A combination of causes.
 
     Attributes:
@@ -73,12 +73,12 @@ class Reader:
     """
 
     right: Program
-    fit: Fit
+    fit: FamilyFit
     floor: float
     least: float
     joint: bool = False
 
-    def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[Reading]:
+    def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[CauseReading]:
         """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
         nothing = self._judged((), self.right)
         best, beam = [nothing], [nothing]
@@ -86,7 +86,7 @@ class Reader:
         least, tried = min(nothing.score, most), 0
         bound = self.scored((), self.right, self.fit.rest).score  # no combination leaves less than the fit
         for _ in range(MOST):
-            longer: list[Reading] = []
+            longer: list[CauseReading] = []
             for reading in beam:
                 groups = {cause.group for cause in reading.causes}
                 cost = bound + sum(cause.cost for cause in reading.causes)
@@ -114,7 +114,7 @@ class Reader:
         named = first if self.joint else self._exactly_named(first, causes)
         return [named, *(reading for reading in best if reading is not first)]
 
-    def _exchanged(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+    def _exchanged(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Return the best reading that comes from one by leaving causes out, or taking others of their groups."""
         readings = [reading]
         for cause in reading.causes:
@@ -125,7 +125,7 @@ class Reader:
         best = readings[first_least([10**other.score for other in readings])]
         return best if best is reading else self._exchanged(best, causes)
 
-    def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+    def _exactly_named(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Put a named cause in place of a fitted number that is as good as equal to its own: that is no accident."""
         for cause in reading.causes:
             if not cause.free or cause.stage == "integrator":
@@ -145,7 +145,7 @@ class Reader:
                     return self._judged(together, program)
         return reading
 
-    def _with(self, reading: Reading, cause: Cause) -> Reading | None:
+    def _with(self, reading: CauseReading, cause: Cause) -> CauseReading | None:
         program = cause.change(reading.program)
         if not program.sensible:
             return None
@@ -173,7 +173,7 @@ class Reader:
         change = best_change(self._triangle[:, columns], self._off(program))
         return -float(theta[5] + change[0]), float(theta[6] + change[1])
 
-    def drifts(self, case: Case, program: Program) -> bool:
+    def drifts(self, case: FileCase, program: Program) -> bool:
         """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
         columns, free = len(self.fit.slopes) // len(case.rows.times), list(self.fit.free)
         off = (case.left(program)[:, :columns] / math.sqrt(len(case.rows.times))).ravel()
@@ -185,7 +185,7 @@ class Reader:
 
         return left(pull, drag) <= enough < min(left(pull), left(drag))
 
-    def uncertainty(self, reading: Reading, cause: Cause, resolution: float) -> float:
+    def uncertainty(self, reading: CauseReading, cause: Cause, resolution: float) -> float:
         """Return by how much a fitted number may be off: the residual over how the rows answer to it.
 
         A residual below the resolution, in m, is rounding and says nothing.
@@ -196,11 +196,11 @@ class Reader:
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, resolution) / answer if answer else math.inf
 
-    def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
+    def _judged(self, together: tuple[Cause, ...], program: Program) -> CauseReading:
         off = float(np.linalg.norm(self._off(program)))
         return self.scored(together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf)
 
-    def without(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+    def without(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Return a reading without some of its causes, the other fitted numbers as they were."""
         program = self.right
         together = tuple(cause for cause in reading.causes if cause not in causes)
@@ -210,13 +210,13 @@ class Reader:
                 program = program.changed(**{cause.free: reading.value(cause)})
         return self._judged(together, program)
 
-    def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:
+    def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> CauseReading:
         """Return a combination that leaves `rest`, a root mean square in m, with its score."""
         low = max(1.2 * self.least, 1e-3 * self.floor)
         score = math.inf
         if math.isfinite(rest):
             score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(max(rest, low) / low)
-        return Reading(together, program, rest, score + sum(cause.cost for cause in together), self)
+        return CauseReading(together, program, rest, score + sum(cause.cost for cause in together), self)
 
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""

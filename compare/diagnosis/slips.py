@@ -19,7 +19,7 @@ from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
 from ..observed.least_squares import solved
-from .case import Rows
+from .case import FileRows
 from .programs import Program
 
 FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
@@ -39,7 +39,7 @@ PARTS, GROWN = 4, 2.0  # of the rows, and how many times as far as in the first 
 FREELY = 0.5, 2.5  # of g: what a fall's mean acceleration is between, from row 0 to every other
 
 
-def slip(rows: Rows, scene: Scene) -> str:
+def slip(rows: FileRows, scene: Scene) -> str:
     """Return which part of the force is off, as a sentence; empty if the rows do not tell."""
     k = constants_in_double(scene.exact)
     rate = float(np.linalg.norm([float(part) for part in k.pull])) ** 0.5
@@ -148,7 +148,7 @@ def _sentence(equation: str, term: str, value: float, right: float) -> str:
     return f"in the equation of {equation}, {name} is {value:.6g} {TERMS[term]} where the model has {right + 0.0:.6g}"
 
 
-def falls(rows: Rows, right: Program) -> str:
+def falls(rows: FileRows, right: Program) -> str:
     """Return in a sentence which coordinate falls from row 0 on to far below the cord; empty if none does."""
     time, gone = rows.times[1:] - rows.times[0], rows.plane[1:] - rows.plane[0]
     for name, way in zip("xy", gone.T, strict=True):
@@ -160,7 +160,7 @@ def falls(rows: Rows, right: Program) -> str:
     return ""
 
 
-def growth(rows: Rows) -> str:
+def growth(rows: FileRows) -> str:
     """Return in a sentence how fast a motion grows; empty if it does not, part by part of the rows."""
     parts = np.array_split(np.arange(len(rows.times)), PARTS)
     if len(rows.times) < 2 * PARTS:

@@ -23,13 +23,13 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
-from .case import AS_IF, Case, Explanation, largest, rms
+from .case import AS_IF, Explanation, FileCase, largest, rms
 from .causes import FITTED
 from .families import fit_pendulum
 from .fitted import best_of, explanation_of
 from .phasors import METHODS
-from .programs import Pendulum, Program
-from .readings import Reading
+from .programs import Program, SphericalPendulum
+from .readings import CauseReading
 
 TITLES = {method.id: method.title for method in METHODS}
 TITLES["heun"] = TITLES["rk2"]
@@ -60,7 +60,7 @@ State = list[Any]
 
 
 @dataclass(frozen=True)
-class Steps(Pendulum):
+class Steps(SphericalPendulum):
     """A pendulum that a method moves, from row to row in a whole number of steps.
 
     Attributes:
@@ -111,7 +111,7 @@ class Steps(Pendulum):
         return np.asarray(rows * thetas[11])
 
 
-def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
+def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None:
     """Return what is known of rows that such a method made on the sphere; None if none did.
 
     The numbers of the motion are fitted in these steps; what the steps do to it is taken from the rows.
@@ -134,7 +134,7 @@ def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
     return min(explanations, key=lambda explanation: explanation.score, default=None)
 
 
-def _of_steps(case: Case, steps: Steps) -> Explanation | None:
+def _of_steps(case: FileCase, steps: Steps) -> Explanation | None:
     """Return what is known of rows that some steps made; None if others did."""
     rows, (pendulum, theta) = case.rows, case.pendulum_of(case.right)
     fit = fit_pendulum(case, steps, [np.array(steps.near)])
@@ -174,7 +174,7 @@ def step_cause(steps: Steps, effect: Array) -> Deviation:
     return Deviation(word, text, largest(effect), "integrator", step, step)
 
 
-def likely_steps(case: Case, near: Program | None) -> list[Steps]:
+def likely_steps(case: FileCase, near: Program | None) -> list[Steps]:
     """Return methods and steps that the first swing looks like, the likeliest first; none for rows not evenly spaced.
 
     The rows have x and y alone, the first of them evenly spaced from the release on. Where they are so far apart that
@@ -212,7 +212,7 @@ def likely_steps(case: Case, near: Program | None) -> list[Steps]:
     return [steps for size, steps in likely[:LIKELY] if size < min(PLAIN * plain, ALIKE * least)]
 
 
-def _nearer(swing: Case, pendulum: Pendulum, theta: Array) -> tuple[Array, Array]:
+def _nearer(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tuple[Array, Array]:
     """Return theta, its unsure numbers moved to where the pendulum leaves less, and the slopes by these in scales."""
     rows, unsure = swing.rows, list(UNSURE)
     slopes = pendulum.slopes(theta, rows.times, 2, swing.scales, np.full(len(theta), 1e-6))[:, unsure]
@@ -224,7 +224,9 @@ def _nearer(swing: Case, pendulum: Pendulum, theta: Array) -> tuple[Array, Array
     return nearer, slopes
 
 
-def _apart(swing: Case, steps: Steps, thetas: Array, slopes: Array, low: int, high: int) -> list[tuple[float, Steps]]:
+def _apart(
+    swing: FileCase, steps: Steps, thetas: Array, slopes: Array, low: int, high: int
+) -> list[tuple[float, Steps]]:
     """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best.
 
     The theta is the one of some that leaves least, moved nearer with every round.

@@ -25,7 +25,7 @@ from reference.system.workspace import workspace
 
 from ..candidates.external import run_program
 from .library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
-from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, Outcome, Work, adaptive, failed, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, RunOutcome, Work, adaptive, failed, outcome
 from .rhs.problem import Problem
 from .rhs.straight_line import StraightLine
 
@@ -61,7 +61,7 @@ def prepare(
     start = [setting, float(len(problem.times)), *problem.sizes, *problem.start]
     numbers = np.concatenate([start, problem.parameters, problem.times])
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         with tempfile.NamedTemporaryFile(prefix="foucault-") as file:
             numbers.tofile(file)
             file.flush()

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .method import HIGH_ORDER, SPACE_FIRST, Outcome, Work, adaptive, leading, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, RunOutcome, Work, adaptive, leading, outcome
 from .rhs.problem import Problem
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
@@ -52,7 +52,7 @@ def prepare(problem: Problem, setting: float) -> Work:
     compiled = jax.jit(integrate).lower(start, times).compile()
     stages = solver.tableau.num_stages - int(solver.tableau.fsal)
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         ys, step_count, successful = compiled(start, times)
         states, steps = np.array(ys), int(step_count)
         reason = "" if successful else "diffrax stopped before the end"

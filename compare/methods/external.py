@@ -14,7 +14,7 @@ from reference.status import Status
 
 from ..candidates.external import SETTING, arguments, run_program
 from ..candidates.read import read_stream
-from .method import Method, Outcome, Work, failed, leading
+from .method import Method, RunOutcome, Work, failed, leading
 from .rhs.problem import Problem
 
 LONGEST_NAME = 24  # characters of a program's name in tables and charts
@@ -52,7 +52,7 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
     scene = problem.scene.with_values([f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"])
     words = arguments(command.replace(SETTING, repr(value)), scene)
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         try:
             output, cpu_s, _ = run_program(words)
             with output:
@@ -65,7 +65,7 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
         status, reason = Status.OK, ""
         if len(states) < len(problem.times):
             status, reason = Status.GAVE_UP, "the output lacks a grid time"
-        return Outcome(status, float(problem.times[len(states) - 1]), lambda: states, reason, cpu_s=cpu_s)
+        return RunOutcome(status, float(problem.times[len(states) - 1]), lambda: states, reason, cpu_s=cpu_s)
 
     return work
 

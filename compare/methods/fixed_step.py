@@ -15,7 +15,7 @@ import numpy as np
 from reference.model.algebra import plus, product
 from reference.numbers.precision import Array
 
-from .method import Method, Outcome, Work, outcome
+from .method import Method, RunOutcome, Work, outcome
 from .rhs.problem import Problem
 from .rhs.straight_line import StraightLine, elements
 from .tableau import NystromTableau, Tableau
@@ -115,7 +115,7 @@ def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
         march = problem.compiled(traced_step(problem, step), _MARCH, out=elements("states", variables, "row")).march
         counts = steps_between(problem.times, setting)
 
-        def work() -> Outcome:
+        def work() -> RunOutcome:
             states = np.empty((len(problem.times), variables))
             states[0] = problem.start
             rows = march(problem.start, problem.parameters, problem.times, counts, states)

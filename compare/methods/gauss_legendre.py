@@ -16,7 +16,7 @@ import numpy as np
 from reference.numbers.precision import Array, context
 
 from .fixed_step import fixed_step, steps_between
-from .method import Family, Outcome, Work, outcome
+from .method import Family, RunOutcome, Work, outcome
 from .rhs.problem import Problem
 from .tableau import TableauError
 
@@ -120,7 +120,7 @@ def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
     march = problem.compiled(problem.system.program, _MARCH, **limits).march
     coefficients, counts = gauss(stages), steps_between(problem.times, setting)
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         states = np.empty((len(problem.times), len(problem.start)))
         states[0] = problem.start
         rows, steps, calls = march(

@@ -30,7 +30,7 @@ from reference.numbers.precision import (
 from reference.numbers.table import Table
 from reference.status import Status
 
-from .method import Family, Method, Outcome, Work, failed
+from .method import Family, Method, RunOutcome, Work, failed
 from .rhs.problem import Problem
 
 QUADRUPLE_BITS = 113
@@ -54,7 +54,7 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
     propagator, release = model.propagator(tolerance), model.release(start)
     times = [model.numbers.of(Fraction(t)) for t in problem.times.tolist()]
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         before = propagator.steps
         try:
             states = propagator.from_zero(release, times)
@@ -66,7 +66,7 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
                 return model.doubles(states)
             return model.table(states, number.prec + SPARE_BITS).only(STATE)
 
-        return Outcome(Status.OK, float(problem.times[-1]), rows, steps=propagator.steps - before)
+        return RunOutcome(Status.OK, float(problem.times[-1]), rows, steps=propagator.steps - before)
 
     return work
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from reference.numbers.columns import STATE
 from reference.status import Status
 
-from .method import Family, Method, Outcome, Work, failed
+from .method import Family, Method, RunOutcome, Work, failed
 from .rhs.problem import Problem
 
 
@@ -21,13 +21,13 @@ def prepare(problem: Problem, setting: float) -> Work:
     times = tuple(Fraction(t) for t in problem.times.tolist())
     limbs.run(limbs.plan(inputs, int(setting), times[:2]))
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         try:
             run = limbs.run(limbs.plan(inputs, int(setting), times))
         except IntegrationError as error:
             return failed(problem, error.reason)
 
-        return Outcome(Status.OK, float(times[-1]), lambda: run.grid.only(STATE), steps=run.steps)
+        return RunOutcome(Status.OK, float(times[-1]), lambda: run.grid.only(STATE), steps=run.steps)
 
     return work
 

@@ -1,4 +1,4 @@
-"""The interface of an integrator: `Method`, its declaration, and `Outcome`, the result of a run; a program as one."""
+"""The interface of an integrator: `Method`, its declaration, and `RunOutcome`, the result of a run."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Family(StrEnum):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunOutcome:
     """The result of a run. A numerical failure is an outcome too, with its reason and the states before it.
 
     Attributes:
@@ -86,7 +86,7 @@ class Outcome:
         return np.column_stack([computed[name] for name in STATE]) if isinstance(computed, Table) else computed
 
 
-Work = Callable[[], Outcome]
+Work = Callable[[], RunOutcome]
 
 
 @dataclass(frozen=True, repr=False)
@@ -168,7 +168,7 @@ def available(method: Method) -> str | None:
     return f"not installed ({', '.join(absent)}){advice}"
 
 
-def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any) -> Outcome:
+def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any) -> RunOutcome:
     """Return the outcome of a run in binary64.
 
     Args:
@@ -176,7 +176,7 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any)
         states: of the problem's variables at its first output times, shape (rows, variables); a run with fewer rows
             than times has stopped early; rows from the first NaN or infinity on are left out.
         reason: the library's own, if it gave one.
-        fields: of `Outcome`, if the library reports them: `steps`, `rhs_evaluations` and `cpu_s`.
+        fields: of `RunOutcome`, if the library reports them: `steps`, `rhs_evaluations` and `cpu_s`.
     """
     rows = leading(np.isfinite(states).all(axis=1))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
@@ -185,7 +185,7 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any)
         status, reason = Status.NOT_FINITE, reason or f"the state is not finite after t = {reached_t:g} s"
     elif rows < len(problem.times):
         status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
-    return Outcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **fields)
+    return RunOutcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **fields)
 
 
 def leading(flags: npt.ArrayLike) -> int:
@@ -193,6 +193,6 @@ def leading(flags: npt.ArrayLike) -> int:
     return int(np.argmin(np.append(flags, False)))
 
 
-def failed(problem: Problem, reason: str) -> Outcome:
+def failed(problem: Problem, reason: str) -> RunOutcome:
     """Return the outcome of a run that gave up and produced no state after the first."""
     return outcome(problem, problem.start[None, :], reason=reason)

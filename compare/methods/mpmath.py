@@ -13,7 +13,7 @@ from reference.numbers.precision import GUARD_BITS, context, to_fraction, to_mpf
 from reference.numbers.table import Table
 from reference.status import Status
 
-from .method import Family, Method, Outcome, Work
+from .method import Family, Method, RunOutcome, Work
 from .rhs.problem import Problem
 
 SPARE_BITS = 64  # exact states are written with this many bits below the precision
@@ -28,7 +28,7 @@ def prepare(problem: Problem, setting: float) -> Work:
     start = [ctx.mpf(value) for value in exact.state(model)]
     times = [to_mpf(Fraction(t), ctx) for t in problem.times.tolist()]
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         calls = 0
 
         def rhs(_: Any, state: Sequence[Any]) -> list[Any]:
@@ -45,7 +45,7 @@ def prepare(problem: Problem, setting: float) -> Work:
             values = [tuple(int(to_fraction(part * k.length) * 2**bits) for part in (*n, *v)) for n, v in vectors]
             return Table(STATE, bits, values)
 
-        return Outcome(Status.OK, float(problem.times[-1]), rows, rhs_evaluations=calls)
+        return RunOutcome(Status.OK, float(problem.times[-1]), rows, rhs_evaluations=calls)
 
     return work
 

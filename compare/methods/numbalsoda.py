@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .library import captured, quoted
-from .method import HIGH_ORDER, SPACE_FIRST, Family, Outcome, Work, adaptive, leading, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Family, RunOutcome, Work, adaptive, leading, outcome
 from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
@@ -38,7 +38,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     integrate = {"dop853": driver_dop853.dop853_wrapper, "lsoda": driver.lsoda_wrapper}[code]
     absolute = setting * float(problem.sizes.min())
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         rows = len(problem.times)
         states, success = np.full((rows, variables), np.nan), np.array(999, np.int32)
         states[0], start = problem.start, problem.start.copy()

@@ -18,7 +18,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .method import SPACE_FIRST, Family, Outcome, Work, adaptive, outcome
+from .method import SPACE_FIRST, Family, RunOutcome, Work, adaptive, outcome
 from .rhs.problem import Problem
 
 POINTER = 8  # bytes
@@ -51,7 +51,7 @@ def prepare_bs(problem: Problem, setting: float) -> Work:
     size = len(problem.start)
     rates = problem.compiled(problem.system.program, _ODE, ref=rebound.ODE.ref.offset // POINTER).rates
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         data = np.append(problem.parameters, 0.0)
         simulation = rebound.Simulation()
         simulation.integrator = "bs"
@@ -79,7 +79,7 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
     places = {name: field.offset // POINTER for name, field in fields.items()}
     rates = problem.compiled(problem.system.program, _FORCES, **places).rates
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         data = np.append(problem.parameters, 0.0)
         simulation = rebound.Simulation()
         simulation.integrator = "ias15"
@@ -101,7 +101,7 @@ def _first_step(problem: Problem) -> float:
     return min(0.01 / math.sqrt(strength) if strength else 1.0, float(problem.times[-1]) or 1.0)
 
 
-def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Array) -> Outcome:
+def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Array) -> RunOutcome:
     """Integrate to every output time, until the simulation reports an error or the state is not finite."""
     import rebound
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .method import SPACE_FIRST, TRACEABLE, Family, Outcome, Work, adaptive, outcome
+from .method import SPACE_FIRST, TRACEABLE, Family, RunOutcome, Work, adaptive, outcome
 from .rhs.problem import Filling, Problem
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
@@ -44,7 +44,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         keywords["jac"] = returning(problem.slopes, k, (size, size))
     rhs = returning(problem.rates, k, (size,))
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             solution = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)

@@ -14,7 +14,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from .library import captured
-from .method import Family, Outcome, Work, adaptive, outcome
+from .method import Family, RunOutcome, Work, adaptive, outcome
 from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times
@@ -36,7 +36,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         rhs, method=code, rtol=setting, atol=setting * problem.sizes, max_num_steps=MOST_STEPS, jacfn=jacobian
     )
 
-    def work() -> Outcome:
+    def work() -> RunOutcome:
         times = problem.times
         output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
         with captured():  # it prints its message as well

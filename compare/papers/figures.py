@@ -18,7 +18,19 @@ from ..methods import METHODS
 from ..methods.method import available
 from ..methods.rhs.problem import Problem
 from ..observed.swing_plane import rest_in_metres
-from ..report.drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, logarithmic, name_ends, picture, sheet
+from ..report.drawing import (
+    COLOURS,
+    FAINT,
+    GUIDE,
+    ChartLine,
+    draw,
+    legend,
+    limits,
+    logarithmic,
+    name_ends,
+    picture,
+    sheet,
+)
 from .digits import degrees, mpf
 from .points import frequencies, paris, paris_path, paris_swing_plane, window
 
@@ -152,8 +164,8 @@ def _three_orders() -> list[Panel]:
     ]
 
 
-def _zero(begin: float, end: float) -> Line:
-    return Line("", [begin, end], [0, 0], GUIDE)
+def _zero(begin: float, end: float) -> ChartLine:
+    return ChartLine("", [begin, end], [0, 0], GUIDE)
 
 
 def estimate_at(latitude: float) -> float:
@@ -197,7 +209,7 @@ class Panel:
         bare: no axes; the lines are named beside their ends.
     """
 
-    lines: Sequence[Line]
+    lines: Sequence[ChartLine]
     axes: Mapping[str, Any]
     named: bool = False
     height: float = 2.6
@@ -205,13 +217,13 @@ class Panel:
     bare: bool = False
 
 
-def line(name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float = 1.3) -> Line:
+def line(name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float = 1.3) -> ChartLine:
     """Return a line without markers."""
     style = {"color": colour, "linestyle": dashes, "linewidth": width}
-    return Line(name, list(map(float, x)), list(map(float, y)), style)
+    return ChartLine(name, list(map(float, x)), list(map(float, y)), style)
 
 
-def dots(name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none") -> Line:
+def dots(name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none") -> ChartLine:
     """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
     joined, faint = line(name, x, y, colour, dashes, 0.7), mark == "."
     style = {"marker": mark, "markersize": size} | ({} if faint else {"markerfacecolor": "none"})

@@ -8,7 +8,7 @@ from dataclasses import asdict, fields
 from reference.system.documents import texts_of
 
 from ..report.folder import PAGE, json_text
-from ..report.page import Html, Table, choices, faint, page, paragraph, plate, section, strong
+from ..report.page import Html, PageTable, choices, faint, page, paragraph, plate, section, strong
 from .checks import VERDICTS, JudgedRow
 from .figures import CAPTIONS, FIGURES
 
@@ -25,7 +25,7 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
     documents = list(map(asdict, rows))
     return {
         **{f"figure_{number}.svg": svg for number, svg in figures.items()},
-        "rows.csv": Table.of_records((field.name for field in fields(JudgedRow)), documents).csv(),
+        "rows.csv": PageTable.of_records((field.name for field in fields(JudgedRow)), documents).csv(),
         "rows.json": json_text({"rows": documents}),
         PAGE: page_text(rows, figures),
     }
@@ -49,18 +49,18 @@ def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
 
 def _counted(counts: dict[str, int]) -> Html:
     rows = [(strong(word), count, TEXTS["meaning"][word]) for word, count in counts.items()]
-    return Table({"verdict": "", "lines": "number", "meaning": "prose"}, rows, list(counts)).html()
+    return PageTable({"verdict": "", "lines": "number", "meaning": "prose"}, rows, list(counts)).html()
 
 
 def _not_judged() -> Html:
     rows = [tuple(line.values()) for line in TEXTS["not_judged"]]
-    return Table({"place": "", "printed": "prose", "why there is no verdict": "prose"}, rows).html()
+    return PageTable({"place": "", "printed": "prose", "why there is no verdict": "prose"}, rows).html()
 
 
 def _lines(rows: Sequence[JudgedRow]) -> Html:
     columns = dict.fromkeys(("place", "printed", "recomputed", "verdict"), "wrapped")
     cells = [(row.place, row.printed, row.recomputed, _verdict(row)) for row in rows]
-    return Table(columns, cells, [row.verdict for row in rows], [row.id for row in rows]).html()
+    return PageTable(columns, cells, [row.verdict for row in rows], [row.id for row in rows]).html()
 
 
 def _verdict(row: JudgedRow) -> Html:

@@ -18,7 +18,7 @@ from reference.model.constants import Constants, constants
 from reference.numbers.precision import LONG_DOUBLE, Array, to_fraction
 from reference.scenes.shipped import golden_root
 
-from ..approximations.case import Case
+from ..approximations.case import PaperCase
 from ..observed.swing_plane import Gauge
 from .digits import MP, Vector, cos, mpf, radians, sin, sqrt, vector
 
@@ -116,9 +116,9 @@ class Point:
         return replace(self.k, pull=(0, 0, -self.gravity / self.length), centrifugal=(0, 0, 0, 0))
 
     @cached_property
-    def case(self) -> Case:
+    def case(self) -> PaperCase:
         """The same numbers as the approximations take them."""
-        return Case(MP, self.k, tuple(self.position), tuple(self.velocity))
+        return PaperCase(MP, self.k, tuple(self.position), tuple(self.velocity))
 
     @cached_property
     def angle_functions(self) -> tuple[Any, Any, Any, Any]:

@@ -15,9 +15,9 @@ from ..approximations import APPROXIMATIONS, motions
 from ..studies.approximation_errors import TimeRow, error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, UNITS, SweepRow
 from ..studies.approximation_limits import limits as limits_of
-from .drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
+from .drawing import COLOURS, FAINT, GUIDE, ChartLine, draw, legend, limits, line_style, logarithmic, sheet, svg_text
 from .folder import Report
-from .page import Html, Table, figure, page, paragraph, section
+from .page import Html, PageTable, figure, page, paragraph, section
 
 Swept = dict[str, list[SweepRow]]  # rows of sweeps, by what is varied
 OVERS = ("time", "amplitude", "latitude", "length")
@@ -115,7 +115,7 @@ def page_text(scene: Scene, swept: Swept, report: dict[str, Any]) -> str:
     )
 
 
-def _errors(report: dict[str, Any], measured: Mapping[str, str]) -> Table:
+def _errors(report: dict[str, Any], measured: Mapping[str, str]) -> PageTable:
     """Return a table with one row for each approximation: errors up to each time, of which each has its unit."""
     times = sorted({row["t"] for row in report["rows"]})
     heads = [f"{unit}, up to {t:g} s" for unit in measured.values() for t in times]
@@ -124,24 +124,24 @@ def _errors(report: dict[str, Any], measured: Mapping[str, str]) -> Table:
         values = [errors[t][what] for what in measured for t in times]
         remark = "" if errors[times[0]]["status"] == Status.OK else "does not apply to this scene"
         rows.append((name, *("" if value is None else f"{value:.3g}" for value in values), remark))
-    return Table({"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}, rows)
+    return PageTable({"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}, rows)
 
 
-def _limits(report: dict[str, Any], over: str) -> Table:
+def _limits(report: dict[str, Any], over: str) -> PageTable:
     rows = [row for row in report["limits"] if row["over"] == over]
     columns = {"approximation": "", **{f"within {name}": "number" for name, _, _ in LIMITS}}
     cells = [
         (name, *(_intervals(good[limit]) for limit, _, _ in LIMITS))
         for name, good in _by_approximation(rows, "limit").items()
     ]
-    return Table(columns, cells)
+    return PageTable(columns, cells)
 
 
 def _intervals(row: dict[str, Any]) -> str:
     return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in row["good"]) or "nowhere"
 
 
-def _quantities(report: dict[str, Any]) -> Table:
+def _quantities(report: dict[str, Any]) -> PageTable:
     columns = {"approximation": "", "value": "number", "reference": "number", "unit": "", "relative error": "number"}
     rows = [
         (
@@ -150,12 +150,14 @@ def _quantities(report: dict[str, Any]) -> Table:
         )
         for row in report["quantities"]
     ]  # fmt: skip
-    return Table(columns, rows)
+    return PageTable(columns, rows)
 
 
 def _about() -> Html:
     columns = {"id": "", "description": "prose", "source": "prose", "leaves out": "prose"}
-    return Table(columns, [(each.id, each.title, each.where, each.drops) for each in APPROXIMATIONS.values()]).html()
+    return PageTable(
+        columns, [(each.id, each.title, each.where, each.drops) for each in APPROXIMATIONS.values()]
+    ).html()
 
 
 def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
@@ -197,7 +199,7 @@ def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
         return svg_text(figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}.")
 
 
-def _lines(rows: Sequence[TimeRow], what: str) -> list[Line]:
+def _lines(rows: Sequence[TimeRow], what: str) -> list[ChartLine]:
     """Return the lines of the rows, the one with the largest last error first."""
     groups: list[tuple[list[str], Any, Any]] = []
     for name in dict.fromkeys(row.approximation for row in rows):
@@ -211,7 +213,9 @@ def _lines(rows: Sequence[TimeRow], what: str) -> list[Line]:
             groups.append(([name], x, y))
     groups.sort(key=lambda group: -group[2][-1])
     return [
-        Line(_wrapped(names), x.tolist(), y.tolist(), line_style(COLOURS[i % len(COLOURS) - 1], i))  # the darkest first
+        ChartLine(
+            _wrapped(names), x.tolist(), y.tolist(), line_style(COLOURS[i % len(COLOURS) - 1], i)
+        )  # the darkest first
         for i, (names, x, y) in enumerate(groups)
     ]
 

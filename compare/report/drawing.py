@@ -185,7 +185,7 @@ def limits(values: Sequence[float], low: float = 0.6, high: float = 1.8) -> tupl
 
 
 @dataclass(frozen=True)
-class Line:
+class ChartLine:
     """A line of a chart.
 
     Attributes:
@@ -203,7 +203,7 @@ class Line:
     markers: float = 0.0
 
 
-def draw(axes: Any, lines: Sequence[Line]) -> None:
+def draw(axes: Any, lines: Sequence[ChartLine]) -> None:
     """Draw lines with their markers."""
     for line in lines:
         axes.plot(line.x, line.y, **{**line.style, "marker": ""}, zorder=3)
@@ -211,7 +211,7 @@ def draw(axes: Any, lines: Sequence[Line]) -> None:
             axes.plot(line.x, line.y, **{**line.style, "linestyle": "none"}, alpha=line.markers, zorder=4)
 
 
-def legend(axes: Any, lines: Sequence[Line], *, size: float = 8.0, inside: bool = False) -> None:
+def legend(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0, inside: bool = False) -> None:
     """Name lines in a legend right of the axes, or inside them where they leave most room."""
     from matplotlib.lines import Line2D
 
@@ -223,7 +223,7 @@ def legend(axes: Any, lines: Sequence[Line], *, size: float = 8.0, inside: bool 
     axes.legend(handles=handles, fontsize=size, labelspacing=0.35, handlelength=3, **where)
 
 
-def name_ends(axes: Any, lines: Sequence[Line], *, size: float = 8.0) -> None:
+def name_ends(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> None:
     """Write the name of each line beside its end: right of it, or left of it where x is below zero."""
     for line in lines:
         side = -1 if line.x[-1] < 0 else 1

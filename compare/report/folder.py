@@ -14,7 +14,7 @@ from reference.plain_text import plain_json
 from reference.system.checksums import SUMS, sums_text
 from reference.system.workspace import replace_file
 
-from .page import MARK, Table
+from .page import MARK, PageTable
 
 CSV, PAGE = "rows.csv", "index.html"
 _HEAD = 1024  # bytes at the start of a page that hold its mark
@@ -43,7 +43,7 @@ class Report:
         """Write the files as `write_files` does, and return the path of the page; `document["rows"]` is the table."""
         if out is None:
             return None
-        rows = Table.of_records(document["rows"][0], document["rows"]).csv()
+        rows = PageTable.of_records(document["rows"][0], document["rows"]).csv()
         write_files(out, {CSV: rows, self.json: json_text(document), PAGE: self.page(document)})
         return out / PAGE
 

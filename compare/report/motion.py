@@ -27,7 +27,7 @@ _FLAT = 0.5  # where the shorter axis is longer than this part of the longer one
 
 
 @dataclass(frozen=True)
-class Motion:
+class PicturedMotion:
     """A motion as pictures show it.
 
     Attributes:
@@ -60,7 +60,7 @@ class Motion:
         return bool(self.length) and bool((self.rows[:, 2] > WIDE * self.length).any())
 
     @classmethod
-    def of_golden(cls, golden: Golden | Solution, until: float = np.inf) -> Motion:
+    def of_golden(cls, golden: Golden | Solution, until: float = np.inf) -> PicturedMotion:
         """Take a motion from a golden dataset or a solution, up to a time in s.
 
         One run in double fills the line in between far rows.
@@ -79,7 +79,7 @@ class Motion:
         )  # fmt: skip
 
     @classmethod
-    def of_candidate(cls, candidate: Candidate) -> Motion:
+    def of_candidate(cls, candidate: Candidate) -> PicturedMotion:
         """Take a motion from a candidate's rows; its swing plane is the longest axis of the rows around each time."""
         x, y = candidate.columns["x"], candidate.columns["y"]
         z = candidate.columns.get("z", np.full(len(x), np.nan))

@@ -14,7 +14,7 @@ from reference.numbers.precision import Array
 from reference.plain_text import shortened
 
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
-from .motion import POINTS, Motion
+from .motion import POINTS, PicturedMotion
 
 DOTS = 360  # of one kind in a panel at most
 LINE = 1200  # points of a path at most
@@ -31,7 +31,7 @@ THUMB, THUMB_POINTS = 200, 400  # a thumbnail's side in units of its own, and it
 LONGEST_NAME = 40  # characters of a file's name above its picture
 
 
-def path(axes: Any, motion: Motion) -> None:
+def path(axes: Any, motion: PicturedMotion) -> None:
     """Draw the path from above: the whole of it, or some swings spread over the span, or the rows alone."""
     size = float(np.nanmax(np.abs(np.concatenate([motion.rows, motion.line])[:, :2]))) or 1.0
     scale, unit = length_unit(size)
@@ -48,7 +48,7 @@ def path(axes: Any, motion: Motion) -> None:
     axes.grid(True)
 
 
-def sphere(axes: Any, motion: Motion) -> None:
+def sphere(axes: Any, motion: PicturedMotion) -> None:
     """Draw the path on its sphere, seen from the south-east and from above; what lies behind is faint."""
     right, up, depth = _seen((_line(motion) if len(motion.line) else motion.rows) / motion.length)
     turn = np.linspace(0, 2 * np.pi, 73)
@@ -65,7 +65,7 @@ def sphere(axes: Any, motion: Motion) -> None:
     axes.set_axis_off()
 
 
-def plane(axes: Any, motion: Motion) -> None:
+def plane(axes: Any, motion: PicturedMotion) -> None:
     """Draw the azimuth of the swing plane against time; where it turns little by little, it does not leap."""
     steps = (np.diff(motion.plane) + 90) % 180 - 90
     smooth = np.abs(steps).max() < 60
@@ -83,7 +83,7 @@ def plane(axes: Any, motion: Motion) -> None:
     axes.grid(True)
 
 
-def transits(axes: Any, motion: Motion) -> None:
+def transits(axes: Any, motion: PicturedMotion) -> None:
     """Draw x at each transit against its time: the turning points in the east, and those in the west."""
     scale, unit = length_unit(float(np.abs(motion.transit_x).max(initial=0.0)) or 1.0)
     seconds, word = time_unit(float(motion.t[-1]))
@@ -96,7 +96,7 @@ def transits(axes: Any, motion: Motion) -> None:
     axes.grid(True)
 
 
-def panels(motion: Motion) -> dict[str, Callable[[Any, Motion], None]]:
+def panels(motion: PicturedMotion) -> dict[str, Callable[[Any, PicturedMotion], None]]:
     """Return the pictures that there are of a motion, by name."""
     pictures = {
         "path": (path, True),
@@ -107,7 +107,7 @@ def panels(motion: Motion) -> dict[str, Callable[[Any, Motion], None]]:
     return {name: draw for name, (draw, shown) in pictures.items() if shown}
 
 
-def motion_picture(motion: Motion, names: Sequence[str], target: Path) -> bytes:
+def motion_picture(motion: PicturedMotion, names: Sequence[str], target: Path) -> bytes:
     """Return the content of a picture file with panels side by side; the file's name says which form."""
     drawn = panels(motion)
     with sheet((PANEL[0] * len(names), PANEL[1] + 0.3)) as figure:
@@ -117,7 +117,7 @@ def motion_picture(motion: Motion, names: Sequence[str], target: Path) -> bytes:
         return picture(figure, target.suffix[1:].lower())
 
 
-def motion_svgs(motion: Motion) -> list[str]:
+def motion_svgs(motion: PicturedMotion) -> list[str]:
     """Return each picture as an SVG element of its own, small and for a page."""
     elements = []
     for name, draw in panels(motion).items():
@@ -131,7 +131,7 @@ def motion_svgs(motion: Motion) -> list[str]:
     return elements
 
 
-def thumbnail(motion: Motion) -> str:
+def thumbnail(motion: PicturedMotion) -> str:
     """Return the path, from above or on its sphere, as a small SVG element without words."""
     points = _thinned(_line(motion) if len(motion.line) else motion.rows, THUMB_POINTS)
     right, up = _seen(points / motion.length)[:2] if motion.wide else points[:, :2].T
@@ -167,7 +167,7 @@ def time_unit(span: float) -> tuple[float, str]:
     return 1e3, "ms"
 
 
-def _shown(motion: Motion) -> str:
+def _shown(motion: PicturedMotion) -> str:
     seconds, word = time_unit(float(motion.t[-1]))
     whole = f"{motion.t[-1] * seconds:.3g} {word}"
     if not len(motion.line):
@@ -175,7 +175,7 @@ def _shown(motion: Motion) -> str:
     return f"{motion.swings} of the swings in {whole}" if motion.swings else whole
 
 
-def _line(motion: Motion) -> Array:
+def _line(motion: PicturedMotion) -> Array:
     """Return the points of the line; single swings are short enough."""
     return motion.line if motion.swings else _thinned(motion.line, LINE)
 

@@ -129,7 +129,7 @@ def _source(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """Columns and rows.
 
     Attributes:
@@ -146,7 +146,7 @@ class Table:
     anchors: Sequence[str] = ()
 
     @classmethod
-    def of_records(cls, names: Iterable[str], records: Iterable[Mapping[str, Any]]) -> Table:
+    def of_records(cls, names: Iterable[str], records: Iterable[Mapping[str, Any]]) -> PageTable:
         """Return the rows of a JSON document, with these names as columns."""
         names = list(names)
         return cls(dict.fromkeys(names, ""), [[row.get(name) for name in names] for row in records])

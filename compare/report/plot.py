@@ -18,9 +18,21 @@ from reference.scenes.scene import AnyScene, as_scene
 from ..candidates.candidate import Candidate
 from ..score.verdict import Score
 from ..truth import golden_of
-from .drawing import COLOURS, GUIDE, Line, band, check_target, draw, legend, line_style, logarithmic, picture, sheet
+from .drawing import (
+    COLOURS,
+    GUIDE,
+    ChartLine,
+    band,
+    check_target,
+    draw,
+    legend,
+    line_style,
+    logarithmic,
+    picture,
+    sheet,
+)
 from .folder import write_file
-from .motion import Motion
+from .motion import PicturedMotion
 from .motion_pictures import motion_picture, panels
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
@@ -73,7 +85,7 @@ def motion_of(
     source: Candidate | Golden | Solution | AnyScene,
     announce: Callable[[str], None] | None = None,
     report: Callable[[float], None] | None = None,
-) -> Motion:
+) -> PicturedMotion:
     """Return the motion of a candidate, a solution or a dataset, or of a scene, which is solved if no dataset has it.
 
     Args:
@@ -82,13 +94,15 @@ def motion_of(
         report: called with the simulated time reached, in s.
     """
     if isinstance(source, Candidate):
-        return Motion.of_candidate(source)
+        return PicturedMotion.of_candidate(source)
     if isinstance(source, str | Path) and golden_folder(source).is_dir():
-        return Motion.of_golden(load(source))
+        return PicturedMotion.of_golden(load(source))
     if isinstance(source, Golden | Solution):
-        return Motion.of_golden(source)
+        return PicturedMotion.of_golden(source)
     scene = as_scene(source)
-    return Motion.of_golden(golden_of(scene, announce=announce, report=report, grid=True), float(scene.exact.t_end))
+    return PicturedMotion.of_golden(
+        golden_of(scene, announce=announce, report=report, grid=True), float(scene.exact.t_end)
+    )
 
 
 def error_picture(scores: Sequence[Score], target: Path) -> bytes:
@@ -105,10 +119,12 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     for i, score in enumerate(scores):
         t, error = _thinned(score.errors.t, np.maximum(score.errors.position, bound / 30))
         style = line_style(COLOURS[i % len(COLOURS)], i)
-        lines.append(Line(shortened(Path(score.candidate.name).name, LONGEST_NAME), t.tolist(), error.tolist(), style))
+        lines.append(
+            ChartLine(shortened(Path(score.candidate.name).name, LONGEST_NAME), t.tolist(), error.tolist(), style)
+        )
     end = max(line.x[-1] for line in lines)
     if tolerance < 100 * top:
-        lines.append(Line(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE))
+        lines.append(ChartLine(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE))
         top = max(top, tolerance)
     logarithmic(axes, "y", bound / 30, 3 * top, 12)
     axes.set(xlim=(0, end or 1), xlabel="t in s", ylabel="position error in m")

@@ -21,7 +21,7 @@ from .drawing import (
     GUIDE,
     INK,
     PAPER,
-    Line,
+    ChartLine,
     band,
     draw,
     legend,
@@ -146,18 +146,18 @@ def error_growth(runs: Sequence[LongRun]) -> str:
         return svg_text(figure, "growth", f"Error over time, log-log: {names}.")
 
 
-def _line(run: LongRun, place: int) -> Line:
+def _line(run: LongRun, place: int) -> ChartLine:
     """Return the largest error so far of a run as a line, with the exponent in its name."""
     t, error = np.array(run.t), np.array(run.error_m)
     positive = (t > 0) & (np.maximum.accumulate(error) > 0)
     t, largest = largest_so_far(t[positive], error[positive], _POINTS)
     name = f"{run.method}, {run.formulation}, t^{run.exponent:.2f}"
-    return Line(name, t.tolist(), largest.tolist(), line_style(COLOURS[place % len(COLOURS)], place))
+    return ChartLine(name, t.tolist(), largest.tolist(), line_style(COLOURS[place % len(COLOURS)], place))
 
 
-def _guides(lines: Sequence[Line]) -> list[Line]:
+def _guides(lines: Sequence[ChartLine]) -> list[ChartLine]:
     """Return a fan of guide lines above all lines: slopes are the same everywhere."""
     end = max(line.x[-1] for line in lines) / _BEFORE
     highest = max(float(np.interp(end / _FAN, line.x, line.y)) for line in lines)
     low = highest * max(4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE)
-    return [Line(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]
+    return [ChartLine(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]

@@ -19,7 +19,7 @@ from ..studies.long_runs import LongRun, laws
 from ..studies.stability import WRONG, Cell
 from ..studies.users_program import NUMBER
 from .folder import Report
-from .page import Html, Table, facts, figure, findings, page, paragraph, section
+from .page import Html, PageTable, facts, figure, findings, page, paragraph, section
 from .pareto import tidy
 from .stability_charts import LETTERS, error_growth, heat_map
 from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
@@ -146,7 +146,7 @@ def page_text(document: dict[str, Any]) -> str:
     programs = document["programs"]
     if programs:
         rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
-        parts.append(section("Programs", Table({"name": "wrapped", "command": "wrapped"}, rows).html()))
+        parts.append(section("Programs", PageTable({"name": "wrapped", "command": "wrapped"}, rows).html()))
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
     lead = paragraph(
         "Each method was asked for the same number of digits on every scene, and its result was compared with the "
@@ -166,7 +166,7 @@ def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:
         kept = "" if cell.digits is None else f"{cell.digits:.1f}"
         run = (cell.scene, cell.method, cell.precision, setting(cell), cell.status.words)
         rows.append((*run, f"{cell.asked:.1f}", kept, cpu(cell.cpu_s), cell.reason)[: len(columns)])
-    return Table(columns, rows).html()
+    return PageTable(columns, rows).html()
 
 
 def _scenes(cells: Sequence[Cell]) -> Html:
@@ -177,7 +177,7 @@ def _scenes(cells: Sequence[Cell]) -> Html:
         correct, failed = statuses.count(Status.OK), sum(status not in (Status.OK, *NOT_TRIED) for status in statuses)
         rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))
     columns = {"scene": "", "description": "prose", "flags": "prose", "correct": "number", "failed": "number"}
-    return Table(columns, rows).html()
+    return PageTable(columns, rows).html()
 
 
 def text_table(document: dict[str, Any]) -> str:
@@ -191,7 +191,7 @@ def text_table(document: dict[str, Any]) -> str:
         outcomes = [counts[status] or "" for status in present]
         rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
     numbers = ("setting", "asked", *(status.words for status in present))
-    table = Table({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
+    table = PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
     lines = [*headlines(cells), f"load: {busy(cells)}", "", *table.lines()]
     return "\n".join([*lines, "", *advice(present), *([""] if runs else []), *laws(runs)])
 

@@ -23,7 +23,7 @@ from .drawing import (
     FAINT,
     GUIDE,
     RULE,
-    Line,
+    ChartLine,
     band,
     draw,
     legend,
@@ -58,7 +58,7 @@ FAMILY_COLOURS = {
 
 
 @dataclass(frozen=True)
-class Ladder(Line):
+class Ladder(ChartLine):
     """A method over its settings as a line; `family` is the method's."""
 
     family: Family = Family.OTHERS
@@ -167,10 +167,10 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
         return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
 
 
-def _staircase(best: Sequence[Row], bound_m: float) -> Line:
+def _staircase(best: Sequence[Row], bound_m: float) -> ChartLine:
     """Return the Pareto front as a broad line: across at the error of each row, then down to that of the next."""
     style = {"color": RULE, "linewidth": 7, "solid_joinstyle": "miter", "drawstyle": "steps-post"}
-    return Line("", [cost_of(row) for row in best], [error_of(row, bound_m) for row in best], style)
+    return ChartLine("", [cost_of(row) for row in best], [error_of(row, bound_m) for row in best], style)
 
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:
@@ -261,7 +261,7 @@ def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
     return _single(lines, bound_m, words)
 
 
-def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], diagonal: str = "") -> str | None:
+def _single(lines: Sequence[ChartLine], bound_m: float, words: tuple[str, str, str], diagonal: str = "") -> str | None:
     """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description.
 
     A diagonal is a guide line with this name, on which both coordinates are equal.
@@ -277,7 +277,7 @@ def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], 
         band(axes, bound_m)
         if diagonal:
             ends = axes.get_xlim()
-            lines = [*lines, Line(diagonal, ends, ends, GUIDE)]
+            lines = [*lines, ChartLine(diagonal, ends, ends, GUIDE)]
         draw(axes, lines)
         legend(axes, lines)
         return svg_text(figure, words[0], description)

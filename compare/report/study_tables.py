@@ -21,7 +21,7 @@ from ..studies.row import Row, grouped
 from ..studies.stability import Cell
 from ..studies.study import ObservedOrder, orders
 from ..studies.users_program import FILE
-from .page import Html, Table, strong
+from .page import Html, PageTable, strong
 from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, sentences, tidy
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
@@ -46,7 +46,7 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
             ]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(TEXTS["costs"])
+    return PageTable(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(TEXTS["costs"])
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -56,7 +56,7 @@ def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
         (labels[row.key], setting(row), number(row.error_m), cost(row), row.reason) for row in front(rows, bound_m)
     ]
     columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
-    return Table(columns, cells).html(TEXTS["front"])
+    return PageTable(columns, cells).html(TEXTS["front"])
 
 
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
@@ -79,7 +79,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
             ))  # fmt: skip
-    return Table(columns, cells, kinds).html(TEXTS["rows"])
+    return PageTable(columns, cells, kinds).html(TEXTS["rows"])
 
 
 def failures(rows: Sequence[Row]) -> Html | None:
@@ -94,14 +94,14 @@ def failures(rows: Sequence[Row]) -> Html | None:
         settings = ", ".join(setting(row) for _, row in group)
         cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
     columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
-    return Table(columns, cells, ["failed"] * len(cells)).html(TEXTS["failed"])
+    return PageTable(columns, cells, ["failed"] * len(cells)).html(TEXTS["failed"])
 
 
 def words(statuses: Collection[Status]) -> Html:
     """Return the meaning of the words that stand for these statuses, and what to do about each."""
     columns = {"word": "", "meaning": "prose", "what to do": "prose"}
     rows = [(status.words, status.meaning, status.advice) for status in Status if status in statuses]
-    return Table(columns, rows).html()
+    return PageTable(columns, rows).html()
 
 
 def advice(statuses: Collection[Status]) -> list[str]:
@@ -126,7 +126,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
     ]
     yours += [(row.method, "", "", "", "--candidates", "", "") for row in rows if row.kind == FILE]
     columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
-    return Table(columns, [*body, *yours]).html(TEXTS["orders"])
+    return PageTable(columns, [*body, *yours]).html(TEXTS["orders"])
 
 
 def observed(order: ObservedOrder | None) -> str:
@@ -168,13 +168,13 @@ def text_table(document: dict[str, Any]) -> str:
         f"{document['scene']}: {document['t_end']:g} s, reference {reference['level']}, bound {bound_m:.1e} m",
         f"load: {busy(rows)}",
         "",
-        *Table(columns, measured).lines(),
+        *PageTable(columns, measured).lines(),
         "",
         f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span, so without its error (see --limit)",
     ]
     lost = {row.status for row in rows if row.failed}
     if failed:
-        reasons = Table({"": "", "method": "", "setting": "number", "status": "", "reason": ""}, failed).lines()
+        reasons = PageTable({"": "", "method": "", "setting": "number", "status": "", "reason": ""}, failed).lines()
         lines += ["", "Failed:", *reasons, "", *advice(lost)]
     return "\n".join([*lines, *_orders_as_text(rows, bound_m), "", *sentences(document)]) + "\n"
 

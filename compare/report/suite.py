@@ -23,7 +23,7 @@ from reference.scenes.shipped import DATA_VERSION
 from ..score.document import of_outcome
 from ..score.verdict import REFUSED, Outcome, percent
 from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files
-from .page import Html, Table, findings, page, paragraph, section, text
+from .page import Html, PageTable, findings, page, paragraph, section, text
 
 JSON, BADGE = "suite.json", "badge.svg"
 KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")  # of rows.csv
@@ -68,7 +68,7 @@ def check(out: Path) -> None:
 def write(outcomes: Sequence[Outcome], out: Path) -> None:
     """Write page, badge, JSON and CSV into a folder."""
     document = suite_document(outcomes)
-    rows = Table.of_records(KEYS, document["rows"]).csv()
+    rows = PageTable.of_records(KEYS, document["rows"]).csv()
     write_files(out, {CSV: rows, JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)})
 
 
@@ -101,7 +101,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     numbers = ("covered", "largest error", "tolerance", "digits")
     columns = {"scene": "", "verdict": "", **dict.fromkeys(numbers, "number"), "transits": "", "candidate": "prose"}
     kinds = ["" if outcome.verdict == "agrees" else "failed" for outcome in outcomes]
-    table = Table(columns, list(map(_cells, outcomes)), kinds)
+    table = PageTable(columns, list(map(_cells, outcomes)), kinds)
     parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
     reasons = [
         Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(_main_lines(outcome))}")

@@ -17,7 +17,7 @@ from reference.status import Status
 
 from .drawing import BLUE, RULE, check_target, picture, sheet
 from .folder import write_file
-from .page import Table
+from .page import PageTable
 
 if TYPE_CHECKING:
     from reference import Swept
@@ -111,7 +111,7 @@ def text(swept: Swept, out: Path | None) -> str:
             results = [_cell(row[column.name], row.get(column.error)) if ok else "" for column in shown]
             rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
         named = (*keys, *(heads[column.name] for column in shown))
-        lines += Table({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
+        lines += PageTable({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {counted(swept.request.parts, 'part')} in Parquet")
     if swept.audit is not None:

@@ -12,7 +12,7 @@ from reference import FoucaultError, InputError, Scene, parse_scene
 from reference.status import Status
 
 from ..approximations.approximation import Motion
-from ..approximations.case import Case
+from ..approximations.case import PaperCase
 from .approximation_errors import ReferenceMotion, TimeRow
 from .row import failure
 
@@ -152,7 +152,7 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
     text = repr(float(value))
     if over == "latitude" or (over == "length" and scene.exact.position is None):
         return scene.with_values({over: text})
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     (x, y), (vx, vy), target = case.position[:2], case.velocity[:2], case.ctx.mpf(text)
     document = scene.model_dump(exclude_none=True)
     if over == "length":

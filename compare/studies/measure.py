@@ -25,7 +25,7 @@ from reference import Scene, load
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..methods.method import Method, Outcome, Work, available
+from ..methods.method import Method, RunOutcome, Work, available
 from ..methods.rhs.problem import Problem, suited
 from .campaign import Item, Measurement, Result, load_per_core
 from .row import FAILURES, GridTruth, Row, failure, h_drift
@@ -96,7 +96,7 @@ class Bench:
 
     def _run(
         self, base: Row, method: Method, times: Array, repeats: int, budget_s: float = REPEAT_S
-    ) -> tuple[Row, Outcome, list[float]]:
+    ) -> tuple[Row, RunOutcome, list[float]]:
         """Run a method to the end of `times`; return the row with what compiling took, the outcome, and CPU seconds.
 
         It is repeated while all runs take less than `budget_s`, and if it came to its end.
@@ -110,7 +110,7 @@ class Bench:
             costs_s.append(timed(work)[1])
         return base, outcome, costs_s
 
-    def _row_of(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
+    def _row_of(self, base: Row, outcome: RunOutcome, cpu_s: float) -> Row:
         """Return the row with what a run tells of itself, however far it came."""
         return replace(
             base,
@@ -123,7 +123,7 @@ class Bench:
         )
 
     def _finished(
-        self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array, whole_s: float
+        self, base: Row, method: Method, outcome: RunOutcome, costs_s: Sequence[float], times: Array, whole_s: float
     ) -> Row:
         """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span.
 
@@ -190,7 +190,7 @@ def _spent_s() -> float:
     return time.process_time() + times.children_user + times.children_system
 
 
-def timed(work: Work) -> tuple[Outcome, float]:
+def timed(work: Work) -> tuple[RunOutcome, float]:
     """Run a prepared method; return its outcome and its CPU seconds."""
     started = time.process_time()
     outcome = work()

@@ -17,7 +17,7 @@ from reference.numbers.precision import Array, context, to_mpf
 from reference.status import Status
 
 from ..candidates.candidate import COLUMNS
-from ..methods.method import Outcome
+from ..methods.method import RunOutcome
 
 T = TypeVar("T")
 K = TypeVar("K")
@@ -133,13 +133,13 @@ class GridTruth:
         t = self.golden.transits["t"]
         return np.asarray(t[t < self.times[-1]])
 
-    def position_errors(self, outcome: Outcome) -> Array:
+    def position_errors(self, outcome: RunOutcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         columns = [_column(outcome, name) for name in "xyz"]
         off = [difference(column, true[: len(column)]) for column, true in zip(columns, self.exact, strict=True)]
         return np.asarray(np.linalg.norm(off, axis=0))
 
-    def transit_errors(self, scene: Scene, outcome: Outcome) -> tuple[Array, float]:
+    def transit_errors(self, scene: Scene, outcome: RunOutcome) -> tuple[Array, float]:
         """Return the error of each transit's time in s, in any number type, and what is resolved of it in s.
 
         The error is that of one Newton step from the state at the true time. What is resolved is limited by the
@@ -163,7 +163,7 @@ class GridTruth:
         return np.where(np.isfinite(errors_s), errors_s, np.inf), float(floors.max())
 
 
-def h_drift(scene: Scene, outcome: Outcome) -> float | None:
+def h_drift(scene: Scene, outcome: RunOutcome) -> float | None:
     """Return the drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
     if scene.exact.drag:
         return None
@@ -196,6 +196,6 @@ def difference(a: Column, b: Column) -> Array:
     return np.array([float(Fraction(p) - Fraction(q)) for p, q in zip(a, b, strict=True)])
 
 
-def _column(outcome: Outcome, name: str) -> Column:
+def _column(outcome: RunOutcome, name: str) -> Column:
     """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
     return outcome.states[:, COLUMNS.index(name)] if outcome.exact is None else outcome.exact.exact(name)

@@ -18,7 +18,7 @@ from ..numbers.columns import POSITION, STATE, UNITS
 from ..numbers.function import GoldenFunction
 from ..numbers.precision import Array, rounded_up
 from ..scenes.scene import Reading, Scene
-from .manifest import Decimal, Manifest, Name, Part, Text
+from .manifest import Decimal, Manifest, ManifestPart, Name, Text
 from .sheets import GRID_HEADER, TRANSITS_HEADER, Sheet
 
 INSIDE = (32, 256, 2048)  # times in a piece at which the sign of xdot is looked at, for the transits between them
@@ -27,7 +27,7 @@ HALVINGS = 64  # of the time between two signs
 Hexfloat = Annotated[str, Field(pattern=r"^0x[01]\.[0-9a-f]{1,13}p[+-][0-9]{1,4}$")]
 
 
-class FunctionRecord(Part):
+class FunctionRecord(ManifestPart):
     """`function.json`: what the doubles of `function.f64` are, and how far their values may be from the truth."""
 
     schema_version: Literal[3]  # manifest.FORMAT

@@ -54,7 +54,7 @@ def text_of(document: dict[str, Any]) -> str:
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
 
-class Part(BaseModel):
+class ManifestPart(BaseModel):
     """A document or a part of one: frozen, without extra keys; read from a dictionary or from what has its names."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, from_attributes=True)
@@ -64,7 +64,7 @@ class Part(BaseModel):
         return text_of(self.model_dump())
 
 
-class Bounds(Part):
+class Bounds(ManifestPart):
     """How far any printed number may be from the truth, rounding to its digits included: m, m/s, s, m/s².
 
     The first three are the largest of their kind, `transit_s` only where there are transits; `grid` and `transits` are
@@ -78,7 +78,7 @@ class Bounds(Part):
     transits: dict[Name, Decimal]
 
 
-class Counts(Part):
+class Counts(ManifestPart):
     """Rows of the tables; `possible` are transits that could not be decided."""
 
     grid: Count
@@ -86,14 +86,14 @@ class Counts(Part):
     possible: Count
 
 
-class Invariant(Part):
+class Invariant(ManifestPart):
     """h = v²/2 + g z - Ω²/2 (x² + q²) at t = 0 in m²/s², and its largest change over the printed rows."""
 
     h_m2_s2: Decimal
     drift_m2_s2: Decimal
 
 
-class Equations(Part):
+class Equations(ManifestPart):
     """The formulation that the numbers come from, its compiled lines, and what the scene left out."""
 
     formulation: Name
@@ -101,7 +101,7 @@ class Equations(Part):
     left_out: list[Text]
 
 
-class RunRecord(Part):
+class RunRecord(ManifestPart):
     """A run: formulation, number type, order and steps of the Taylor method."""
 
     formulation: Name
@@ -118,7 +118,7 @@ class CrossCheckRecord(RunRecord):
     transit_s: Decimal | None
 
 
-class Possible(Part):
+class Possible(ManifestPart):
     """An interval in s that may hold transits which no enclosure can decide (a grazing zero)."""
 
     from_s: Decimal
@@ -126,7 +126,7 @@ class Possible(Part):
     parity: Literal["odd", "even", "unknown"]
 
 
-class SectionsRecord(Part):
+class SectionsRecord(ManifestPart):
     """What `sections.csv` holds: digits and largest bound of each column; of each section its passages.
 
     `counts` are its rows, and `possible` intervals in which the proof could not decide.
@@ -138,7 +138,7 @@ class SectionsRecord(Part):
     possible: dict[Name, list[Possible]]
 
 
-class EnclosureRecord(Part):
+class EnclosureRecord(ManifestPart):
     """The proof: its method, size and largest radii, and the bits to which the run that was proved agrees with it."""
 
     method: Name
@@ -151,7 +151,7 @@ class EnclosureRecord(Part):
     agreement_bits: int
 
 
-class FileRecord(Part):
+class FileRecord(ManifestPart):
     """Size and hash of a file of the dataset."""
 
     bytes: Count
@@ -164,7 +164,7 @@ class FileRecord(Part):
         return cls(bytes=len(data), sha256=hashlib.sha256(data).hexdigest())
 
 
-class Manifest(Part):
+class Manifest(ManifestPart):
     """`manifest.json`; numbers that matter are strings.
 
     `seal` is the sha256 of the same text with an empty seal. It finds accidents; a forger can make it again.

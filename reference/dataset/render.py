@@ -13,7 +13,19 @@ from ..solver.solution import SAMPLED, Solution
 from ..system.documents import texts_of
 from .function import FunctionRecord
 from .making import CONFIRM, Making
-from .manifest import ALWAYS, FORMAT, FUNCTION, MANIFEST, Content, Decimal, FileRecord, Manifest, Name, Part, Text
+from .manifest import (
+    ALWAYS,
+    FORMAT,
+    FUNCTION,
+    MANIFEST,
+    Content,
+    Decimal,
+    FileRecord,
+    Manifest,
+    ManifestPart,
+    Name,
+    Text,
+)
 from .record import manifest_of
 from .sheets import (
     GRID_HEADER,
@@ -171,7 +183,7 @@ def _how_to(manifest: Manifest) -> list[str]:
     ]
 
 
-class Value(Part):
+class Value(ManifestPart):
     """A number: as a decimal, as the nearest double, and how far the decimal may be from the truth, in its unit."""
 
     decimal: Decimal
@@ -179,7 +191,7 @@ class Value(Part):
     bound: Decimal
 
 
-class StateVector(Part):
+class StateVector(ManifestPart):
     """The state at a grid time; `row` counts the rows of `grid.csv` from 1."""
 
     row: int
@@ -187,7 +199,7 @@ class StateVector(Part):
     values: dict[Name, Value]
 
 
-class TransitVector(Part):
+class TransitVector(ManifestPart):
     """A zero of xdot; `k` is its number in `transits.csv`, and the direction is +1 where xdot goes from - to +."""
 
     k: int
@@ -196,7 +208,7 @@ class TransitVector(Part):
     values: dict[Name, Value]
 
 
-class Vectors(Part):
+class Vectors(ManifestPart):
     """`vectors.json`: the inputs of a scene, and what a program has to give for them."""
 
     schema_version: int

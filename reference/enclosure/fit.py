@@ -29,7 +29,7 @@ LEAST = Fraction(1, 1 << 59)  # length of a piece in s
 WIDER = Fraction(GRAIN + 1, GRAIN)  # unit of a step's series that has to reach farther back
 
 
-class Fit:
+class FunctionFit:
     """Proposes a piece for each step of a course: the series of its own polynomials, in doubles."""
 
     def __init__(self, course: Course) -> None:

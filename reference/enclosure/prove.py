@@ -158,9 +158,12 @@ class _Run:
         fit, steps, count, known, spent = None, chain([first], steps), 0, 0, 0.0
         # a proof rests on the code of a function only where it has one
         if self.function:
-            from .fit import Fit, on_doubles
+            from .fit import FunctionFit, on_doubles
 
-            fit, steps = Fit(course), on_doubles(steps)  # the same polynomials, each ended at the double below its end
+            fit, steps = (
+                FunctionFit(course),
+                on_doubles(steps),
+            )  # the same polynomials, each ended at the double below its end
         for step in until(steps, end):
             begun = process_time()
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))

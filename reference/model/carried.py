@@ -34,11 +34,11 @@ def carried(formulation: Formulation, start: Start, number: Callable[[Any], Any]
     if not names:
         return formulation
     values = zip(formulation.variables, start.state(formulation), strict=True)
-    return Carried(formulation, {name: number(value) for name, value in values if name in names})
+    return CarriedFormulation(formulation, {name: number(value) for name, value in values if name in names})
 
 
 @dataclass(frozen=True)
-class Carried:
+class CarriedFormulation:
     """A formulation of which only some variables are integrated.
 
     Attributes:

@@ -39,7 +39,7 @@ _EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
 @dataclass(frozen=True)
-class Table:
+class AxisTable:
     """Rows of exact values: all combinations of the values of fields, the last one fastest, or a list.
 
     Attributes:
@@ -51,7 +51,7 @@ class Table:
     typed: dict[str, str] | None = None
 
     @classmethod
-    def of(cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading) -> Table:
+    def of(cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading) -> AxisTable:
         """Return the rows of which `typed` and `stored` are written down."""
         values = {key: tuple(texts) for key, texts in stored.items()}
         if typed is None:
@@ -145,7 +145,7 @@ def _check_key(option: str, key: str) -> None:
         raise unknown(option, key, "a field that a sweep can vary", varied_names(), "`foucault show SCENE` lists them.")
 
 
-def grid(words: Iterable[str], reading: Reading) -> Table:
+def grid(words: Iterable[str], reading: Reading) -> AxisTable:
     """Read `--over` words, and check their values.
 
     Raises:
@@ -158,7 +158,7 @@ def grid(words: Iterable[str], reading: Reading) -> Table:
         if key in values:
             raise InputError("--over", key, "each field once")
         values[key], typed[key] = texts, typed_values
-    table = Table(values, typed)
+    table = AxisTable(values, typed)
     if table.count > MOST_ROWS:
         raise InputError("--over", f"{table.count} rows", f"at most {MOST_ROWS:,} rows")
     return table
@@ -221,7 +221,7 @@ def _exactly(key: str, text: str) -> Fraction:
     return Fraction(text)
 
 
-def listed(path: Path) -> Table:
+def listed(path: Path) -> AxisTable:
     """Read a file of rows.
 
     Raises:
@@ -235,7 +235,7 @@ def listed(path: Path) -> Table:
         _check_key("--rows", name)
     if not columns or not columns[0][1]:
         raise InputError("--rows", str(path), "a line of names of fields, and rows below it")
-    return Table(dict(columns))
+    return AxisTable(dict(columns))
 
 
 def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:

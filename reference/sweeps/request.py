@@ -27,7 +27,7 @@ from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene, checked_value, parse_scene
 from ..system.imports import needed
-from .axes import TEXTS, Table, grid, listed
+from .axes import TEXTS, AxisTable, grid, listed
 from .parquet import (
     AMPLITUDE,
     COLUMNS,
@@ -71,7 +71,7 @@ class Request:
     """
 
     scene: Scene
-    table: Table
+    table: AxisTable
     want: tuple[str, ...]
     level: Level
     digits: int | None
@@ -154,7 +154,7 @@ class Request:
     def of(cls, document: dict[str, Any]) -> Request:
         """Return the request that `document` wrote."""
         scene = parse_scene(document["scene"])
-        table = Table.of(document["over"], document["values"], scene.inputs)
+        table = AxisTable.of(document["over"], document["values"], scene.inputs)
         return cls(scene, table, **{name: document[name] for name in SETTINGS})
 
     @cached_property

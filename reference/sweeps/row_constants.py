@@ -21,7 +21,7 @@ from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, s
 from ..numbers.precision import Array
 from ..scenes.inputs import RELEASES, GravityIs, Inputs, azimuth_of
 from ..scenes.scene import Scene
-from .axes import Table
+from .axes import AxisTable
 
 Columns = Mapping[str, DoubleDouble]
 
@@ -41,7 +41,7 @@ def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
     return {name: DoubleDouble.of([value]) for name, value in named.items()}
 
 
-def engine_rows(scene: Scene, table: Table, numbers: Any, section: str = "") -> Rows:
+def engine_rows(scene: Scene, table: AxisTable, numbers: Any, section: str = "") -> Rows:
     """Return the constants and releases of rows; not finite where something is wrong with the scene.
 
     Args:
@@ -62,7 +62,7 @@ def engine_rows(scene: Scene, table: Table, numbers: Any, section: str = "") -> 
     return Rows.joined(blocks)[np.argsort(np.concatenate(order))]
 
 
-def _of_kind(scene: Scene, table: Table, numbers: Any, section: str) -> Rows:
+def _of_kind(scene: Scene, table: AxisTable, numbers: Any, section: str) -> Rows:
     """Return rows whose words are those of the scene."""
     columns = columns_of(scene.exact)
     with np.errstate(all="ignore"):

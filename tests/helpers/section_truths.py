@@ -74,7 +74,7 @@ def forms_hold(module):
             sizes = [Fraction(part in (i, 4), 100) for i in range(3)]
             with ctx.workprec(BITS + 64):
                 numbers = [ball(Fraction(x)) for x in a], [ball(Fraction(x)) for x in b], ball(Fraction(d))
-                made = module.Form(Covered(piece, Tube(*map(ball, sizes))), *numbers)
+                made = module.SectionSlope(Covered(piece, Tube(*map(ball, sizes))), *numbers)
             for s, side in product(motions, (1, -1)):
                 r, v, w = ([*x] for x in motions[s])
                 for i, x in enumerate((r, v, w)):
@@ -145,7 +145,7 @@ def wide_forms_hold(module):
         middle = [Fraction(x) for x in (1, -2, 3, 2, 1, -1, 1)]
         with ctx.workprec(BITS + 64):
             wide = [ball(x) + (arb(0, ball(off)) if i == place else 0) for i, x in enumerate(middle)]
-            made = module.Form(Covered(piece, still), wide[:3], wide[3:6], wide[6])
+            made = module.SectionSlope(Covered(piece, still), wide[:3], wide[3:6], wide[6])
         for side, s in product((1, -1), (Fraction(-1), Fraction(1, 2), Fraction(1))):
             member = [x + side * off * (i == place) for i, x in enumerate(middle)]
             r, v, w = ([sum(Fraction(c, unit) * f(k) for k, c in enumerate(x)) for x in rows[:3]] for f in _powers(s))
@@ -168,7 +168,7 @@ def few_bits_hold(module):
     tube, ends = Tube(*map(arb, ("1e-9", "2e-9", "3e-9"))), [Fraction(k, 8) for k in range(-8, 9)]
     for (x, m), (n, (low, high)) in product(((1, 0), (0, 1), (2, 1)), product((0, 1), combinations(ends, 2))):
         with ctx.workprec(BITS + 64):
-            made = module.Form(Covered(piece, tube), [arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0))
+            made = module.SectionSlope(Covered(piece, tube), [arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0))
             both = [made.at(n, ball(s)) for s in (low, high)]
         with ctx.workprec(64):
             assert all(made.at(n, ball(s)).contains(y) for s, y in zip((low, high), both, strict=True)), "at a place"
@@ -206,7 +206,7 @@ def apses_hold(module):
         step = TaylorStep(Fraction(0), Fraction(3), Fraction(-1), Fraction(1), BITS, (x, [0], z, [0]), EARTH)
         piece, tube = Piece(balls, step), Tube(*(arb(float(np.linalg.norm(q))) for q in missed))
         numbers = [arb(0)] * 3, [arb(b[0]), arb(0), arb(b[1])], arb(0)
-        made, plain = module.Apsis(Covered(piece, tube), *numbers), module.Form(Covered(piece, tube), *numbers)
+        made, plain = module.Apsis(Covered(piece, tube), *numbers), module.SectionSlope(Covered(piece, tube), *numbers)
         for n in (0, 1):
             assert abs(b @ missed[n + 1]) <= float(made.forms[n][1].rad()) * (1 + 1e-6), (b, n, missed)
         if b == tilted and missed[1].any():  # what it is for

@@ -20,14 +20,14 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
-from ..case import Case, Explanation, largest
+from ..case import Explanation, FileCase, largest
 from ..causes import Cause, causes_of, fitted_number
 from ..explain import KnownScene
-from ..families import Fit, fits_of
+from ..families import FamilyFit, fits_of
 from ..fitted import MODELS, clean_share, polished, ranked, readers_of, sized
 from ..gate import Evidence, supported_causes
 from ..programs import Program
-from ..readings import Reading
+from ..readings import CauseReading
 from ..stepped import LONGEST, Steps, step_cause
 
 # how a cause follows the scene
@@ -49,11 +49,11 @@ class Trial:
     """
 
     problem: KnownScene
-    case: Case
+    case: FileCase
     setting: float = 1.0
 
     @cached_property
-    def fits(self) -> dict[str, Fit]:
+    def fits(self) -> dict[str, FamilyFit]:
         """The fits of its rows by family."""
         return {fit.kind: fit for fit in fits_of(self.case)}
 
@@ -71,7 +71,7 @@ class Trial:
         return self.setting if name == "step" else float(getattr(self.case.right, name))
 
 
-class Part(NamedTuple):
+class FollowedCause(NamedTuple):
     """A cause of the first scene, and the way in which it follows the scene."""
 
     key: tuple[str, str, int]
@@ -98,7 +98,7 @@ class Joint(Program):
     """
 
     runs: tuple[Trial, ...] = field(default=(), compare=False, repr=False)
-    parts: tuple[Part, ...] = ()
+    parts: tuple[FollowedCause, ...] = ()
 
     @cached_property
     def programs(self) -> list[Program]:
@@ -123,7 +123,7 @@ class Joint(Program):
 
 
 @dataclass(frozen=True)
-class JointCase(Case):
+class JointCase(FileCase):
     """The rows of all runs as those of one file, each in units of what may be left of it."""
 
     runs: tuple[Trial, ...] = ()
@@ -153,14 +153,14 @@ class JointCase(Case):
         made = zip(self.runs, program.programs, strict=True)
         return self.side_by_side([run.case.positions(run_program) for run, run_program in made])
 
-    def _fit(self, kind: str, fits: Sequence[Fit]) -> Fit:
+    def _fit(self, kind: str, fits: Sequence[FamilyFit]) -> FamilyFit:
         weights = [self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times)) for run in self.runs]
         fits = [replace(fit, rest=w * fit.rest, slopes=w * fit.slopes) for w, fit in zip(weights, fits, strict=True)]
         blocks = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
         slopes = np.block([[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks])
         free = tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free)
         rest = math.hypot(*(fit.rest for fit in fits))
-        return Fit(kind, np.concatenate([fit.theta for fit in fits]), rest, free, slopes)
+        return FamilyFit(kind, np.concatenate([fit.theta for fit in fits]), rest, free, slopes)
 
     def causes(self, kind: str) -> list[Cause]:
         """Return the causes of a family in every way in which the runs may distinguish them."""
@@ -168,10 +168,10 @@ class JointCase(Case):
         for key, cause in self.runs[0].causes.items():
             varied = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
             ways = (TYPED, FACTOR)[: 1 + varied] if cause.free else (RULE, TYPED)
-            causes += [_following(Part(key, cause, way), varied) for way in ways if key[0] == kind]
+            causes += [_following(FollowedCause(key, cause, way), varied) for way in ways if key[0] == kind]
         return causes
 
-    def readings(self, most: float = 1.0) -> list[Reading]:
+    def readings(self, most: float = 1.0) -> list[CauseReading]:
         """Return the readings of all runs that leave of each no more than may be left, `most` times; the best first."""
         kinds = [kind for kind in self.runs[0].fits if all(kind in run.fits for run in self.runs)]
         fits = [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
@@ -180,7 +180,7 @@ class JointCase(Case):
         readings = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
         return sorted((reading for reading in readings if self.off(reading) <= most), key=lambda reading: reading.score)
 
-    def off(self, reading: Reading) -> float:
+    def off(self, reading: CauseReading) -> float:
         """Return the most that a reading leaves of a run, over what may be left."""
         assert isinstance(reading.program, Joint)
         most = 0.0
@@ -192,7 +192,7 @@ class JointCase(Case):
             most = max(most, largest(run.case.rows.positions - made) / allowed)
         return most
 
-    def without_steps(self, steps: Steps, way: str, reading: Reading | None = None) -> tuple[JointCase, Deviation]:
+    def without_steps(self, steps: Steps, way: str, reading: CauseReading | None = None) -> tuple[JointCase, Deviation]:
         """Return the case with what steps do to the programs of a reading taken from the rows, and that cause."""
         program, seen, causes = self.right if reading is None else reading.program, [], []
         assert isinstance(program, Joint)
@@ -207,7 +207,7 @@ class JointCase(Case):
             causes.append(step_cause(taken, effect))
         return JointCase.of(seen), causes[0]
 
-    def explanation_of(self, reading: Reading, *besides: Deviation) -> Explanation:
+    def explanation_of(self, reading: CauseReading, *besides: Deviation) -> Explanation:
         """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
         assert isinstance(reading.program, Joint)
         case, program = self.runs[0].case, reading.program.programs[0]
@@ -219,7 +219,7 @@ class JointCase(Case):
         return Explanation(causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m)
 
 
-def _following(part: Part, varied: bool) -> Cause:
+def _following(part: FollowedCause, varied: bool) -> Cause:
     """Return a cause that changes the programs of all runs; its text says how, if the runs varied its number."""
 
     def change(program: Program) -> Program:

@@ -88,7 +88,7 @@ class FirstOrderSystem:
 
 
 @dataclass(frozen=True)
-class Swing:
+class SwingReach:
     """How far and how fast the bob can get, from its energy about the rest position.
 
     Without the small gradient of the centrifugal force v²/2 - n·c is constant, so that the angle from the rest
@@ -105,7 +105,7 @@ class Swing:
     fastest: float
 
     @classmethod
-    def of(cls, start: Start) -> Swing:
+    def of(cls, start: Start) -> SwingReach:
         """Return the swing that follows from the release.
 
         Raises:
@@ -176,7 +176,7 @@ class Problem:
             constants=rounded,
             start=np.array([float(value) for value in state]),
             times=_increasing(times),
-            sizes=Swing.of(start).sizes(len(model.variables)),
+            sizes=SwingReach.of(start).sizes(len(model.variables)),
             system=FirstOrderSystem.of(model.variables, model.derivatives, rounded),
         )
 
@@ -249,6 +249,6 @@ def suited(scene: Scene, formulations: Sequence[str]) -> str:
     `plane` holds below the horizontal only, and `space` leaves the sphere where a rod is pushed; for a bob whose energy
     may take it there any other formulation is better, `space` is second best, and `plane` fails.
     """
-    if Swing.of(Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)).below:
+    if SwingReach.of(Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)).below:
         return formulations[0]
     return min(formulations, key=lambda word: {"space": 1, "plane": 2}.get(word, 0))

@@ -10,7 +10,7 @@ import numpy as np
 from reference import load_scene
 from reference.model.constants import axis_distance
 
-from ...approximations.case import Case
+from ...approximations.case import PaperCase
 from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, over, section
 from ..digits import (
     MP,
@@ -153,7 +153,7 @@ def _south() -> Answer:
     return Answer(turn > 0, f"{turn:+.15f}° an hour, east to north (anticlockwise from above)")
 
 
-def _on_sphere(p: Point) -> Case:
+def _on_sphere(p: Point) -> PaperCase:
     """Return the numbers on a sphere of radius R_p, as in the paper's 2 and 4: there a_e = Ω² R_p cosλ."""
     return p.but(flattening=MP.zero, altitude=MP.zero).case
 

@@ -17,7 +17,7 @@ from reference.scenes.shipped import data_root, in_checkout
 
 from ..drawing import check_matplotlib
 from ..folder import PAGE, check_folder, write_files
-from ..motion import Motion
+from ..motion import PicturedMotion
 from ..motion_pictures import motion_svgs, thumbnail
 from ..page import Html, page, paragraph, section, text
 from . import parts
@@ -188,7 +188,7 @@ def build(
     pages, thumbs = {}, []
     for count, entry in enumerate(scenes):
         report(count, len(scenes), entry.id)
-        motion, made = Motion.of_golden(entry.golden), parts.function_made(entry.judged)
+        motion, made = PicturedMotion.of_golden(entry.golden), parts.function_made(entry.judged)
         beside = f"{entry.id}.function.js" if made and len(made["coefficients"]) > MOST_EMBEDDED else None
         if beside:
             pages[beside] = f"globalThis.goldenFunction = {json.dumps(made, separators=(',', ':'))};\n"

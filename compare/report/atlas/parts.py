@@ -28,7 +28,7 @@ from ...score import judge
 from ...score.errors import swing_rate
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
-from ..page import Html, Table, facts, text
+from ..page import Html, PageTable, facts, text
 from .entry import Entry, StudyResults, run_name
 
 THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}  # of the proof's THEOREM.md
@@ -54,7 +54,9 @@ def state(golden: Golden) -> Html:
         (name, Html(f'<span class="digits">{last[name]}</span>'), units[name], manifest.bounds.grid[name])
         for name in STATE
     ]
-    return Table({"": "", f"state at t = {golden.t[-1]:.15g} s": "value", "in": "", "within": "number"}, rows).html()
+    return PageTable(
+        {"": "", f"state at t = {golden.t[-1]:.15g} s": "value", "in": "", "within": "number"}, rows
+    ).html()
 
 
 def trust(golden: Golden) -> Mapping[str, str]:
@@ -93,7 +95,7 @@ def dataset(golden: Golden, base: str) -> Html:
         (linked(golden, name, base), f"{record.bytes:,}", record.sha256)
         for name, record in golden.manifest.files.items()
     ]
-    files = Table({"file": "", "bytes": "number", "sha256": "digest"}, rows)
+    files = PageTable({"file": "", "bytes": "number", "sha256": "digest"}, rows)
     return Html(f"{facts(trust(golden))}\n{files.html()}")
 
 
@@ -119,11 +121,11 @@ def methods(studied: StudyResults) -> list[Html]:
             cell = studied.same_digits[name]
             rows.append((name, cell.status.words, _tenths(cell.asked), _tenths(cell.digits), _cpu(cell.cpu_s)))
             kinds.append("" if cell.status is Status.OK else "failed")
-        same_digits = Table(columns, rows, kinds)
+        same_digits = PageTable(columns, rows, kinds)
         parts.append(same_digits.html("Runs that were asked for the same digits (docs/studies.md)"))
     if studied.least:
         runs = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
-        least = Table({"method": "", "least error": "number", "its CPU s": "number"}, runs)
+        least = PageTable({"method": "", "least error": "number", "its CPU s": "number"}, runs)
         parts.append(least.html(f"The most accurate run of each method over {studied.span_s:g} s"))
     return parts
 

@@ -16,7 +16,7 @@ def error_rate(k: Scaled, size_p: arb) -> arb:
     return (k.c_size + k.w**2 + k.drag_size * k.omega_size * (1 + size_p)) / (2 * k.w)
 
 
-class Carried:
+class CarriedState:
     """State carried from step to step: the time reached, and p and K there (K in 1/s); at t = 0 balls of r and H."""
 
     def __init__(self, balls: SceneBalls) -> None:
@@ -32,7 +32,7 @@ class Carried:
             return [(a - b).abs_upper() for a, b in zip(start, before, strict=True)]
 
 
-class Radius(Carried):
+class Radius(CarriedState):
     """Theorem C: one radius, |e|² + |g⊥|²/w² <= eta²."""
 
     eta = arb(0)

@@ -44,7 +44,7 @@ def vanishes_at_release(balls: SceneBalls, word: str) -> bool:
     return azimuth.endswith("@0") and (y * cos - x * sin).is_zero()
 
 
-class Form(Slope):
+class SectionSlope(Slope):
     """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'.
 
     `slow` says that the form is exactly 0 at the release.
@@ -95,7 +95,7 @@ class Form(Slope):
         return [*turned(r, -1), *turned(times(1 / self.piece.k.h, v), -1)]
 
 
-class Apsis(Form):
+class Apsis(SectionSlope):
     """The form of highest and lowest points, b·v, by bounds of second order: v is along the sphere (Lemma 13.4)."""
 
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
@@ -122,5 +122,5 @@ def section_scan(balls: SceneBalls, word: str, second_order: bool = False) -> Sc
     with ctx.workprec(balls.prec):
         a, b, d = form(balls, word)
         slow = vanishes_at_release(balls, word)
-    kind = Apsis if second_order and word in WAYS else Form
+    kind = Apsis if second_order and word in WAYS else SectionSlope
     return Scan(balls, lambda covered: kind(covered, a, b, d, slow), WAYS.get(word, 0))

@@ -7,7 +7,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, dot, size, times, upper
 from .defect import Piece
-from .radius import Carried, error_rate
+from .radius import CarriedState, error_rate
 from .shapes import Covered, Proposal
 from .tube import tube
 
@@ -15,7 +15,7 @@ FINE = 50  # a column's coefficients are integers over 2^FINE
 CUT = 48  # terms of p and K in the residuals, which are multiplied by the small z_j
 
 
-class Columns(Carried):
+class Columns(CarriedState):
     """Theorem E: (r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j; `rest` bounds e and g (g in 1/s)."""
 
     rest, z, carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)

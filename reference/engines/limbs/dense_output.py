@@ -7,8 +7,8 @@ import numpy as np
 from ...numbers.precision import Array
 from ..simd.lanes import LANES, compiled, load, merged, occupied, plus_product, shuffled, spread, store
 from .limb import DOUBLED, RADIX, UNIT, add_product, carry, carry_scalar, divide, double_of
-from .series import TENSION, VM, VX, M, Series, Step, X, partner, positions, to_positions, to_speeds
-from .step import GRAINS, Model, lane_products
+from .series import TENSION, VM, VX, LimbSeries, M, Step, X, partner, positions, to_positions, to_speeds
+from .step import GRAINS, LimbModel, lane_products
 
 _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")
 _tension_first = shuffled((6, -1, -1, -1, -1, -1, -1, -1), "_tension_first")
@@ -29,7 +29,7 @@ def divide_place(place: Array, whole: int, m: int, limb_count: int) -> None:
 
 
 @compiled
-def evaluate(to: Array, s: Series, place: Array, order: int, limb_count: int) -> None:
+def evaluate(to: Array, s: LimbSeries, place: Array, order: int, limb_count: int) -> None:
     """Write all lanes at a place 0 <= s <= 1 of the step, by Horner's rule with as many limbs as each order has."""
     work = s.total
     to[:] = 0.0
@@ -52,7 +52,7 @@ def evaluate(to: Array, s: Series, place: Array, order: int, limb_count: int) ->
 
 
 @compiled
-def to_cartesian(to: Array, start: int, step: Step, model: Model, m: int) -> None:
+def to_cartesian(to: Array, start: int, step: Step, model: LimbModel, m: int) -> None:
     """Turn all lanes in `rows` to x, y, z, their rates and xddot, in l and the unit of time.
 
     They are written to seven lanes of `limb_count` rows of `to`, from `start` on. The step is m grains long;
@@ -94,7 +94,7 @@ def to_cartesian(to: Array, start: int, step: Step, model: Model, m: int) -> Non
 
 
 @merged
-def _xddot(step: Step, model: Model) -> None:
+def _xddot(step: Step, model: LimbModel) -> None:
     """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm; the rates are in `partners`."""
     (s, terms, rows), limb_count = step, model.limb_count
     total, rate, other = s.total, s.partners, s.other
@@ -120,7 +120,7 @@ def _xddot(step: Step, model: Model) -> None:
 
 
 @compiled
-def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int) -> float:
+def xdot_of(rows: Array, s: LimbSeries, turn: Array, weight: float, limb_count: int) -> float:
     """Return xdot = Vx + ω m of a state or of all lanes at some place of the step, with the sign that its limbs have.
 
     `weight` is DOUBLED for the model's `turn` and 1 for a step's, which comes doubled; with this xdot is times h.
@@ -137,14 +137,14 @@ def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int)
 
 
 @compiled
-def xdot_at(place: Array, step: Step, model: Model) -> float:
+def xdot_at(place: Array, step: Step, model: LimbModel) -> float:
     """Return xdot times h at a place of the step, with the sign that its limbs have; write all lanes to `rows`."""
     evaluate(step.rows, step.s, place, model.order, model.limb_count)
     return xdot_of(step.rows, step.s, step.terms.turn, 1.0, model.limb_count)
 
 
 @compiled
-def xddot_of(step: Step, xdot: float, model: Model) -> float:
+def xddot_of(step: Step, xdot: float, model: LimbModel) -> float:
     """Return xddot times h² from all lanes in `rows` and xdot times h, as a double."""
     (_, terms, rows), limb_count = step, model.limb_count
     turn = double_of(terms.turn, limb_count, 0, LANES) / DOUBLED

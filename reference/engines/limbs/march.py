@@ -17,7 +17,7 @@ from .series import Counts, LinearTerms, Step, X, empty_series
 from .step import (
     LEAST_FACTOR,
     SAFETY_FACTOR,
-    Model,
+    LimbModel,
     next_length,
     order_zero,
     project,
@@ -73,7 +73,7 @@ class Outputs(NamedTuple):
     series: Array
 
 
-def state_at_release(start: Array, first: int, multiplicity: int, model: Model) -> MarchState:
+def state_at_release(start: Array, first: int, multiplicity: int, model: LimbModel) -> MarchState:
     """Return the state carried between steps, initialised at the release."""
     order, limb_count = model.order, model.limb_count
     counts = np.zeros(9, dtype=np.int64)
@@ -87,7 +87,7 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: Model) 
 
 
 @merged
-def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
+def _write_states(state: MarchState, model: LimbModel, out: Outputs) -> None:
     """Write the states at the output times that the step passes."""
     counts, limb_count = state.counts, model.limb_count
     start, m, place = counts[TIME], counts[LENGTH], state.search.place
@@ -103,7 +103,7 @@ def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
 
 
 @merged
-def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
+def _write_zeros(state: MarchState, model: LimbModel, out: Outputs) -> bool:
     """Write the zeros of xdot on the step; return false if they stay in doubt."""
     counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
     after = int(np.sign(xdot_of(state.now, state.step.s, model.terms.turn, DOUBLED, limb_count)))
@@ -124,7 +124,7 @@ def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
 
 
 @kept(*Path(__file__).parent.glob("*.py"), **OPTIONS)
-def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
+def march(state: MarchState, model: LimbModel, out: Outputs, until: int, steps: int, seek: bool) -> int:
     """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
     s, counts, limb_count, order = state.step.s, state.counts, model.limb_count, model.order
     for i in range(steps):
@@ -156,7 +156,7 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
 
 
 @merged
-def _step_coefficients(state: MarchState, model: Model) -> bool:
+def _step_coefficients(state: MarchState, model: LimbModel) -> bool:
     """Compute the coefficients of the next step, shortened until they decay enough; false if no length will do."""
     counts, (s, terms, _) = state.counts, state.step
     while True:

@@ -21,7 +21,7 @@ from ..plan import MOST_TURN
 from .limb import rows_of
 from .series import LinearTerms
 from .size import MOST_PREC, highest_prec, limb_count_for
-from .step import GRAINS, MOST_GRAINS, Model
+from .step import GRAINS, MOST_GRAINS, LimbModel
 
 TAIL_BITS = 9  # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
 ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
@@ -42,7 +42,7 @@ class LimbProblem:
         start: the scene's constants and release as mpf.
     """
 
-    model: Model
+    model: LimbModel
     state: Array
     unit: Fraction
     first: int
@@ -75,7 +75,7 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
     longest = min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / swing))) if swing else MOST_GRAINS
     if other_steps:
         order, first, longest = (max(1, int(size * OTHER_STEPS)) for size in (order, first, longest))
-    model = Model(
+    model = LimbModel(
         limb_count=limb_count,
         order=order,
         drag=bool(k.drag),

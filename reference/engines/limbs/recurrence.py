@@ -38,9 +38,9 @@ from .series import (
     VX,
     WIDTH,
     Counts,
+    LimbSeries,
     LinearTerms,
     M,
-    Series,
     W,
     X,
     partner,
@@ -58,7 +58,7 @@ _tension_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_tension_spin")
 
 
 @merged
-def clear_sums(s: Series, order: int, limb_count: int, drag: bool) -> None:
+def clear_sums(s: LimbSeries, order: int, limb_count: int, drag: bool) -> None:
     """Set the sums and the planes to zero, as far as a series of this order uses them."""
     zero = spread(0.0)
     for row in range(0, limb_count * PLANES * WIDTH, WIDTH):
@@ -73,7 +73,7 @@ def clear_sums(s: Series, order: int, limb_count: int, drag: bool) -> None:
 
 
 @merged
-def add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> None:
+def add_squares(s: LimbSeries, k: int, first: int, limb_count: int, drag: bool) -> None:
     """Add the products of a coefficient with itself, or of λ and n of one order, to the sums of order 2 k."""
     c, sums, block = s.c, s.sums, k * limb_count * LANES
     for r in range(2 * first + 1, limb_count + 1):
@@ -92,7 +92,7 @@ def add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> N
 
 
 @merged
-def add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) -> None:
+def add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool) -> None:
     """Add to the sums all products of order k with lower orders."""
     c, planes, sums, factors, first = s.c, s.planes, s.sums, s.factors, s.first[k]
     for p in range(first, limb_count):
@@ -127,7 +127,7 @@ def add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) -> 
 
 
 @merged
-def copy_to_planes(s: Series, k: int, first: int, limb_count: int) -> None:
+def copy_to_planes(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
     """Copy x, m, w, λ of order k to the planes, for the products with higher orders."""
     c, planes = s.c, s.planes
     for q in range(first, limb_count):
@@ -140,7 +140,7 @@ def copy_to_planes(s: Series, k: int, first: int, limb_count: int) -> None:
 
 
 @compiled
-def taylor_coefficients(s: Series, terms: LinearTerms, order: int, limb_count: int, drag: bool) -> bool:
+def taylor_coefficients(s: LimbSeries, terms: LinearTerms, order: int, limb_count: int, drag: bool) -> bool:
     """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
 
     Of λ n only the products with order 0 are needed at once; the others of an order are added to the sums while the
@@ -183,7 +183,7 @@ def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int
 
 
 @merged
-def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
+def _set_derivative(s: LimbSeries, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Write the derivative's coefficient of order k, drag left out, to `total`; not carried."""
     c, block, turn, total = s.c, k * limb_count * LANES, terms.turn, s.total
     if k == 1:
@@ -209,7 +209,7 @@ def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_coun
 
 
 @merged
-def _add_drag(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
+def _add_drag(s: LimbSeries, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Add the terms of drag to `total`."""
     c, block, start, stride = s.c, k * limb_count * LANES, 3 * WIDTH + k, PLANES * WIDTH
     weight = 2.0 * DOUBLED if k else DOUBLED

@@ -45,7 +45,7 @@ class LinearTerms(NamedTuple):
     steady: Array
 
 
-class Series(NamedTuple):
+class LimbSeries(NamedTuple):
     """Coefficients of one step, and working arrays.
 
     Attributes:
@@ -75,17 +75,17 @@ class Series(NamedTuple):
 class Step(NamedTuple):
     """A step: its series, its linear terms, and `rows`, to which all lanes at some place in it are written."""
 
-    s: Series
+    s: LimbSeries
     terms: LinearTerms
     rows: Array
 
 
-def empty_series(order: int, limb_count: int) -> Series:
+def empty_series(order: int, limb_count: int) -> LimbSeries:
     """Return empty arrays for a series of an order, at most MOST_ORDER."""
     if order > MOST_ORDER:
         raise ValueError(f"a series of order {order}, more than {MOST_ORDER}")
     rows = LANES * (limb_count + 2)
-    return Series(
+    return LimbSeries(
         c=aligned((order + 1) * limb_count * LANES),
         first=np.zeros(order + 1, dtype=np.int64),
         planes=aligned(limb_count * PLANES * WIDTH),

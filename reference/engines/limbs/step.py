@@ -14,7 +14,7 @@ import numpy as np
 from ...numbers.precision import Array
 from ..simd.lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
 from .limb import DOUBLED, INVERSE, RADIX, UNIT, carry, carry_scalar, divide, double_of
-from .series import SPIN, TENSION, LinearTerms, Series, positions
+from .series import SPIN, TENSION, LimbSeries, LinearTerms, positions
 from .size import LIMB_BITS
 
 GRAINS = 1024
@@ -33,7 +33,7 @@ _aside = shuffled((-1, -1, -1, -1, 1, 2, -1, -1), "_aside")
 _across = shuffled((4, 3, -1, -1, -1, -1, -1, -1), "_across")
 
 
-class Model(NamedTuple):
+class LimbModel(NamedTuple):
     """A scene's constants in limbs, in the unit of time, and the settings of its integration.
 
     Attributes:
@@ -58,7 +58,7 @@ class Model(NamedTuple):
 
 
 @compiled
-def scale_terms(to: LinearTerms, model: Model, m: int) -> None:
+def scale_terms(to: LinearTerms, model: LimbModel, m: int) -> None:
     """Write the linear terms for a step of m grains."""
     for i in range(len(to)):
         rows, factor = to[i], spread(1.0 if i == STEADY else DOUBLED)
@@ -91,7 +91,7 @@ def lane_products(to: Array, a: Array, b: Array, limb_count: int) -> None:
 
 
 @compiled
-def order_zero(s: Series, terms: LinearTerms, now: Array, m: int, limb_count: int) -> None:
+def order_zero(s: LimbSeries, terms: LinearTerms, now: Array, m: int, limb_count: int) -> None:
     """Write the coefficients of order 0 from the state: n, h V, the tension λ = V·V + n·c and j."""
     speed = spread(SHIFT * m)
     s.total[:] = 0.0
@@ -117,7 +117,7 @@ def order_zero(s: Series, terms: LinearTerms, now: Array, m: int, limb_count: in
 
 
 @compiled
-def _set_lane(s: Series, lane: int, limb_count: int) -> None:
+def _set_lane(s: LimbSeries, lane: int, limb_count: int) -> None:
     """Carry the limbs in `scalar` and write them to a lane of order 0."""
     carry_scalar(s.scalar, limb_count)
     for r in range(limb_count):
@@ -125,7 +125,7 @@ def _set_lane(s: Series, lane: int, limb_count: int) -> None:
 
 
 @compiled
-def step_size_factor(s: Series, order: int, limb_count: int, tolerance: float) -> float:
+def step_size_factor(s: LimbSeries, order: int, limb_count: int, tolerance: float) -> float:
     """Return the multiple of the step, at most 2, at whose end the last coefficients of n and V reach the tolerance.
 
     It is estimated from the last two resolved coefficients (Jorba and Zou 2005), assuming geometric decay.
@@ -174,7 +174,7 @@ def next_length(m: int, factor: float, longest: int) -> int:
 
 
 @compiled
-def sum_series(to: Array, s: Series, order: int, limb_count: int) -> None:
+def sum_series(to: Array, s: LimbSeries, order: int, limb_count: int) -> None:
     """Write the sum of all coefficients: all lanes at the step's end."""
     to[:] = 0.0
     for k in range(order, -1, -1):
@@ -184,7 +184,7 @@ def sum_series(to: Array, s: Series, order: int, limb_count: int) -> None:
 
 
 @compiled
-def project(now: Array, rows: Array, s: Series, m: int, limb_count: int) -> None:
+def project(now: Array, rows: Array, s: LimbSeries, m: int, limb_count: int) -> None:
     """Write the state from the rows at a step's end: V in the unit of time, n and V projected onto the sphere."""
     for r in range(limb_count):
         store(s.total, LANES * r, _speeds(load(rows, LANES * r)) * spread(GRAINS))
@@ -207,7 +207,7 @@ def project(now: Array, rows: Array, s: Series, m: int, limb_count: int) -> None
 
 
 @compiled
-def _excess(s: Series, limb_count: int, unit: float) -> float:
+def _excess(s: LimbSeries, limb_count: int, unit: float) -> float:
     """Return the sum of the first three lanes of `total` less `unit` in the first limb, in units of the last limb."""
     for r in range(limb_count + 1):
         at = LANES * r

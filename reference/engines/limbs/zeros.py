@@ -17,9 +17,9 @@ from ..simd.lanes import LANES, compiled, merged
 from ..simd.polynomial import CONVEX, FREE, UNDECIDED, classify, crossing
 from .dense_output import evaluate, xddot_of, xdot_at
 from .limb import add_double, double_of, set_double
-from .series import Counts, Series, Step, X
+from .series import Counts, LimbSeries, Step, X
 from .size import LIMB_BITS
-from .step import Model
+from .step import LimbModel
 
 MOST_ZEROS = 24  # of one step
 GRAZING = -1  # returned when a grazing zero cannot be resolved
@@ -70,7 +70,7 @@ def empty_search(order: int, limb_count: int) -> Search:
 
 
 @compiled
-def bracket_zeros(z: Search, step: Step, before: int, after: int, multiplicity: int, model: Model) -> int:
+def bracket_zeros(z: Search, step: Step, before: int, after: int, multiplicity: int, model: LimbModel) -> int:
     """Bracket the zeros on 0 < s <= 1, in order; return their number, or GRAZING.
 
     Args:
@@ -114,7 +114,7 @@ def bracket_zeros(z: Search, step: Step, before: int, after: int, multiplicity: 
 
 
 @compiled
-def _polynomial(z: Search, s: Series, multiplicity: int, model: Model) -> int:
+def _polynomial(z: Search, s: LimbSeries, multiplicity: int, model: LimbModel) -> int:
     """Write xdot / s**multiplicity in doubles, cut where the tail is negligible; return the number of coefficients."""
     limb_count, largest, small = model.limb_count, 0.0, 0
     for k in range(multiplicity, model.order):
@@ -130,7 +130,7 @@ def _polynomial(z: Search, s: Series, multiplicity: int, model: Model) -> int:
 
 
 @merged
-def _sign_at(z: Search, place: float, value: float, noise: float, step: Step, model: Model) -> int:
+def _sign_at(z: Search, place: float, value: float, noise: float, step: Step, model: LimbModel) -> int:
     """Return the sign of xdot at a place where its value in double is known within the noise."""
     if abs(value) > noise:
         return 1 if value > 0.0 else -1
@@ -147,7 +147,7 @@ def _record(z: Search, count: int, low: float, high: float, guess: float, direct
 
 @merged
 def _dip(
-    z: Search, count: int, size: int, low: float, high: float, side: int, noise: float, step: Step, model: Model
+    z: Search, count: int, size: int, low: float, high: float, side: int, noise: float, step: Step, model: LimbModel
 ) -> int:
     """Record none or two zeros where xdot has one sign at both ends and bends towards zero.
 
@@ -180,7 +180,7 @@ def _dip(
 
 
 @merged
-def polish(z: Search, i: int, step: Step, model: Model) -> bool:
+def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
     """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval."""
     enough = 2.0 ** min(DERIVATIVE_BITS - (LIMB_BITS * model.limb_count - 1), -NEAR_BITS)
     previous = 1.0

@@ -17,7 +17,7 @@ import numpy as np
 from ...numbers.precision import Array
 from ..simd.lanes import LANES, aligned, at_least, compiled, fma, inlined, larger, load, magnitude, spread, store, where
 from ..simd.polynomial import FREE, MONOTONE, classify, crossing, value_and_slope
-from .series import MOST_ORDER, Series
+from .series import MOST_ORDER, LaneSeries
 
 NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
 NEWTON_STEPS = 3
@@ -30,7 +30,7 @@ _NARROWEST = 2.0**-40
 _DEEPEST = 64  # halves of a step, one in another, down to the narrowest
 
 
-class Zeros(NamedTuple):
+class LaneZeros(NamedTuple):
     """Knowledge of a rate's zeros, lane by lane.
 
     Attributes:
@@ -53,13 +53,13 @@ class Zeros(NamedTuple):
     slope: Array
 
 
-def empty_zeros() -> Zeros:
+def empty_zeros() -> LaneZeros:
     """Return lanes in which nothing is known."""
-    return Zeros(*(aligned(LANES) for _ in Zeros._fields))
+    return LaneZeros(*(aligned(LANES) for _ in LaneZeros._fields))
 
 
 @compiled
-def seek(z: Zeros, f: Array, length: Array, time: Array, order: int) -> None:
+def seek(z: LaneZeros, f: Array, length: Array, time: Array, order: int) -> None:
     """Find which lanes have one zero of the polynomial f on the step, and where about; at time 0 all are in doubt."""
     r, zero = load(length, 0), spread(0.0)
     h, middle = r * spread(0.25), r * spread(0.5)
@@ -88,7 +88,7 @@ def seek(z: Zeros, f: Array, length: Array, time: Array, order: int) -> None:
 
 
 @inlined
-def keep(z: Zeros, early: Any, late: Any, sure: Any, known: Any, r: Any) -> tuple[Any, Any]:
+def keep(z: LaneZeros, early: Any, late: Any, sure: Any, known: Any, r: Any) -> tuple[Any, Any]:
     """Keep which lanes have a zero, if they are sure of it, and which are in doubt; return the half that holds it."""
     sought, middle = load(z.sought, 0), r * spread(0.5)
     low, high = where(late, middle, spread(0.0)), where(late, r, middle)
@@ -115,7 +115,7 @@ def _between(place: Any, low: Any, high: Any) -> Any:
 
 
 @compiled
-def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> None:
+def refine(z: LaneZeros, f: Array, length: Array, order: int, converged: float) -> None:
     """Refine the zeros that were found; those whose last correction is large are in doubt."""
     low, high, place, zero = load(z.low, 0), load(z.high, 0), load(z.place, 0), spread(0.0)
     moved = slope = zero
@@ -139,7 +139,7 @@ def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> N
 
 
 @compiled
-def seek_highest(z: Zeros, g: Array, length: Array, order: int) -> None:
+def seek_highest(z: LaneZeros, g: Array, length: Array, order: int) -> None:
     """Find which lanes have a highest point on the step; `doubt` is where a sign is lost in rounding."""
     r, zero, one = load(length, 0), spread(0.0), spread(1.0)
     middle = r * spread(0.5)
@@ -157,7 +157,7 @@ def seek_highest(z: Zeros, g: Array, length: Array, order: int) -> None:
 
 
 @compiled
-def place_highest(top: Array, c: Series, z: Zeros, order: int) -> None:
+def place_highest(top: Array, c: LaneSeries, z: LaneZeros, order: int) -> None:
     """Write x, p and u at the place of each lane, a row of eight each."""
     place = load(z.place, 0)
     x = p = u = spread(0.0)
@@ -184,7 +184,7 @@ def empty_bisection() -> Bisection:
 
 
 @compiled
-def all_zeros(w: Bisection, z: Zeros, f: Array, lane: int, length: float, multiplicity: int, order: int) -> int:
+def all_zeros(w: Bisection, z: LaneZeros, f: Array, lane: int, length: float, multiplicity: int, order: int) -> int:
     """Write the zeros on 0 < s <= length, in order; return their number, or DOUBT.
 
     Args:

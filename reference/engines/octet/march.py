@@ -34,7 +34,7 @@ from .lane_zeros import (
     MOST_ZEROS,
     TURNED,
     Bisection,
-    Zeros,
+    LaneZeros,
     all_zeros,
     empty_bisection,
     empty_zeros,
@@ -44,7 +44,7 @@ from .lane_zeros import (
     seek_highest,
 )
 from .series import (
-    Series,
+    LaneSeries,
     empty_series,
     form_of,
     put_form,
@@ -131,9 +131,9 @@ class March(NamedTuple):
     """
 
     state: Array
-    c: Series
-    transits: Zeros
-    highest: Zeros
+    c: LaneSeries
+    transits: LaneZeros
+    highest: LaneZeros
     w: Bisection
     time: Array
     time_low: Array

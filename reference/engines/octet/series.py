@@ -36,7 +36,7 @@ MOST_ORDER = 24  # even, as two orders are computed at a time
 LONGEST = 3.0  # log2 of the longest step in units of time, where nothing changes
 
 
-class Series(NamedTuple):
+class LaneSeries(NamedTuple):
     """Coefficients of eight rows: rows of eight doubles, order by order.
 
     Attributes:
@@ -56,13 +56,13 @@ class Series(NamedTuple):
     s: Array
 
 
-def empty_series() -> Series:
+def empty_series() -> LaneSeries:
     """Return empty arrays for a series."""
-    return Series(*(aligned((MOST_ORDER + 2) * LANES) for _ in Series._fields))
+    return LaneSeries(*(aligned((MOST_ORDER + 2) * LANES) for _ in LaneSeries._fields))
 
 
 @inlined
-def _next_order(c: Series, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
+def _next_order(c: LaneSeries, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
     """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
     at, to, share, less = LANES * k, LANES * (k + 1), spread(1.0 / (k + 1)), spread(-1.0 / (k + 1))
     op, ou, pull = load(state, LANES * TURN_P), load(state, LANES * TURN_U), load(state, LANES * PULL)
@@ -91,7 +91,7 @@ def _next_order(c: Series, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> N
 
 
 @compiled
-def taylor_coefficients(c: Series, state: Array, order: int) -> None:
+def taylor_coefficients(c: LaneSeries, state: Array, order: int) -> None:
     """Fill the coefficients from the state and the constants, a row of eight for each of `rows`' columns."""
     for array, column in ((c.x, X), (c.p, P), (c.u, U), (c.w, W), (c.v, V), (c.s, S)):
         store(array, 0, load(state, LANES * column))
@@ -126,12 +126,12 @@ def taylor_coefficients(c: Series, state: Array, order: int) -> None:
 
 
 @inlined
-def _size(c: Series, k: int) -> Any:
+def _size(c: LaneSeries, k: int) -> Any:
     return larger(magnitude(load(c.x, LANES * k)), magnitude(load(c.p, LANES * k)))
 
 
 @inlined
-def step_length(c: Series, order: int) -> Any:
+def step_length(c: LaneSeries, order: int) -> Any:
     """Return how far the series reaches: to where its last two coefficients are TOLERANCE of the motion.
 
     The height u is left out: what its tail lacks is put right when n is put back on the sphere.
@@ -143,7 +143,7 @@ def step_length(c: Series, order: int) -> Any:
 
 
 @compiled
-def sum_series(state: Array, c: Series, length: Array, order: int) -> None:
+def sum_series(state: Array, c: LaneSeries, length: Array, order: int) -> None:
     """Write the state at the end of the step, put back on the sphere."""
     r, zero = load(length, 0), spread(0.0)
     x = p = u = w = v = s = zero
@@ -172,7 +172,7 @@ def _form(state: Array, x: Any, p: Any, u: Any, xdot: Any, pdot: Any, udot: Any)
 
 
 @compiled
-def put_form(c: Series, state: Array, order: int) -> None:
+def put_form(c: LaneSeries, state: Array, order: int) -> None:
     """Put the coefficients of the rows' forms in the place of those of x'."""
     for k in range(order):
         at = LANES * k

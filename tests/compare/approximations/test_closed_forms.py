@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from compare.approximations import APPROXIMATIONS, motions
-from compare.approximations.case import Case
+from compare.approximations.case import PaperCase
 from compare.approximations.gastebois import small_angles
 from compare.approximations.linear_3d import plumb_line, stiffness
 from compare.approximations.mathar import derivatives, truncated
@@ -93,7 +93,7 @@ def test_the_three_methods_are_one_motion(word):
 
 
 def test_the_solution_6_1_solves_the_system_of_section_5():
-    case = Case.of_scene(MOVING)
+    case = PaperCase.of_scene(MOVING)
     (omega, turn), plumb = small_angles(case), case.plumb
     square, turning = float(omega**2 - turn**2), float(turn)
     place, speed = plumb.inward(case.position), plumb.inward(case.velocity)
@@ -134,7 +134,7 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
     scene = PARIS.with_values(
         ["release.x=20", "release.y=-9", "release.vx=2", "release.vy=6", "site.rotation_rate=0.002"]
     )
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     plumb = case.plumb
     (x, y, z), (vx, vy, vz) = plumb.inward(case.position), plumb.inward(case.velocity)
     aside = case.ctx.hypot(x, y)
@@ -192,7 +192,7 @@ def test_the_conical_pendulum_goes_round_either_way():
 
 def test_the_linear_solution_is_the_exponential_of_its_matrix():
     scene = MOVING.with_values(["site.equatorial_radius=500", "site.rotation_rate=0.05", "release.x=0.1"])
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     a, b, turn = stiffness(case)
     plumb = plumb_line(case)
     start = [*plumb.inward(case.position)[:2], *plumb.inward(case.velocity)[:2]]
@@ -208,7 +208,7 @@ def test_the_linear_solution_is_the_exponential_of_its_matrix():
 
 
 def test_the_linear_system_is_the_derivative_of_the_model_at_its_point_of_rest():
-    case = Case.of_scene(MOVING.with_values(["site.rotation_rate=0.02", "site.equatorial_radius=3000"]))
+    case = PaperCase.of_scene(MOVING.with_values(["site.rotation_rate=0.02", "site.equatorial_radius=3000"]))
     ctx = case.ctx
     a, b, turn = stiffness(case)
     plumb, rest = plumb_line(case), case.rest
@@ -227,7 +227,7 @@ def test_the_linear_system_is_the_derivative_of_the_model_at_its_point_of_rest()
 
 
 def test_at_the_pole_the_linear_frequencies_are_those_of_a_turntable():
-    a, b, turn = stiffness(Case.of_scene(load_scene("pole")))
+    a, b, turn = stiffness(PaperCase.of_scene(load_scene("pole")))
     rate = mpmath.mpf("7.292115e-5")
     assert float(turn) == pytest.approx(float(rate), rel=1e-15)
     assert float(a) == float(b) == pytest.approx(float(mpmath.mpf("9.80665") / 67 - rate**2), rel=1e-15)
@@ -268,7 +268,7 @@ def test_the_sense_of_rotation_follows_the_hemisphere():
     for scene, sense in ((load_scene("paris"), -1), (load_scene("southern"), 1)):
         for word in ("linear_recentred", "gastebois_6_1", "linear_3d", "gastebois_general"):
             rows = APPROXIMATIONS[word].trajectory(scene, np.linspace(0.0, 7200.0, 4001))
-            north = float(Case.of_scene(scene).rest[1] * 67)
+            north = float(PaperCase.of_scene(scene).rest[1] * 67)
             far = np.argsort(-np.hypot(rows[:, 0], rows[:, 1] - north))[:200]
             azimuth = np.unwrap(2 * np.arctan2(rows[far, 1] - north, rows[far, 0])[np.argsort(far)]) / 2
             assert np.sign(azimuth[-1] - azimuth[0]) == sense

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from compare.approximations import APPROXIMATIONS
-from compare.approximations.case import Case
+from compare.approximations.case import PaperCase
 from compare.approximations.gastebois import small_angles
 from compare.observed.swing_plane import frequency, precession_period
 from reference import load_scene, parse_scene
@@ -66,7 +66,7 @@ def test_the_swing_plane_turns_by_11_3_degrees_an_hour_in_paris():
 
 
 def test_the_apparent_latitude_and_the_ellipse_of_6_3():
-    case = Case.of_scene(gastebois())
+    case = PaperCase.of_scene(gastebois())
     assert f"{float(case.ctx.degrees(case.apparent_latitude)):.2f}" == "48.97"
     omega, _ = small_angles(case)
     turn = float(case.turn)  # its 5.49e-5 rad/s is without the centrifugal force
@@ -79,7 +79,7 @@ def test_the_apparent_latitude_and_the_ellipse_of_6_3():
 
 def test_the_offset_at_the_first_passage_and_after_one_swing_is_that_of_6_3():
     scene = gastebois().with_values(["site.equatorial_radius=0"])
-    omega, turn = map(float, small_angles(Case.of_scene(scene)))
+    omega, turn = map(float, small_angles(PaperCase.of_scene(scene)))
     period = 2 * math.pi / omega
     rows = APPROXIMATIONS["gastebois_6_3"].trajectory(scene, [0.0, period / 4, period])
     assert rows[1, 1] * 1e3 == pytest.approx(0.93, abs=0.01)
@@ -99,7 +99,7 @@ def test_the_spherical_drift_is_nearer_to_the_truth_at_the_pole_than_without():
 
 def test_the_printed_45_has_no_solution_in_paris():
     # y² = sqrt(l² - y²) (y - R s - 2 y c²) Ω²/g + c (R y + (l² - 2 y²) s) Ω²/g; the right one has y on the left.
-    case = Case.of_scene(PARIS)
+    case = PaperCase.of_scene(PARIS)
     ctx, cord, s, c, R = case.ctx, case.length, case.k.sin, case.k.cos, case.axis_distance
 
     def right_side(y):

@@ -10,7 +10,7 @@ import pytest
 import reference
 from compare.candidates.arrays import candidate_of
 from compare.observed.swing_plane import Gauge
-from compare.report.motion import Motion
+from compare.report.motion import PicturedMotion
 from compare.report.motion_pictures import length_unit, time_unit
 from compare.report.plot import motion_of
 
@@ -19,7 +19,7 @@ pytest.importorskip("matplotlib")
 
 @pytest.fixture(scope="module")
 def paris():
-    return Motion.of_golden(reference.load("paris"))
+    return PicturedMotion.of_golden(reference.load("paris"))
 
 
 def test_rows_far_apart_are_filled_in_by_single_swings(paris):
@@ -38,7 +38,7 @@ def test_the_swing_plane_of_paris_turns_as_it_should_and_of_a_file_too(paris):
     about_the_plumb_line = Gauge.of(reference.load_scene("paris")).turn  # not about the ellipsoid's normal: 1.5e-3 less
     assert turned == pytest.approx(-np.degrees(about_the_plumb_line) * 3600, rel=1e-4)
     x, y, _ = paris.rows.T
-    alone = Motion.of_candidate(candidate_of("mine.csv", {"t": paris.t, "x": x, "y": y}))
+    alone = PicturedMotion.of_candidate(candidate_of("mine.csv", {"t": paris.t, "x": x, "y": y}))
     steps = (np.diff(alone.plane) + 90) % 180 - 90
     assert steps.sum() / np.ptp(alone.plane_t) * 3600 == pytest.approx(turned, rel=0.01)
     assert len(alone.line) == 0 and alone.swings == 0  # a line through its rows would follow nothing
@@ -47,9 +47,9 @@ def test_the_swing_plane_of_paris_turns_as_it_should_and_of_a_file_too(paris):
 def test_a_dense_file_is_a_line_and_a_wide_one_is_on_its_sphere():
     t = np.linspace(0, 6, 200)
     far = candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t, "z": np.sin(t)})
-    motion = Motion.of_candidate(far)
+    motion = PicturedMotion.of_candidate(far)
     assert len(motion.line) == 200 and motion.wide
-    assert not Motion.of_candidate(candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t})).wide
+    assert not PicturedMotion.of_candidate(candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t})).wide
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_of_a_dataset_that_ships_only_the_span_is_drawn():
 
 
 def test_a_bob_at_rest_has_no_swing():
-    motion = Motion.of_golden(reference.load("at_rest"))
+    motion = PicturedMotion.of_golden(reference.load("at_rest"))
     assert motion.swings == len(motion.plane) == 0
 
 

@@ -13,8 +13,8 @@ from compare.approximations import motions
 from compare.methods import METHODS
 from compare.methods.method import Family
 from compare.report import approximations, study_charts
-from compare.report.drawing import COLOURS, Line, legend, line_style, name_ends, power_of_ten, sheet
-from compare.report.motion import Motion
+from compare.report.drawing import COLOURS, ChartLine, legend, line_style, name_ends, power_of_ten, sheet
+from compare.report.motion import PicturedMotion
 from compare.report.motion_pictures import motion_svgs
 from compare.report.pareto import cost_of, curves
 from compare.report.stability_charts import error_growth, heat_map
@@ -77,7 +77,7 @@ def cell(scene, method, status, digits=None):
 
 @cache
 def motion():
-    return Motion.of_golden(load("paris"))
+    return PicturedMotion.of_golden(load("paris"))
 
 
 ROWS = study_rows()
@@ -239,7 +239,7 @@ def test_every_method_has_a_family_and_within_a_picture_no_two_look_alike():
 
 def drawn_legend(size, inside=False):
     """Draw a legend of so many lines; return the boxes of its names, of the axes and of the figure."""
-    lines = [Line(f"method {i}", [1, 10], [5, 5 + i], line_style(COLOURS[i % 7], i)) for i in range(size)]
+    lines = [ChartLine(f"method {i}", [1, 10], [5, 5 + i], line_style(COLOURS[i % 7], i)) for i in range(size)]
     with sheet((9.5, 8.6)) as figure:
         axes = figure.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
@@ -263,7 +263,7 @@ def test_a_legend_inside_the_axes_takes_no_room_from_them():
 
 
 def test_names_at_ends_stand_on_the_side_away_from_the_middle():
-    lines = [Line(name, [0, x], [0, 1], line_style(COLOURS[0], 0)) for name, x in (("west", -0.5), ("east", 0.5))]
+    lines = [ChartLine(name, [0, x], [0, 1], line_style(COLOURS[0], 0)) for name, x in (("west", -0.5), ("east", 0.5))]
     with sheet((6, 4)) as figure:
         axes = figure.subplots()
         axes.set(xlim=(-1, 1), ylim=(0, 2))

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from compare.report.folder import check_folder, json_text, write_files
-from compare.report.page import Table, page
+from compare.report.page import PageTable, page
 from reference import InputError
 from reference.system.checksums import check_sums
 
@@ -101,7 +101,7 @@ def test_checking_a_folder_makes_none(tmp_path: Path) -> None:
 
 
 def test_csv_has_one_header_line_all_digits_unix_line_ends_and_nothing_for_none() -> None:
-    text = Table.of_records(["a", "b"], [{"a": 0.1 + 0.2, "b": None}, {"a": "x,\ny", "b": 1}]).csv()
+    text = PageTable.of_records(["a", "b"], [{"a": 0.1 + 0.2, "b": None}, {"a": "x,\ny", "b": 1}]).csv()
     assert text.startswith("a,b\n0.30000000000000004,\n")
     assert "\r" not in text
     assert list(csv.reader(io.StringIO(text)))[2] == ["x,\ny", "1"]
@@ -115,12 +115,12 @@ def test_numbers_that_are_none_become_null_in_json() -> None:
 
 @pytest.mark.parametrize("text", ["=1+1", "+cmd", "-x", "@SUM(A1)", "\t=1", "\n=1", "-1e", "+-1"])
 def test_a_spreadsheet_runs_no_text_of_ours(text):
-    assert next(csv.reader(io.StringIO(Table({"name": ""}, [[text]]).csv().partition("\n")[2]))) == [f"'{text}"]
+    assert next(csv.reader(io.StringIO(PageTable({"name": ""}, [[text]]).csv().partition("\n")[2]))) == [f"'{text}"]
 
 
 def test_other_text_stays_as_it_is_in_csv_and_a_carriage_return_begins_no_new_row():
     rows = [[-1.5, "-1.5e-3", "+2", "rk4", None, "external: ./a -x =b"], ["b\rc\x1b", *[None] * 5]]
-    lines = Table(dict.fromkeys("abcdef", ""), rows).csv().splitlines()
+    lines = PageTable(dict.fromkeys("abcdef", ""), rows).csv().splitlines()
     assert lines[1:] == ["-1.5,-1.5e-3,+2,rk4,,external: ./a -x =b", "b\\rc\\x1b,,,,,"]
 
 

@@ -17,7 +17,7 @@ from places import ROOT
 
 from compare.report import page as parts
 from compare.report import study_page
-from compare.report.page import Html, Table
+from compare.report.page import Html, PageTable
 from compare.report.pareto import tidy
 from compare.report.study_tables import busy, cpu, setting, text_table
 from compare.studies.campaign import load_per_core
@@ -247,7 +247,7 @@ def test_cpu_seconds_have_three_digits(value, text):
 def test_parts_escape_text_and_keep_html():
     assert parts.text("a < b") == "a &lt; b"
     assert parts.text(Html("<b>")) == "<b>"
-    made_table = Table({"<x>": "number"}, [["1 & 2"]], ["front"]).html("a < b")
+    made_table = PageTable({"<x>": "number"}, [["1 & 2"]], ["front"]).html("a < b")
     for piece in ("&lt;x&gt;", "1 &amp; 2", "a &lt; b", '<tr class="front">', 'class="number"'):
         assert piece in made_table
     assert "<em>" in parts.page("t", [parts.section("A b, c", Html("<em>x</em>"))])
@@ -257,7 +257,7 @@ def test_parts_escape_text_and_keep_html():
 
 
 def test_a_table_says_the_same_as_html_as_text_and_as_csv():
-    table = Table({"name": "", "size": "number"}, [["one", 0.1 + 0.2], ["two & more", None]])
+    table = PageTable({"name": "", "size": "number"}, [["one", 0.1 + 0.2], ["two & more", None]])
     assert table.lines() == ["name                       size", "one         0.30000000000000004", "two & more"]
     assert table.csv() == "name,size\none,0.30000000000000004\ntwo & more,\n"
     assert '<td>two &amp; more</td><td class="number"></td>' in table.html()

@@ -168,10 +168,10 @@ def test_limits_of_what_does_not_apply_say_why():
 
 # Varied scenes -------------------------------------------------------------------------------------------------------
 def test_amplitude_is_the_distance_from_the_rest_position_in_the_same_direction():
-    from compare.approximations.case import Case
+    from compare.approximations.case import PaperCase
 
     for scene in (PARIS, PARIS.with_values(["release.vx=0.1"]), load_scene("hard")):
-        before, after = Case.of_scene(scene), Case.of_scene(varied(scene, "amplitude", 0.25))
+        before, after = PaperCase.of_scene(scene), PaperCase.of_scene(varied(scene, "amplitude", 0.25))
         rest = rest_position(after.k, after.ctx)
         away = [case.ctx.mpc(case.position[0], case.position[1] - rest[1] * case.length) for case in (before, after)]
         assert abs(abs(away[1]) - 0.25) < 1e-30

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from compare.approximations import APPROXIMATIONS, Motion
-from compare.approximations.case import Case
+from compare.approximations.case import PaperCase
 from compare.studies.approximation_limits import varied
 from reference import parse_scene, trajectory
 
@@ -161,7 +161,7 @@ def errors_of(word, order):
 
 def released(scene, amplitude):
     """Return the scene released without velocity so many metres from its rest position, between east and north."""
-    case = Case.of_scene(scene)
+    case = PaperCase.of_scene(scene)
     y = case.rest[1] * case.length + 0.8 * amplitude
     place = [f"release.x={0.6 * amplitude}", f"release.y={case.ctx.nstr(y, 40)}"]
     return scene.with_values([*place, "release.vx=0", "release.vy=0"])

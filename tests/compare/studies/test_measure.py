@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compare.methods.method import Method, Outcome, Work, outcome
+from compare.methods.method import Method, RunOutcome, Work, outcome
 from compare.methods.rhs.problem import Problem
 from compare.studies.measure import Bench
 from compare.studies.row import GridTruth
@@ -24,7 +24,7 @@ def costing(start_s: float, s_per_s: float, ends: list[float]) -> Method:
     """A method that stands still, and says that it took `start_s` and then `s_per_s` for each simulated second."""
 
     def prepare(problem: Problem, setting: float) -> Work:
-        def work() -> Outcome:
+        def work() -> RunOutcome:
             states = np.tile(problem.start, (len(problem.times), 1))
             ends.append(float(problem.times[-1]))
             return outcome(problem, states, cpu_s=start_s + s_per_s * problem.times[-1])

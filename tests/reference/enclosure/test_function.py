@@ -21,7 +21,7 @@ pytest.importorskip("flint")
 from flint import arb, arb_mat, ctx
 
 from reference.dataset.golden import load
-from reference.enclosure.fit import Fit, on_doubles
+from reference.enclosure.fit import FunctionFit, on_doubles
 from reference.enclosure.trusted.course import Course
 from reference.enclosure.trusted.function import CUT, Following, basis, check_function, on_sphere, weights
 from reference.enclosure.trusted.system import SceneBalls
@@ -123,7 +123,7 @@ class Driver:
     def __init__(self, scene, bits=BITS, order=64):
         self.inputs = scene.exact
         self.course = Course(SceneBalls(self.inputs, bits + 64), self.inputs.grid, columns=False, words=())
-        self.fit = Fit(self.course)
+        self.fit = FunctionFit(self.course)
         self.proposed = list(on_doubles(steps(self.inputs, self.inputs.grid[-1], bits, order)))
 
     def proved(self, change=Following.add):
