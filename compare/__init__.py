@@ -23,32 +23,6 @@ AttributeError: module 'compare' has no attribute 'jugde'; it has judge, ...
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from reference.system.imports import lazy
 
-if TYPE_CHECKING:
-    from .approximations import APPROXIMATIONS as APPROXIMATIONS
-    from .candidates.candidate import Candidate as Candidate
-    from .candidates.read import read as read
-    from .methods import METHODS as METHODS
-    from .report.plot import plot as plot
-    from .score.judge import judge as judge
-    from .score.verdict import Score as Score
-    from .studies.study import study as study
-    from .testing import assert_agrees as assert_agrees
-
-__getattr__, __dir__, __all__ = lazy(
-    __name__,
-    {
-        "approximations": "APPROXIMATIONS",
-        "candidates.candidate": "Candidate",
-        "candidates.read": "read",
-        "methods": "METHODS",
-        "report.plot": "plot",
-        "score.judge": "judge",
-        "score.verdict": "Score",
-        "studies.study": "study",
-        "testing": "assert_agrees",
-    },
-)
+__getattr__, __dir__, __all__ = lazy(__name__)

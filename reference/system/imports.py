@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import sys
 from collections import UserDict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from importlib import import_module
 from importlib.util import find_spec
-from pkgutil import iter_modules
+from pkgutil import get_data, iter_modules
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from ..errors import InputError, NotInstalledError, no_attribute, unknown
@@ -17,14 +18,15 @@ from ..errors import InputError, NotInstalledError, no_attribute, unknown
 PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
 
 
-def lazy(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """Return the functions `__getattr__` and `__dir__` of a package, which import its names at their first use.
+def lazy(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Return `__getattr__`, `__dir__` and `__all__` of a package, whose names are imported at their first use.
 
-    Args:
-        package: the package's own name.
-        modules: the names that each module defines, by its own name relative to the package.
+    The names, and the modules that define them, are those that its stub, `__init__.pyi`, imports.
     """
-    homes = {name: module for module, names in modules.items() for name in names.split()}
+    stub = get_data(package, "__init__.pyi")
+    assert stub is not None
+    imports = [node for node in ast.parse(stub).body if isinstance(node, ast.ImportFrom)]
+    homes = {alias.name: node.module for node in imports for alias in node.names}
 
     def attribute(name: str) -> Any:
         if name in homes:

@@ -1,0 +1,9 @@
+from .approximations import APPROXIMATIONS as APPROXIMATIONS
+from .candidates.candidate import Candidate as Candidate
+from .candidates.read import read as read
+from .methods import METHODS as METHODS
+from .report.plot import plot as plot
+from .score.judge import judge as judge
+from .score.verdict import Score as Score
+from .studies.study import study as study
+from .testing import assert_agrees as assert_agrees
