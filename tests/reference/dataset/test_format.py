@@ -68,7 +68,7 @@ def test_a_table_of_the_page_names_what_the_code_writes_in_its_order(title):
 
 def test_every_part_of_the_two_documents_has_its_table():
     parts = {one for module in (manifest, render, function) for one in vars(module).values() if isinstance(one, type)}
-    written = [one for one in parts if issubclass(one, manifest.Part) and one is not manifest.Part]
+    written = [one for one in parts if issubclass(one, manifest.ManifestPart) and one is not manifest.ManifestPart]
     described = [set(names) for names in PARTS.values()]
     extended = set(own(manifest.CrossCheckRecord))  # its table continues that of a run
     assert all(set(own(one)) in [*described, extended] for one in written)
