@@ -97,6 +97,7 @@ def test_the_grid_that_is_asked_for_is_the_one_that_is_measured_on() -> None:
     assert (len(result.golden.t[result.golden.t <= 60]), len(finer.golden.t)) == (2, 4)
 
 
+@pytest.mark.long
 def test_transits_finer_than_two_doubles_are_not_resolved_and_coarser_ones_are(bench: Bench) -> None:
     fine, coarse = bench.row(METHODS["limbs"], "inertial", 160), bench.row(METHODS["heyoka_real128"], "momentum", 1e-20)
     assert (fine.status, fine.transit_error_s) == ("ok", None)

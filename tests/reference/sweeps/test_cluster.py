@@ -139,7 +139,7 @@ def test_a_worker_that_comes_later_with_other_versions_does_no_work(cluster):
         ("http://127.0.0.1:1", r"tcp://HOST:PORT"),
         ("local:none", r"local:N"),
         ("local:0", r"local:N"),
-        ("tcp://127.0.0.1:1", "a scheduler that answers"),
+        pytest.param("tcp://127.0.0.1:1", "a scheduler that answers", marks=pytest.mark.long),  # waits for 10 s
     ],
 )
 def test_a_wrong_address_is_named(tmp_path, address, said):
@@ -147,6 +147,7 @@ def test_a_wrong_address_is_named(tmp_path, address, said):
         run(asked(tmp_path / "out"), tmp_path / "out", cluster=address)
 
 
+@pytest.mark.long
 def test_a_scheduler_without_workers_is_named(tmp_path):
     import distributed
 

@@ -97,7 +97,7 @@ def test_it_is_kept_beside_the_package_or_else_in_the_cache(folder):
     """Nothing can be written beside a package in an archive."""
     archive = folder / "packed.zip"
     with ZipFile(archive, "w") as packed:
-        for path in (ROOT / "reference").rglob("*.py"):
+        for path in [*(ROOT / "reference").rglob("*.py"), *(ROOT / "reference").rglob("*.pyi")]:
             packed.write(path, path.relative_to(ROOT))
     environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
     environment["FOUCAULT_CACHE"] = str(folder / "cache")

@@ -123,6 +123,7 @@ def test_a_child_that_is_killed_is_an_error_and_no_silence():
     worker.stop()
 
 
+@pytest.mark.long
 def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it():
     """After ten seconds."""
     worker = Worker(freeze)
