@@ -24,7 +24,7 @@ def test_what_is_there_stays_and_with_room_the_same_command_goes_on(made, disk, 
     folder = made.begun(disk / "place")
     words = made.format.command(folder)
     fill(disk)
-    for pages in range(size(2, 12)):
+    for pages in range(size(1, 12)):
         os.truncate(disk / "filler", (disk / "filler").stat().st_size - PAGE * min(pages, 1))
         status, _, err = made.foucault(*words)
         if status == 0:

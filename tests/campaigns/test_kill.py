@@ -33,7 +33,6 @@ SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OFTEN = {
     ("dataset", signal.SIGKILL),
     ("sweep", signal.SIGINT),
-    ("study", signal.SIGKILL),
 }
 ENDS = [
     pytest.param(name, number, id=f"{name} {number.name}", marks=[] if (name, number) in OFTEN else pytest.mark.long)

@@ -13,7 +13,8 @@ from compare import papers
 from compare.papers.checks import VERDICTS
 
 
-@pytest.mark.parametrize("as_json", [pytest.param(True, marks=pytest.mark.long), False])
+@pytest.mark.long
+@pytest.mark.parametrize("as_json", [True, False])
 def test_every_formula_is_listed_with_its_verdict(foucault: Any, as_json: bool) -> None:
     pytest.importorskip("numba")
     declared = papers.declared()
