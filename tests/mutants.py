@@ -50,7 +50,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/enclosure/trusted: printed_box": f"{ENCLOSURE}printed.py {DATASET}ranges_files.py",
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
     "reference/dataset/checks: scene_check": f"{LIMITS} {TIGHT} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
-    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION} {SOLVER}sections.py",
+    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION} {DATASET}possible.py {SOLVER}sections.py",
     "reference/dataset: verify files golden place render manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
