@@ -90,8 +90,8 @@ class Runnable:
                     self.keep(output, chosen.id)
                     return read_stream(output, chosen.title, naming=naming)
 
-            all_of_them = possible(score.scene, self.command)
-            measured = experiment(run, score.explanation, score.candidate, score.scene, score.allowed_m, all_of_them)
+            planned = possible(score.scene, self.command)
+            measured = experiment(run, score.explanation, score.candidate, score.scene, score.allowed_m, planned)
             if measured is None:
                 return score
             experiments, explanation = measured

@@ -1,6 +1,6 @@
 """Why a file is off, behind three doors: `diagnose` a file, `explain_change` of versions, `experiment` with a program.
 
-The inside is imported by the first of these that is called: it needs heyoka.
+What runs programs needs heyoka, and is imported when one of these is called.
 """
 
 from __future__ import annotations

@@ -26,10 +26,10 @@ def explanation_document(explanation: Explanation, readings: Readings | None = N
 
 
 def _summary(explanation: Explanation) -> dict[str, Any] | None:
-    """Return the cause that matters most, a simpler model before all, and what all causes say; None if none is known.
+    """Return the most important cause and the text of all causes, or None if no cause is known.
 
-    Beside its id stand the share of the root mean square error that is gone with all causes, how far a fitted input is
-    off in its unit, and the ids of the other causes.
+    A simpler model comes before any other cause. `explained` is the share of the root mean square error that all causes
+    remove, `shift` the error of a fitted input in its own unit, `also` lists the ids of the other causes.
     """
     known = sorted(explanation.known, key=lambda cause: -cause.size_m)
     if not known:

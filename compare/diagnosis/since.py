@@ -85,7 +85,7 @@ class Version:
 
     @property
     def left_m(self) -> float:
-        """What its causes leave of its error, in m; all of it where none is known."""
+        """The error in m that remains once its causes are put right; the whole error if no cause is known."""
         return float((self.document["corrected"] or {"max_error_m": self.error_m})["max_error_m"])
 
 

@@ -222,7 +222,7 @@ def judged_transits(
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth, omega = golden.transits, swing_rate(golden.scene, errors.speed_m_s)
     t, ax = truth["t"], truth["ax"]
-    # xdot over ω is a distance; where nothing swings there is none
+    # xdot divided by ω is a distance; if nothing swings, ω is 0 and the errors have no weight
     slopes = np.abs(ax) / omega if omega else np.zeros_like(ax)
     kept = (t <= end_of_run) | ((t - end_of_run) * slopes <= tolerance_m)
 

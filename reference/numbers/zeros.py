@@ -36,3 +36,40 @@ def columns_of(word: str) -> tuple[str, ...]:
 def sections_of(zeros: Mapping[str, Any]) -> dict[str, Any]:
     """Return the zeros of sections alone."""
     return {word: of_word for word, of_word in zeros.items() if word != XDOT}
+
+
+class WithZeros(Generic[T]):
+    """A result whose `zeros` are kept by word: those of xdot as transits, the others as sections."""
+
+    zeros: Mapping[str, Zeros[T]]
+
+    def _none(self) -> T:
+        """Return `columns.TRANSITS` without rows."""
+        raise NotImplementedError
+
+    @property
+    def _of_xdot(self) -> Zeros[T]:
+        return self.zeros.get(XDOT, Zeros(self._none(), []))
+
+    @property
+    def transits(self) -> T:
+        """`columns.TRANSITS` at every zero of xdot; without rows if not asked for, or if xdot is identically zero.
+
+        Of uncertain inputs each row is an interval in which every pendulum has one zero; the last may come late.
+        """
+        return self._of_xdot.table
+
+    @property
+    def directions(self) -> list[int]:
+        """+1 where xdot goes from - to +, per transit."""
+        return self._of_xdot.directions
+
+    @property
+    def possible(self) -> Undecided:
+        """Intervals in s, each with a parity, that may hold transits which the proof could not decide."""
+        return self._of_xdot.possible
+
+    @property
+    def sections(self) -> dict[str, Zeros[T]]:
+        """The passages of each section that the scene asks for, by its word."""
+        return sections_of(self.zeros)

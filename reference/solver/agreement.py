@@ -215,7 +215,7 @@ def with_zero_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart:
     """Return the columns that are printed of a word's zeros in a run, with the error of each number.
 
     With the form's error e, its rate f, off by at most f_e, and its second rate g, a zero is late by at most the
-    smaller root of (|f| - f_e - g late) late = e; where there is none, it is not known.
+    smaller root of (|f| - f_e - g late) late = e. If there is no root, the error is unknown.
 
     Args:
         run: the run.

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import InputError, counted, unknown
 from ..numbers.columns import STATE, TRANSITS, Framed, data_frame
 from ..numbers.precision import Array, double_below
-from ..numbers.zeros import XDOT, Undecided, Zeros, sections_of
+from ..numbers.zeros import XDOT, WithZeros, Zeros
 from ..scenes.scene import Scene, full_name
 from .swing import HOUR, Swing, swing_of
 
@@ -79,7 +79,7 @@ class Derivative(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Ranges:
+class Ranges(WithZeros[Intervals]):
     """Proven intervals of a scene with uncertain inputs: they hold for every value that each input may have.
 
     Attributes:
@@ -103,32 +103,8 @@ class Ranges:
     proof: Any = field(default=None, repr=False)
     derivatives: bool = field(default=False, repr=False)
 
-    @property
-    def transits(self) -> Intervals:
-        """Intervals in each of which every pendulum of the box has one zero of xdot, in order; the last may come late.
-
-        Without rows if not asked for, or if xdot is identically zero.
-        """
-        return self._of_xdot.table
-
-    @property
-    def directions(self) -> list[int]:
-        """+1 where xdot goes from - to +, per transit."""
-        return self._of_xdot.directions
-
-    @property
-    def possible(self) -> Undecided:
-        """Intervals of time that may hold other zeros of xdot, each with its parity."""
-        return self._of_xdot.possible
-
-    @property
-    def sections(self) -> dict[str, Zeros[Intervals]]:
-        """The passages of each section that the scene asks for, by its word."""
-        return sections_of(self.zeros)
-
-    @property
-    def _of_xdot(self) -> Zeros[Intervals]:
-        return self.zeros.get(XDOT, Zeros(Intervals(TRANSITS, ()), []))
+    def _none(self) -> Intervals:
+        return Intervals(TRANSITS, ())
 
     @property
     def t(self) -> Array:

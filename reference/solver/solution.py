@@ -18,7 +18,7 @@ from ..errors import InputError, UnreachableError, counted
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
 from ..numbers.table import Table, decimals_of, resolved
-from ..numbers.zeros import XDOT, Undecided, Zeros, columns_of, sections_of
+from ..numbers.zeros import WithZeros, Zeros, columns_of
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
 from .agreement import zero_decimals
@@ -86,7 +86,7 @@ class Proof:
 
 
 @dataclass(frozen=True, repr=False)
-class Solution(GridColumns):
+class Solution(GridColumns, WithZeros[Table]):
     """A solved scene.
 
     Attributes:
@@ -122,29 +122,8 @@ class Solution(GridColumns):
     discarded_s: float = 0.0
     not_checked: str = ""
 
-    @property
-    def transits(self) -> Table:
-        """`columns.TRANSITS` of every zero of xdot; without rows if not asked for, or if xdot is identically zero."""
-        return self._of_xdot.table
-
-    @property
-    def directions(self) -> list[int]:
-        """+1 where xdot goes from - to +, per transit."""
-        return self._of_xdot.directions
-
-    @property
-    def possible(self) -> Undecided:
-        """Intervals in s, each with a parity, that may hold transits which the proof could not decide."""
-        return self._of_xdot.possible
-
-    @property
-    def sections(self) -> dict[str, Zeros[Table]]:
-        """The passages of each section that the scene asks for, by its word."""
-        return sections_of(self.zeros)
-
-    @property
-    def _of_xdot(self) -> Zeros[Table]:
-        return self.zeros.get(XDOT, Zeros(Table(TRANSITS, 0, []), []))
+    def _none(self) -> Table:
+        return Table(TRANSITS, 0, [])
 
     @property
     def level(self) -> Level:
