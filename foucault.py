@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 if TYPE_CHECKING:
     import typer
 
-UNFORESEEN = 70  # a fault of this program, EX_SOFTWARE of sysexits.h; 1 would be a verdict, 2 the user's mistake
+# a fault of this program, EX_SOFTWARE of sysexits.h; 1 would be a verdict, 2 the user's mistake
+UNFORESEEN = 70
 INTERRUPTED = 130
 STOPPED = "stopped"  # of a command that says no more of what became of its work
 UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
@@ -42,7 +43,9 @@ def commands() -> typer.Typer:
             for heading, names in GROUPS.items():
                 with formatter.section(heading):
                     helps = {name: self.commands[name].help or "" for name in names}
-                    formatter.write_dl([(name, text.partition("\n")[0]) for name, text in helps.items()])
+                    formatter.write_dl(
+                        [(name, text.partition("\n")[0]) for name, text in helps.items()]
+                    )
 
         def invoke(self, ctx: Any) -> Any:
             """Run a command; a number that is none is told in plain words."""
@@ -51,7 +54,9 @@ def commands() -> typer.Typer:
             except typer.BadParameter as error:
                 told = re.match("Input should be a valid (number|integer)", error.message)
                 if told:
-                    error.message = f"expected a {'whole ' * (told[1] == 'integer')}number, without a unit"
+                    error.message = (
+                        f"expected a {'whole ' * (told[1] == 'integer')}number, without a unit"
+                    )
                 raise
             except EOFError as error:  # typer takes it for a user's Ctrl-D: "Aborted!", status 1
                 raise RuntimeError("a file or a pipe ended too early") from error
@@ -66,7 +71,11 @@ def commands() -> typer.Typer:
         app.add_typer(part)
 
     version_option = typer.Option(
-        False, "--version", callback=_version, is_eager=True, help="Print the versions of code and data and exit."
+        False,
+        "--version",
+        callback=_version,
+        is_eager=True,
+        help="Print the versions of code and data and exit.",
     )
 
     def front(_: bool = version_option) -> None:
@@ -105,7 +114,8 @@ def main() -> None:
     """
     gc.set_threshold(SELDOM)
     _open_closed_streams()
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: more threads only wait
+    # numpy's matrices are small here: more threads only wait
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         ended = _run()
     except KeyboardInterrupt:
@@ -171,7 +181,8 @@ def _report(error: Exception) -> str:
 
 def _end(status: str | int | None, message: str, interrupted: bool) -> NoReturn:
     """End with a message and an exit status; an interrupted run waits for no thread that is still at work."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
+    # from here on Ctrl-C would only show the innards of Python's own end
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     if message:
         with suppress(OSError):  # nobody reads it; the exit status stays
             print(f"foucault: {message}", file=sys.stderr)

@@ -35,7 +35,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     for mark in metafunc.definition.iter_markers(MARKER):
         scenes.update(dict.fromkeys(mark.args, None), **mark.kwargs)
     if not scenes:
-        raise pytest.UsageError(f"{metafunc.definition.nodeid}: name scenes with @pytest.mark.{MARKER}(paris=1e-8)")
+        raise pytest.UsageError(
+            f"{metafunc.definition.nodeid}: name scenes with @pytest.mark.{MARKER}(paris=1e-8)"
+        )
     metafunc.parametrize(FIXTURE, list(scenes.items()), ids=list(scenes), indirect=True)
 
 

@@ -71,7 +71,9 @@ def assert_agrees(
     rows, times = real_array(states, "states"), real_array(t, "t")
     if rows.ndim == 2 and 1 < rows.shape[0] != times.size == rows.shape[1]:
         advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
-        raise InputError("states", f"shape {rows.shape} for {times.size} times", "shape (rows, columns)", advice)
+        raise InputError(
+            "states", f"shape {rows.shape} for {times.size} times", "shape (rows, columns)", advice
+        )
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
     arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
@@ -105,7 +107,11 @@ class SceneCase:
     @property
     def inputs(self) -> dict[str, float]:
         """The scene's numbers by the words that `foucault score --run` fills in, such as x0, latitude and t_end."""
-        return {name: float(word) for name, word in placeholders(self.scene).items() if name != "gravity_is"}
+        return {
+            name: float(word)
+            for name, word in placeholders(self.scene).items()
+            if name != "gravity_is"
+        }
 
     @property
     def t(self) -> Array:
@@ -127,5 +133,7 @@ def message(result: Score) -> str:
         f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
-    within = [f"{result.scene.id}: every position is within the {result.allowed_m:.3e} m that are allowed, and yet:"]
+    within = [
+        f"{result.scene.id}: every position is within the {result.allowed_m:.3e} m that are allowed, and yet:"
+    ]
     return "\n".join([*(head if result.off_path else within), *lines(result)])

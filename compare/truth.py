@@ -15,7 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from reference import DatasetError, FoucaultError, Golden, InputError, Scene, Solution, load, load_scene
+from reference import (
+    DatasetError,
+    FoucaultError,
+    Golden,
+    InputError,
+    Scene,
+    Solution,
+    load,
+    load_scene,
+)
 from reference.dataset.golden import WITHIN, Dense, dense
 from reference.model.constants import constants_in_double
 from reference.model.force import rates
@@ -27,7 +36,8 @@ from reference.system import cache
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
 # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
 DENSE_FORMAT = b"dense 6"
-FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
+# of the cord length: how near the truth is evaluated for candidates with more digits than a double's
+FINE = 2.0**-110
 
 _here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
 
@@ -60,11 +70,17 @@ def golden_of(
     ships = shipping(scene)
     if ships is not None and ships.manifest.digits >= digits and not ships.manifest.alone:
         fits = {*(scene.run.sections or ())} <= ships.sections.keys()
-        if fits and not (grid and ships.scene.exact.grid[: len(times := scene.exact.grid)] != times):
+        if fits and not (
+            grid and ships.scene.exact.grid[: len(times := scene.exact.grid)] != times
+        ):
             return ships
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
-    parts = problem.model_dump(mode="json", include={"inputs", "pendulum", "site", "release", "run"})
-    name = f"{scene.id}-{hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]}"
+    parts = problem.model_dump(
+        mode="json", include={"inputs", "pendulum", "site", "release", "run"}
+    )
+    name = (
+        f"{scene.id}-{hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]}"
+    )
     if path := _here.get(name) or cache.entry("golden", name):
         with suppress(DatasetError, InputError, OSError):
             return _loaded(path)
@@ -97,9 +113,13 @@ def by_function(golden: Golden, times: Array) -> Dense | None:
     function = golden.function
     assert function is not None
     at = function.at(np.minimum(times, function.times[-1]))
-    states, late = np.array([getattr(at, name) for name in STATE]), np.maximum(times - function.times[-1], 0.0)
+    states, late = (
+        np.array([getattr(at, name) for name in STATE]),
+        np.maximum(times - function.times[-1], 0.0),
+    )
     low, bound = np.zeros_like(states), dict(function.bound)
-    if function.square is not None:  # how far it is above the lowest point is known far better than z in doubles
+    # how far it is above the lowest point is known far better than z in doubles
+    if function.square is not None:
         exact, aside = golden.scene.exact.length, states[0] ** 2 + states[1] ** 2
         near = float(exact)
         height = aside / (near + np.sqrt(near**2 - aside))
@@ -115,12 +135,17 @@ def by_function(golden: Golden, times: Array) -> Dense | None:
         left_out = float(late.max()) ** 2 * pull  # of the position
         if left_out > bound_m:
             return None
-        bound_m, bound_m_s = bound_m + left_out, bound_m_s + left_out * (math.sqrt(pull / length) + speed / length)
+        bound_m, bound_m_s = (
+            bound_m + left_out,
+            bound_m_s + left_out * (math.sqrt(pull / length) + speed / length),
+        )
         states += late * moved
     return Dense(times, states.T, low.T, bound_m, bound_m_s)
 
 
-def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | None) -> tuple[Solution, Dense] | None:
+def roughly_solved(
+    scene: Scene, times: Array, transits: bool, report: Report | None
+) -> tuple[Solution, Dense] | None:
     """Return a scene solved cheaply at a candidate's times and on its grid up to them, and the truth at those times.
 
     None where two cheap runs contradict each other or fail, and where the scene's rows ship.
@@ -131,7 +156,8 @@ def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | 
     from reference.solver.solve import roughly
 
     exact = [Fraction(t) for t in times.tolist()]
-    grid = [Fraction(float(t)) for t in _shortened(scene, float(times[-1])).exact.grid]  # as the runs take them
+    # as the runs take them
+    grid = [Fraction(float(t)) for t in _shortened(scene, float(times[-1])).exact.grid]
     problem = scene if transits else scene.with_values(["run.transits=false"])
     try:
         solution = roughly(problem, {*exact, *grid}, report)
@@ -144,7 +170,10 @@ def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | 
 def _loaded(folder: Path) -> Golden:
     """Load a dataset; it is checked and read again only if a file has been touched since this process read it."""
     stats = (path.stat() for path in [folder, *sorted(folder.iterdir())]) if folder.is_dir() else ()
-    return _read(folder, tuple((stat.st_ino, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns) for stat in stats))
+    return _read(
+        folder,
+        tuple((stat.st_ino, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns) for stat in stats),
+    )
 
 
 @lru_cache(maxsize=4)
@@ -189,7 +218,9 @@ def solves(golden: Golden, scene: Scene) -> bool:
 
 
 def _same_problem(scene: Scene, other: Scene) -> bool:
-    return all(getattr(scene, part) == getattr(other, part) for part in ("pendulum", "site", "release"))
+    return all(
+        getattr(scene, part) == getattr(other, part) for part in ("pendulum", "site", "release")
+    )
 
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:

@@ -16,7 +16,10 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 project = "Reference solver for the Foucault pendulum"
-author = ", ".join(one["name"] for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["authors"])
+author = ", ".join(
+    one["name"]
+    for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["authors"]
+)
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 
 # The source is the checkout: pages stay where a forge shows them, and their links lead to the same places.
@@ -58,7 +61,10 @@ class Notebook(MystParser):
 
     def parse(self, inputstring: str, document: nodes.document) -> None:
         """Read the text of a notebook."""
-        super().parse("\n\n".join(part for cell in json.loads(inputstring)["cells"] for part in _parts(cell)), document)
+        super().parse(
+            "\n\n".join(part for cell in json.loads(inputstring)["cells"] for part in _parts(cell)),
+            document,
+        )
 
 
 def _parts(cell: dict) -> Iterator[str]:

@@ -13,7 +13,8 @@ from .plain_text import plain, plain_lines, shortened
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
 MOST = 5  # names in a message at most
-VERY_ALIKE = 0.8  # of difflib, from 0 to 1: names that are as alike as this leave no room for others
+# of difflib, from 0 to 1: names that are as alike as this leave no room for others
+VERY_ALIKE = 0.8
 MOST_WHOLE = 2**62  # of a number that is counted: what libraries in C take
 LEAST_PART = 3  # characters of a word that is looked for inside the names as well
 
@@ -41,15 +42,23 @@ class InputError(FoucaultError):
 class NotInstalledError(InputError):
     """A package is missing: the field that asks for it, what needs it, and the extra that installs it."""
 
-    def __init__(self, field: str, purpose: str, package: str, extra: str, instead: str = "") -> None:
+    def __init__(
+        self, field: str, purpose: str, package: str, extra: str, instead: str = ""
+    ) -> None:
         expected = f"the package {package}"
         advice = f"Install it with pip install 'foucault-reference[{extra}]'{instead}."
         super().__init__(field, "not installed", expected, advice)
-        self.args = (plain_lines(f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"),)
+        self.args = (
+            plain_lines(
+                f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"
+            ),
+        )
 
 
 @contextmanager
-def usable(field: str, path: Path, expected: str = "a folder that can be written to") -> Iterator[None]:
+def usable(
+    field: str, path: Path, expected: str = "a folder that can be written to"
+) -> Iterator[None]:
     """Make an InputError of what the disk refuses; `field` is the option or variable that names the path."""
     try:
         yield
@@ -64,9 +73,15 @@ def checked_path(field: str, path: object, expected: str, advice: str = "") -> P
     return Path(path)
 
 
-def check_whole(field: str, number: object, least: int = 1, words: str = "a whole number from 1") -> None:
+def check_whole(
+    field: str, number: object, least: int = 1, words: str = "a whole number from 1"
+) -> None:
     """Raise InputError for what is no whole number from `least` on; `words` say what was expected."""
-    if not isinstance(number, Integral) or isinstance(number, bool) or not least <= int(number) <= MOST_WHOLE:
+    if (
+        not isinstance(number, Integral)
+        or isinstance(number, bool)
+        or not least <= int(number) <= MOST_WHOLE
+    ):
         raise InputError(field, number, words)
 
 
@@ -74,7 +89,9 @@ def all_of(mistakes: Sequence[InputError]) -> InputError:
     """Return the first of some mistakes; where there are several, its text tells all of them, one a line."""
     first = mistakes[0]
     if len(mistakes) > 1:
-        first.args = (plain_lines("\n  ".join((f"{len(mistakes)} mistakes:", *map(str, mistakes)))),)
+        first.args = (
+            plain_lines("\n  ".join((f"{len(mistakes)} mistakes:", *map(str, mistakes)))),
+        )
     return first
 
 
@@ -82,7 +99,10 @@ def _shown(value: object) -> str:
     """Return the beginning of a value as text."""
     try:
         text = value if isinstance(value, str) else repr(value)
-    except (ValueError, RecursionError):  # an integer of more than 4300 digits, or lists in lists without end
+    except (
+        ValueError,
+        RecursionError,
+    ):  # an integer of more than 4300 digits, or lists in lists without end
         text = f"too large a value to print, {type(value).__name__}"
     return shortened(text, LONGEST_VALUE)
 
@@ -105,7 +125,9 @@ class BeyondDoublesError(UnreachableError):
     """A number of a scene is too large for what is computed in binary64, such as steps and sizes."""
 
     def __init__(self) -> None:
-        super().__init__("A length, force, rate or time of the scene is beyond the range of binary64.")
+        super().__init__(
+            "A length, force, rate or time of the scene is beyond the range of binary64."
+        )
 
 
 class DatasetError(FoucaultError):
@@ -131,10 +153,15 @@ def nearest(word: object, known: Iterable[str]) -> list[str]:
     typed = str(word).lower()  # callers in Python give anything
     section, _, key = typed.rpartition(".")
     short = [name for name in names if key and name.startswith(section) and f".{key}" in name]
-    for alike in ([typed] if typed in names else short, get_close_matches(typed, names, n=MOST, cutoff=VERY_ALIKE)):
+    for alike in (
+        [typed] if typed in names else short,
+        get_close_matches(typed, names, n=MOST, cutoff=VERY_ALIKE),
+    ):
         if alike:
             return [names[name] for name in alike[:MOST]]
-    containing = sorted((name for name in names if len(typed) >= LEAST_PART and typed in name), key=len)
+    containing = sorted(
+        (name for name in names if len(typed) >= LEAST_PART and typed in name), key=len
+    )
     return [names[name] for name in (containing or get_close_matches(typed, names, n=MOST))][:MOST]
 
 
@@ -154,7 +181,9 @@ def counted(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
-def unknown(field: str, word: object, expected: str, known: Iterable[str], otherwise: str) -> InputError:
+def unknown(
+    field: str, word: object, expected: str, known: Iterable[str], otherwise: str
+) -> InputError:
     """Return the error for a word that is none of the known ones.
 
     Args:
@@ -174,4 +203,6 @@ def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
         return AttributeError(text)
     every = sorted(names)
     near = nearest(name, every)
-    return AttributeError(f"{text}; it has {', '.join([*near, *(other for other in every if other not in near)])}")
+    return AttributeError(
+        f"{text}; it has {', '.join([*near, *(other for other in every if other not in near)])}"
+    )

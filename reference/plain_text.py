@@ -101,7 +101,8 @@ def plain_output() -> Iterator[None]:
         yield
     finally:
         for name, stream in during.items():
-            if getattr(sys, name) is stream:  # a command line puts another in place when its reader has gone
+            # a command line puts another in place when its reader has gone
+            if getattr(sys, name) is stream:
                 setattr(sys, name, before[name])
 
 

@@ -22,7 +22,8 @@ from foucault import GROUPS
 from reference import load
 from reference.scenes.shipped import golden_root, scene_ids
 
-MODULES = ("flint", "numba", "matplotlib", "pyarrow", "distributed", "scipy")  # that only extras install
+# that only extras install
+MODULES = ("flint", "numba", "matplotlib", "pyarrow", "distributed", "scipy")
 PATIENCE_S = 300
 DONE, DISAGREES, REFUSED = 0, 1, 2
 SWEEP = "sweep paris --over site.latitude=0:90:45 --t-end 60"
@@ -49,7 +50,11 @@ class Case:
             return "" if ended.stdout else "nothing printed"
         if len(messages) != 1 or ended.stdout:
             return f"more than a message: {ended.stdout[:80]} / {' / '.join(messages)}"
-        return "" if f"foucault-reference[{self.extra}]" in messages[0] else f"no word of [{self.extra}]: {messages[0]}"
+        return (
+            ""
+            if f"foucault-reference[{self.extra}]" in messages[0]
+            else f"no word of [{self.extra}]: {messages[0]}"
+        )
 
 
 CASES = [
@@ -81,7 +86,10 @@ CASES = [
     Case("score --how python"),
     Case("score paris paris.csv --plot error.svg", "plot"),
     Case("score museum_gate paris.csv", "enclose"),
-    Case("score museum_gate --transits transits.csv --section 'gate 30' --uncertain none", status=DISAGREES),
+    Case(
+        "score museum_gate --transits transits.csv --section 'gate 30' --uncertain none",
+        status=DISAGREES,
+    ),
     Case("plot paris", "plot"),
     Case("plot paris.csv --out path.svg", "plot"),
     Case("atlas --out atlas", "plot"),
@@ -109,7 +117,8 @@ def prepare(folder: Path) -> None:
     """Write the files that the commands read."""
     golden = load(golden_root() / "paris")
     rows = [
-        f"{t!r},{x!r},{y!r}" for t, x, y in zip(golden.t.tolist(), golden.x.tolist(), golden.y.tolist(), strict=True)
+        f"{t!r},{x!r},{y!r}"
+        for t, x, y in zip(golden.t.tolist(), golden.x.tolist(), golden.y.tolist(), strict=True)
     ]
     right = "\n".join(["t,x,y", *rows, ""])
     (folder / "suite").mkdir()
@@ -127,15 +136,25 @@ def main() -> int:
         print(f"This is no installation without extras: it has {', '.join(present)}.")
         return REFUSED
     cases = [*CASES, *(Case(f"show {scene}") for scene in scene_ids())]
-    untried = {name for names in GROUPS.values() for name in names} - {case.line.split()[0] for case in cases}
+    untried = {name for names in GROUPS.values() for name in names} - {
+        case.line.split()[0] for case in cases
+    }
     faults = [f"{name}: no case runs this command" for name in sorted(untried)]
     with tempfile.TemporaryDirectory() as folder:
         prepare(Path(folder))
         for case in cases:
             start = time.perf_counter()
             fault = case.fault(ended(case.line, folder))
-            outcome = f"FAULT: {fault}" if fault else f"refused, names [{case.extra}]" if case.extra else "ok"
-            print(f"{time.perf_counter() - start:6.1f} s  foucault {case.line}: {outcome}", flush=True)
+            outcome = (
+                f"FAULT: {fault}"
+                if fault
+                else f"refused, names [{case.extra}]"
+                if case.extra
+                else "ok"
+            )
+            print(
+                f"{time.perf_counter() - start:6.1f} s  foucault {case.line}: {outcome}", flush=True
+            )
             if fault:
                 faults.append(f"{case.line}: {fault}")
     print(f"{len(cases)} commands, {len(faults)} faults", *faults, sep="\n")
@@ -145,7 +164,9 @@ def main() -> int:
 def ended(line: str, folder: str) -> subprocess.CompletedProcess[str]:
     """Run a command in a folder, and return how it ended."""
     command = [sys.executable, "-m", "foucault", *shlex.split(line)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+    return subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+    )
 
 
 if __name__ == "__main__":

@@ -22,7 +22,10 @@ from reference.scenes.scene import Scene, load_scene
 
 COSTLY = 15  # files named at the end of a test run, with the CPU seconds that they took
 # begun first, so that no worker is left with one of them at the end
-FIRST = {f"test_{name}.py" for name in ("explanation", "docs", "same_bytes", "kill", "experiments", "judge")}
+FIRST = {
+    f"test_{name}.py"
+    for name in ("explanation", "docs", "same_bytes", "kill", "experiments", "judge")
+}
 
 settings.register_profile("here", deadline=None, derandomize=True)
 settings.load_profile("here")
@@ -38,8 +41,14 @@ __all__ = ["check", "make_scene", "sanitized_check"]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--long", action="store_true", help="run the campaigns at full size, as `make campaign` does")
-    parser.addoption("--peers", action="store_true", help="fail where a method that an extra brings is missing")
+    parser.addoption(
+        "--long",
+        action="store_true",
+        help="run the campaigns at full size, as `make campaign` does",
+    )
+    parser.addoption(
+        "--peers", action="store_true", help="fail where a method that an extra brings is missing"
+    )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -86,7 +95,9 @@ USED = pytest.StashKey[float]()
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+def pytest_runtest_makereport(
+    item: pytest.Item,
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Note what a test, its preparation or its clearing away took."""
     report = yield
     before, now = item.config.stash.get(USED, 0.0), cpu_s()
@@ -96,8 +107,14 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    reports = [report for kind in ("passed", "failed", "") for report in terminalreporter.stats.get(kind, ())]
-    lines = {str(value) for report in reports for key, value in report.user_properties if key == "tally"}
+    reports = [
+        report
+        for kind in ("passed", "failed", "")
+        for report in terminalreporter.stats.get(kind, ())
+    ]
+    lines = {
+        str(value) for report in reports for key, value in report.user_properties if key == "tally"
+    }
     if lines:
         terminalreporter.section("campaigns")
     for line in sorted(lines):
@@ -127,7 +144,9 @@ def command_line() -> Any:
 
 
 @pytest.fixture
-def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+def foucault(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
     """Run a command in this process; return exit status, stdout, stderr."""
 
     def call(*words: object, stdin: bytes = b"") -> tuple[int, str, str]:
@@ -143,7 +162,8 @@ def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str])
         except SystemExit as stop:
             status = int(stop.code or 0)
         finally:
-            signal.signal(signal.SIGINT, signal.default_int_handler)  # as it ends, it has it ignored
+            # as it ends, it has it ignored
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         output = capfd.readouterr()
         return status, output.out, output.err
 

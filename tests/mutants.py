@@ -29,16 +29,26 @@ from mutations import Mutation, drawn, equivalents, mutations_of, stale
 
 ROOT = Path(__file__).parent.parent
 WORKERS = 2
-SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds, and times what they take without it
-DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
-LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
+# what the tests of a mutant may take: some CPU seconds, and times what they take without it
+SPARE_S, LONGER = 30, 5
+DATASET, SCORE, SOLVER = (
+    "tests/reference/dataset/test_",
+    "tests/compare/score/test_",
+    "tests/reference/solver/test_",
+)
+LIMITS, FILES, BITS = (
+    f"{DATASET}limits.py",
+    f"{DATASET}write_and_read.py",
+    "tests/test_architecture.py",
+)
 NUMBERS, FUNCTION = "tests/reference/numbers/test_", f"{DATASET}function.py"
 VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
 TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
 PASSAGES = "tests/reference/engines/test_passages.py"
 ENCLOSURE = "tests/reference/enclosure/test_"
 FORMULAS = f"{ENCLOSURE}primitives.py {ENCLOSURE}identities.py {ENCLOSURE}formulas.py"
-HOLDS = f"{ENCLOSURE}mutations.py::test_the_module_as_it_is_passes_every_check"  # of that very module
+# of that very module
+HOLDS = f"{ENCLOSURE}mutations.py::test_the_module_as_it_is_passes_every_check"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/enclosure/trusted: sections": f"{HOLDS}[sections]",
     "reference/enclosure/trusted: box": f"{HOLDS}[box]",
@@ -92,14 +102,24 @@ def chosen_mutants(count: int, seed: int, module: str) -> tuple[list[Mutant], in
         every = mutations_of(file)
         telling = [mutation for mutation in every if str(mutation) not in equivalents()]
         left_out += len(every) - len(telling)
-        ranked += [(rank, Mutant(mutation, tests)) for rank, mutation in enumerate(drawn(telling, seed))]
+        ranked += [
+            (rank, Mutant(mutation, tests)) for rank, mutation in enumerate(drawn(telling, seed))
+        ]
     ranked.sort(key=lambda pair: pair[0])
     return [mutant for _, mutant in ranked[:count]], left_out
 
 
 def status_of(tests: str, folder: Path, most: int, output: int | None = subprocess.DEVNULL) -> int:
     """Return the exit status of tests in a copy of the project, ended after `most` CPU s or ten times that of wall."""
-    limits = ["timeout", "--signal=KILL", str(10 * most), "sh", "-c", f'ulimit -t {most}; exec "$@"', "sh"]
+    limits = [
+        "timeout",
+        "--signal=KILL",
+        str(10 * most),
+        "sh",
+        "-c",
+        f'ulimit -t {most}; exec "$@"',
+        "sh",
+    ]
     words = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-k"]
     words += [f"not ({SLOW.replace(' ', ' or ')})", *tests.split()]
     environment = {**os.environ, "PYTHONPATH": str(folder)}
@@ -126,7 +146,9 @@ def outcome(folder: Path, mutant: Mutant, most: int) -> str:
 
 
 def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("--count", type=int, default=60)
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--module", default="", help="part of the paths to choose")
@@ -148,14 +170,24 @@ def main() -> None:
 
     with tempfile.TemporaryDirectory() as place, ThreadPoolExecutor(WORKERS) as pool:
         for i in range(WORKERS):
-            copies.put(Path(shutil.copytree(ROOT, f"{place}/{i}", ignore=shutil.ignore_patterns(".*"))))
-        cpu_s = {tests: cpu_of(tests, Path(place, "0")) for tests in dict.fromkeys(mutant.tests for mutant in every)}
+            copies.put(
+                Path(shutil.copytree(ROOT, f"{place}/{i}", ignore=shutil.ignore_patterns(".*")))
+            )
+        cpu_s = {
+            tests: cpu_of(tests, Path(place, "0"))
+            for tests in dict.fromkeys(mutant.tests for mutant in every)
+        }
         for mutant, what in zip(every, pool.map(run, every), strict=True):
             found[mutant.mutation.file, what] += 1
     for file in sorted({file for file, _ in found}):
-        print(f"{file:45}", *(f"{found[file, what]:3} {what}" for what in ("killed", "timeout", "survived")))
+        print(
+            f"{file:45}",
+            *(f"{found[file, what]:3} {what}" for what in ("killed", "timeout", "survived")),
+        )
     survived = sum(found[file, what] for file, what in found if what == "survived")
-    print(f"{len(every)} mutants, {survived} survived; {left_out} equivalents left out of the population")
+    print(
+        f"{len(every)} mutants, {survived} survived; {left_out} equivalents left out of the population"
+    )
 
 
 if __name__ == "__main__":

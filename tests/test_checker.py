@@ -18,7 +18,15 @@ from reference.dataset.manifest import MANIFEST
 
 GOLDEN = ROOT / "data/golden"
 WITH_SECTIONS = ("laboratory_drag", "museum_gate")
-QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "two_radians.binary64")
+QUICK = (
+    "conical",
+    "damped",
+    "inverted_rest",
+    "nanometre",
+    "over_top",
+    "separatrix",
+    "two_radians.binary64",
+)
 FORGED = ("barely_over", "damped", "nanometre_paris", "vertical_picometre", "weightless")
 GENERIC = ("barely_over", "damped", "nanometre_paris")  # their motion depends on every input
 
@@ -32,7 +40,9 @@ def test_shipped_datasets_are_proved(check, name):
 
 def test_sections_of_every_kind_are_proved(check, tmp_path):
     words = "highest; lowest; turn 0; turn 30; gate 12.5; gate -30@0"
-    scene = reference.load_scene("paris", ["run.t_end=30", "run.digits=25", f"run.sections={words}", "release.vy=0.05"])
+    scene = reference.load_scene(
+        "paris", ["run.t_end=30", "run.digits=25", f"run.sections={words}", "release.vy=0.05"]
+    )
     done = check(reference.write(reference.solve(scene), tmp_path / "paris"))
     assert done.returncode == 0, done.stdout
     rows = (tmp_path / "paris/sections.csv").read_text().splitlines()
@@ -41,7 +51,9 @@ def test_sections_of_every_kind_are_proved(check, tmp_path):
 
 @pytest.mark.parametrize("number", ["0.3000000000", "0.3000000001", "0.2999999999", "0.3000000002"])
 def test_a_release_between_two_decimals_may_be_either_of_them(check, tmp_path, number):
-    scene = reference.load_scene("paris", ["release.x=0.30000000005", "run.t_end=30", "run.digits=10"])
+    scene = reference.load_scene(
+        "paris", ["release.x=0.30000000005", "run.t_end=30", "run.digits=10"]
+    )
     tie = reference.write(reference.solve(scene, level="enclosed"), tmp_path / "tie")
     forge(tie, grid=lambda rows, header: rows[0].__setitem__(header.index("x"), number))
     seen = "is off by" in check(tie).stdout
@@ -49,9 +61,13 @@ def test_a_release_between_two_decimals_may_be_either_of_them(check, tmp_path, n
 
 
 @pytest.mark.parametrize("last", ["", "0" * 60 + "1"])
-def test_how_a_bob_begins_is_decided_where_it_is_pushed_exactly_sideways_alone(check, tmp_path, last):
+def test_how_a_bob_begins_is_decided_where_it_is_pushed_exactly_sideways_alone(
+    check, tmp_path, last
+):
     push = ["release.vx=-0.04", f"release.vy=0.03{last}", "site.gravity_is=effective"]
-    scene = reference.load_scene("paris", [*push, "run.t_end=30", "run.digits=15", "run.sections=highest"])
+    scene = reference.load_scene(
+        "paris", [*push, "run.t_end=30", "run.digits=15", "run.sections=highest"]
+    )
     aside = reference.write(reference.solve(scene, level="enclosed"), tmp_path / "aside")
     assert check(aside).returncode == 0
     forge(aside, manifest=lambda document: document["sections"]["possible"].update(highest=[]))
@@ -77,7 +93,8 @@ def test_a_row_too_many_among_the_doubles_is_found(check, tmp_path, table):
 def test_with_too_few_bits_the_run_begins_again(check, tmp_path):
     copy = shutil.copytree(GOLDEN / "weightless", tmp_path / "copy")
     text = (copy / MANIFEST).read_text()
-    (copy / MANIFEST).write_text(text.replace('"digits": 30', '"digits": 1'))  # by which the bits are guessed
+    # by which the bits are guessed
+    (copy / MANIFEST).write_text(text.replace('"digits": 30', '"digits": 1'))
     done = check(copy)
     assert done.returncode == 1
     assert "digits is 1, and should be 30" in done.stdout
@@ -173,7 +190,9 @@ def an_input(folder, draw):
         section, name = draw.choice(list(inputs_of(document["scene"])))
         with localcontext() as context:
             context.prec = 200
-            document["scene"][section][name] = f"{Decimal(document['scene'][section][name]) + Decimal('1e-18'):f}"
+            document["scene"][section][name] = (
+                f"{Decimal(document['scene'][section][name]) + Decimal('1e-18'):f}"
+            )
 
     forge(folder, manifest=change)
 
@@ -193,18 +212,31 @@ def reading_of_inputs(folder, draw):
 def another_file(folder, draw):
     """Change one digit in a file that follows from the tables, or a number of the manifest that does."""
     texts = dict(read_files(folder).texts)
-    name = draw.choice([name for name in texts if name not in ("grid.csv", "transits.csv", MANIFEST)])
-    pattern = r"State at .*\n  x .*\n  y .*" if name.endswith(".txt") else r"0x[01]\.[0-9a-f]{13}|\d\.\d{15,}"
+    name = draw.choice(
+        [name for name in texts if name not in ("grid.csv", "transits.csv", MANIFEST)]
+    )
+    pattern = (
+        r"State at .*\n  x .*\n  y .*"
+        if name.endswith(".txt")
+        else r"0x[01]\.[0-9a-f]{13}|\d\.\d{15,}"
+    )
     found = draw.choice(list(re.finditer(pattern, texts[name])))
     place = found.end() - 1
     text = texts[name]
     texts[name] = text[:place] + ("1" if text[place] == "0" else "0") + text[place + 1 :]
-    seal(folder, json.loads((folder / MANIFEST).read_text()), {k: v for k, v in texts.items() if k != MANIFEST})
+    seal(
+        folder,
+        json.loads((folder / MANIFEST).read_text()),
+        {k: v for k, v in texts.items() if k != MANIFEST},
+    )
 
 
 def section_digit(folder, draw):
     def change(rows, header):
-        row, column = draw.choice(rows), header.index(draw.choice(("t", "x", "y", "z", "vx", "vy", "vz")))
+        row, column = (
+            draw.choice(rows),
+            header.index(draw.choice(("t", "x", "y", "z", "vx", "vy", "vz"))),
+        )
         row[column] = by_one_unit(row[column], draw)
 
     forge(folder, sections=change)
@@ -242,7 +274,12 @@ def passage_of_another(folder, draw):
 
     renamed: dict[str, str] = {}
     forge(folder, manifest=change)
-    forge(folder, sections=lambda rows, header: [row.__setitem__(0, renamed.get(row[0], row[0])) for row in rows])
+    forge(
+        folder,
+        sections=lambda rows, header: [
+            row.__setitem__(0, renamed.get(row[0], row[0])) for row in rows
+        ],
+    )
 
 
 KINDS = (
@@ -270,11 +307,15 @@ OF_MOTION = (an_input, meaning_of_gravity, reading_of_inputs)
 def forgery(draw, number):
     """Return a kind of forgery, each in turn, and a dataset that it fits."""
     kind = KINDS[number % len(KINDS)]
-    return kind, draw.choice(WITH_SECTIONS if kind in OF_SECTIONS else GENERIC if kind in OF_MOTION else FORGED)
+    return kind, draw.choice(
+        WITH_SECTIONS if kind in OF_SECTIONS else GENERIC if kind in OF_MOTION else FORGED
+    )
 
 
 @pytest.mark.parametrize(("parity", "status"), [("odd", 0), ("even", 1), ("unknown", 0)])
-def test_an_interval_that_may_hold_a_transit_is_left_out_and_its_parity_is_proved(check, tmp_path, parity, status):
+def test_an_interval_that_may_hold_a_transit_is_left_out_and_its_parity_is_proved(
+    check, tmp_path, parity, status
+):
     folder = shutil.copytree(GOLDEN / "damped", tmp_path / "forged")
 
     def change(document):
@@ -297,7 +338,13 @@ def test_forgeries_are_found(check, tmp_path, size, tally):
         folder = shutil.copytree(GOLDEN / name, tmp_path / "forged")
         kind(folder, draw)
         done = check(folder)
-        where = r"sections\.csv" if kind in OF_SECTIONS else r"(grid|transits)\.csv" if kind in OF_MOTION else ""
+        where = (
+            r"sections\.csv"
+            if kind in OF_SECTIONS
+            else r"(grid|transits)\.csv"
+            if kind in OF_MOTION
+            else ""
+        )
         if done.returncode != 1 or not re.search(where, done.stdout):
             missed.append((number, kind.__name__, name, done.returncode, done.stdout))
         shutil.rmtree(folder)

@@ -82,7 +82,8 @@ def possible(from_s: str, to_s: str, parity: str) -> Change:
     def with_page(folder: Path) -> None:
         forge(folder, manifest=change)
         page = (folder / "certified.txt").read_text()
-        if "possible transit" not in page:  # the package does not know such a parity, and left the page as it was
+        # the package does not know such a parity, and left the page as it was
+        if "possible transit" not in page:
             line = f"  possible transit in [{from_s}, {to_s}] s ({parity} number of zeros): not decided\n"
             page = page.replace("(complete)", "(undecided intervals)")
             page = page.replace("\nHow to score", line + "\nHow to score")
@@ -144,7 +145,9 @@ def asks_for_no_transits(folder: Path) -> None:
         document["decimals"]["transits"] = {}
 
     forge(folder, manifest=change)
-    replaced("certified.txt", "Transits (xdot = 0, t > 0): 13", "Transits (xdot = 0, t > 0): 0")(folder)
+    replaced("certified.txt", "Transits (xdot = 0, t > 0): 13", "Transits (xdot = 0, t > 0): 0")(
+        folder
+    )
     vectors = json.loads((folder / "vectors.json").read_text())
     vectors["scene"]["run"]["transits"] = "false"
     vectors["transits"] = []
@@ -161,7 +164,13 @@ class Case(NamedTuple):
     dataset: str = PLAIN
 
 
-ALL_TABLES = ("grid.csv", "transits.csv", "sections.csv", "grid.binary64.csv", "transits.binary64.csv")
+ALL_TABLES = (
+    "grid.csv",
+    "transits.csv",
+    "sections.csv",
+    "grid.binary64.csv",
+    "transits.binary64.csv",
+)
 LARGEST = str(2**63 - 1)
 LEAST = str(-(2**63))
 X = '"x": "0.3"'
@@ -170,15 +179,32 @@ X_OF_ROW_1 = ",0.300000000000000000000000000000"
 
 TABLES = [
     *(
-        Case(f"no last newline: {file}", without_last_newline(file), 2, "the last line has no end", WITH_SECTIONS)
+        Case(
+            f"no last newline: {file}",
+            without_last_newline(file),
+            2,
+            "the last line has no end",
+            WITH_SECTIONS,
+        )
         for file in ALL_TABLES
     ),
     *(
-        Case(f"{more!r} after the last row: {file}", appended(file, more), 2, "the last line has no end", WITH_SECTIONS)
+        Case(
+            f"{more!r} after the last row: {file}",
+            appended(file, more),
+            2,
+            "the last line has no end",
+            WITH_SECTIONS,
+        )
         for file in ALL_TABLES
         for more in ("5", "5,", "5,1,2,3,4,5,")
     ),
-    Case("a cell too many", replaced("grid.csv", X_OF_ROW_1, f"{X_OF_ROW_1},1"), 2, "grid.csv, line 2: "),
+    Case(
+        "a cell too many",
+        replaced("grid.csv", X_OF_ROW_1, f"{X_OF_ROW_1},1"),
+        2,
+        "grid.csv, line 2: ",
+    ),
     Case("a cell too few", replaced("grid.csv", X_OF_ROW_1, ""), 2, "grid.csv, line 2: "),
     Case("an empty table", written("grid.csv", ""), 2, "is empty"),
     Case("a header alone", written("grid.csv", "t,x,y,z,vx,vy,vz\n"), 1, "0 rows"),
@@ -186,9 +212,16 @@ TABLES = [
     Case("a byte 0", replaced("grid.csv", "0.3000", "0.3\0000"), 2, "byte 0"),
     Case("carriage returns", replaced("grid.csv", "vz\n", "vz\r\n"), 2, "the first line must be"),
     Case("a table that is a folder", a_folder("grid.csv"), 2, "cannot be read"),
-    Case("a table that is listed, but not there", removed("grid.binary64.csv"), 2, "cannot be opened"),
+    Case(
+        "a table that is listed, but not there", removed("grid.binary64.csv"), 2, "cannot be opened"
+    ),
     Case("vectors that are listed, but not there", removed("vectors.json"), 2, "cannot be opened"),
-    Case("a table that was not asked for", written("sections.csv", "section\n"), 1, "does not ask for it"),
+    Case(
+        "a table that was not asked for",
+        written("sections.csv", "section\n"),
+        1,
+        "does not ask for it",
+    ),
     Case("transits that were not asked for", asks_for_no_transits, 1, "does not ask for it"),
 ]
 
@@ -213,7 +246,12 @@ NUMBERS = [
             ("nan", 1, "another number of decimals"),
         ]
     ),
-    Case("a row with the number 1x", replaced("transits.csv", "\n1,", "\n1x,"), 1, "its number is wrong"),
+    Case(
+        "a row with the number 1x",
+        replaced("transits.csv", "\n1,", "\n1x,"),
+        1,
+        "its number is wrong",
+    ),
     Case("decimals 30x", value("decimals", "grid", "x", to="30x"), 2, "not a whole number"),
 ]
 
@@ -245,16 +283,40 @@ DOCUMENTS = [
     ),
     Case("a manifest that is a folder", a_folder(MANIFEST), 2, "cannot be read"),
     Case("an unknown input", replaced(MANIFEST, LENGTH, f'{LENGTH}, "mass": "28"'), 1, "mass"),
-    Case("an unknown key", replaced(MANIFEST, '"digits": 30', '"digits": 30, "mass": 28'), 1, "mass"),
-    Case("a vector without its row", replaced("vectors.json", '"row": 1,', '"now": 1,'), 1, "states.0.now"),
-    Case("a vector with more", replaced("vectors.json", '"row": 1,', '"row": 1, "t": "7",'), 1, "states.0.t"),
-    Case("a vector of row 0", replaced("vectors.json", '"row": 1,', '"row": 0,'), 2, "has no row 0"),
+    Case(
+        "an unknown key", replaced(MANIFEST, '"digits": 30', '"digits": 30, "mass": 28'), 1, "mass"
+    ),
+    Case(
+        "a vector without its row",
+        replaced("vectors.json", '"row": 1,', '"now": 1,'),
+        1,
+        "states.0.now",
+    ),
+    Case(
+        "a vector with more",
+        replaced("vectors.json", '"row": 1,', '"row": 1, "t": "7",'),
+        1,
+        "states.0.t",
+    ),
+    Case(
+        "a vector of row 0", replaced("vectors.json", '"row": 1,', '"row": 0,'), 2, "has no row 0"
+    ),
     *(
-        Case(f"a vector of row {row}", replaced("vectors.json", '"row": 1,', f'"row": {row},'), 2, "whole number")
+        Case(
+            f"a vector of row {row}",
+            replaced("vectors.json", '"row": 1,', f'"row": {row},'),
+            2,
+            "whole number",
+        )
         for row in (LARGEST, LEAST, "302", "1e0")
     ),
     *(
-        Case(f"digits {text}", replaced(MANIFEST, '"digits": 30', f'"digits": {text}'), 2, "whole number")
+        Case(
+            f"digits {text}",
+            replaced(MANIFEST, '"digits": 30', f'"digits": {text}'),
+            2,
+            "whole number",
+        )
         for text in (LARGEST, LEAST, "-1", "1e1", "1001")
     ),
 ]
@@ -282,29 +344,91 @@ INPUTS = [
             ("-1", "must be above 0"),
         ]
     ),
-    Case("a negative drag", value("scene", "pendulum", "drag", to="-1e-60"), 2, "drag must be at least 0"),
+    Case(
+        "a negative drag",
+        value("scene", "pendulum", "drag", to="-1e-60"),
+        2,
+        "drag must be at least 0",
+    ),
     Case("no drag", without_input, 2, "has no scene.pendulum.drag"),
-    Case("a flattening of 1", value("scene", "site", "inverse_flattening", to="1"), 2, "must be above 1"),
+    Case(
+        "a flattening of 1",
+        value("scene", "site", "inverse_flattening", to="1"),
+        2,
+        "must be above 1",
+    ),
     Case("a cord that is too short", replaced(MANIFEST, X, '"x": "2"'), 1, "not proved"),
     Case("too much gravity", value("scene", "site", "gravity", to="1e499"), 1, "not proved"),
-    Case("too many steps", value("scene", "pendulum", "drag", to="1e40"), 1, "more than 1e+07 steps", AT_REST),
-    Case("two kinds of release", replaced(MANIFEST, X, f'{X}, "angle": "30", "azimuth": "0"'), 1, "WRONG"),
+    Case(
+        "too many steps",
+        value("scene", "pendulum", "drag", to="1e40"),
+        1,
+        "more than 1e+07 steps",
+        AT_REST,
+    ),
+    Case(
+        "two kinds of release",
+        replaced(MANIFEST, X, f'{X}, "angle": "30", "azimuth": "0"'),
+        1,
+        "WRONG",
+    ),
     Case("transits: yes", value("scene", "run", "transits", to="yes"), 2, "true or false"),
-    Case("inputs: binary32", replaced(MANIFEST, '"decimal"', '"binary32"'), 2, "binary64 or decimal"),
+    Case(
+        "inputs: binary32", replaced(MANIFEST, '"decimal"', '"binary32"'), 2, "binary64 or decimal"
+    ),
     Case("level: certain", value("level", to="certain"), 2, "level is certain"),
-    Case("a level below that of the scene", value("level", to="confirmed"), 1, "should be enclosed"),
+    Case(
+        "a level below that of the scene", value("level", to="confirmed"), 1, "should be enclosed"
+    ),
     Case("another format", value("schema_version", to=4), 2, "format 3"),
 ]
 
 MEANING = [
-    Case("units", replaced(MANIFEST, '"m/s"', '"km/h"'), 1, "units.vx, vy, vz is km/h, and should be m/s"),
-    Case("axes", value("frame", to="topocentric, axes x west"), 1, "frame is topocentric, axes x west"),
-    Case("axes of the vectors", replaced("vectors.json", "x east", "x west"), 1, "vectors.json: frame"),
-    Case("units of the vectors", replaced("vectors.json", '"vx": "m/s"', '"vx": "km/h"'), 1, "columns.vx"),
-    Case("another reading on the page", replaced("certified.txt", "as: decimal", "as: binary64"), 1, "Inputs are read"),
-    Case("a bound twice on the page", replaced("certified.txt", "vx 5.1", "vx 6.1e-33, vx 5.1"), 1, "by column"),
-    Case("a second number in a line", replaced("certified.txt", "by column: ", "by column: x 1, "), 1, "by column"),
-    Case("the scene of the vectors", replaced("vectors.json", X, '"x": "0.2"'), 1, "scene.release.x"),
+    Case(
+        "units",
+        replaced(MANIFEST, '"m/s"', '"km/h"'),
+        1,
+        "units.vx, vy, vz is km/h, and should be m/s",
+    ),
+    Case(
+        "axes",
+        value("frame", to="topocentric, axes x west"),
+        1,
+        "frame is topocentric, axes x west",
+    ),
+    Case(
+        "axes of the vectors",
+        replaced("vectors.json", "x east", "x west"),
+        1,
+        "vectors.json: frame",
+    ),
+    Case(
+        "units of the vectors",
+        replaced("vectors.json", '"vx": "m/s"', '"vx": "km/h"'),
+        1,
+        "columns.vx",
+    ),
+    Case(
+        "another reading on the page",
+        replaced("certified.txt", "as: decimal", "as: binary64"),
+        1,
+        "Inputs are read",
+    ),
+    Case(
+        "a bound twice on the page",
+        replaced("certified.txt", "vx 5.1", "vx 6.1e-33, vx 5.1"),
+        1,
+        "by column",
+    ),
+    Case(
+        "a second number in a line",
+        replaced("certified.txt", "by column: ", "by column: x 1, "),
+        1,
+        "by column",
+    ),
+    Case(
+        "the scene of the vectors", replaced("vectors.json", X, '"x": "0.2"'), 1, "scene.release.x"
+    ),
 ]
 
 DOUBLES = [
@@ -327,21 +451,39 @@ DOUBLES = [
             ("0x0.8p+0", "no double is written"),
         ]
     ),
-    Case("a double within a lax bound", lax_bound_and_a_double_within_it, 1, "is not the nearest double"),
-    Case("a direction beside doubles", in_a_doubles_row("direction", "+1"), 1, "direction is not that of"),
+    Case(
+        "a double within a lax bound",
+        lax_bound_and_a_double_within_it,
+        1,
+        "is not the nearest double",
+    ),
+    Case(
+        "a direction beside doubles",
+        in_a_doubles_row("direction", "+1"),
+        1,
+        "direction is not that of",
+    ),
     Case("a number beside doubles", in_a_doubles_row("k", "2"), 1, "k is not that of"),
     Case("a bound beside doubles", in_a_doubles_row("bound", "5.1e-28"), 1, "bound is not that of"),
 ]
 
 INTERVALS = [
     Case("an unknown parity", possible("1", "2", "banana"), 1, "not odd, even or unknown"),
-    Case("an interval after the end", possible("3000.5", "3000.6", "even"), 1, "ends after the run"),
+    Case(
+        "an interval after the end", possible("3000.5", "3000.6", "even"), 1, "ends after the run"
+    ),
     Case("an interval over the end", possible("2999.9", "3000.1", "even"), 1, "ends after the run"),
 ]
 
 SECTIONS = [
     *(
-        Case(f"sections {words[:30]!r}", replaced(MANIFEST, '"gate 127"', f'"{words}"'), status, says, WITH_SECTIONS)
+        Case(
+            f"sections {words[:30]!r}",
+            replaced(MANIFEST, '"gate 127"', f'"{words}"'),
+            status,
+            says,
+            WITH_SECTIONS,
+        )
         for words, status, says in [
             ("gate 127;", 2, "no space after a semicolon"),
             ("gate 127; ", 2, "is no section"),
@@ -359,7 +501,13 @@ SECTIONS = [
         for count in (-1, -5001, -100_000, 10**18)
     ),
     Case("fewer rows of a section", section_count(100), 1, "the manifest 100", WITH_SECTIONS),
-    Case("rows of another section", replaced(MANIFEST, ": 107\n", ': 107, "lowest": 3\n'), 1, "lowest", WITH_SECTIONS),
+    Case(
+        "rows of another section",
+        replaced(MANIFEST, ": 107\n", ': 107, "lowest": 3\n'),
+        1,
+        "lowest",
+        WITH_SECTIONS,
+    ),
 ]
 
 CASES = [*TABLES, *NUMBERS, *DOCUMENTS, *INPUTS, *MEANING, *DOUBLES, *INTERVALS, *SECTIONS]

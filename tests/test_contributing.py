@@ -30,12 +30,16 @@ def output(covered: Covered, time: Fraction) -> State:
 '''
 # what is done to each file that the recipe names
 EDITS = {
-    "reference/numbers/columns.py": lambda text: re.sub("^GRID = STATE", 'GRID = (*STATE, "ax")', text, flags=re.M),
+    "reference/numbers/columns.py": lambda text: re.sub(
+        "^GRID = STATE", 'GRID = (*STATE, "ax")', text, flags=re.M
+    ),
     "reference/enclosure/trusted/tube.py": lambda text: text + BALL,
     "reference/enclosure/trusted/printed.py": lambda text: re.sub(
         '^GRID, TRANSITS = "t,x.*?vz', r"\g<0>,ax", text, flags=re.M
     ),
-    "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace('"t,x,y,z,vx,vy,vz"', "its header"),
+    "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace(
+        '"t,x,y,z,vx,vy,vz"', "its header"
+    ),
 }
 HEADER = "t,x,y,z,vx,vy,vz,ax"
 IN_TURN = """
@@ -68,7 +72,9 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def recipes() -> dict[str, str]:
     """Return the rows of CONTRIBUTING's table by what is added."""
-    table = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("| what |")[2].partition("\n\n")[0]
+    table = (
+        (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("| what |")[2].partition("\n\n")[0]
+    )
     return dict(re.findall(r"^\| ([^|]+) \|(.+)$", table, re.M))
 
 
@@ -80,7 +86,9 @@ def test_every_file_that_a_recipe_names_is_there():
 
 
 def test_the_recipe_for_a_scene_makes_functions_of_doubles_as_they_ship():
-    (words,) = re.findall(r"`foucault generate <id> (--set inputs=binary64 .+?)`", recipes()["a scene"])
+    (words,) = re.findall(
+        r"`foucault generate <id> (--set inputs=binary64 .+?)`", recipes()["a scene"]
+    )
     manifest = read_manifest(ROOT / "data/golden/pole.binary64")
     assert manifest.alone
     assert {*words.split()} <= {*manifest.command.split()}
@@ -93,17 +101,43 @@ def test_the_recipe_names_the_files_that_have_to_be_touched_and_no_others():
 
 def test_a_column_is_made_and_verified_at_levels_of_runs_and_of_proof(copy, tmp_path, size):
     levels, env = ("self_consistent", "enclosed"), {**os.environ, "PYTHONPATH": str(copy)}
-    env |= size({"NUMBA_DISABLE_JIT": "1"}, {})  # heyoka alone: limbs would be compiled for the copy
+    # heyoka alone: limbs would be compiled for the copy
+    env |= size({"NUMBA_DISABLE_JIT": "1"}, {})
     lines = []
     for level in levels:
         out = str(tmp_path / level)
-        lines += [["generate", "paris", "--t-end", "120", "--digits", "20", "--level", level, "--out", out]]
+        lines += [
+            [
+                "generate",
+                "paris",
+                "--t-end",
+                "120",
+                "--digits",
+                "20",
+                "--level",
+                level,
+                "--out",
+                out,
+            ]
+        ]
         lines += [["verify", out]]
-    lines += [["generate", "paris", "--t-end", "5", "--uncertain", "length=±0.001", "--out", str(tmp_path / "ranges")]]
+    lines += [
+        [
+            "generate",
+            "paris",
+            "--t-end",
+            "5",
+            "--uncertain",
+            "length=±0.001",
+            "--out",
+            str(tmp_path / "ranges"),
+        ]
+    ]
     run = [sys.executable, "-c", IN_TURN, json.dumps(lines)]
     done = subprocess.run(run, check=False, cwd=copy, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     sheets = [(tmp_path / level / "grid.csv").read_text("utf-8").splitlines() for level in levels]
     runs, proof = ([line.split(",") for line in sheet] for sheet in sheets)
     assert ",".join(runs[0]) == ",".join(proof[0]) == HEADER
-    assert [row[-1] for row in runs] == [row[-1] for row in proof]  # two ways to compute ax, the same digits
+    # two ways to compute ax, the same digits
+    assert [row[-1] for row in runs] == [row[-1] for row in proof]

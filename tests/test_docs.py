@@ -28,7 +28,17 @@ import numpy as np
 import pytest
 import typer
 from notebooks import GALLERY, code_cells, text_of
-from pages import PAGES, blocks, code_spans, commands, of_language, output, output_here, shows, write_files
+from pages import (
+    PAGES,
+    blocks,
+    code_spans,
+    commands,
+    of_language,
+    output,
+    output_here,
+    shows,
+    write_files,
+)
 from places import ROOT
 
 import compare
@@ -49,7 +59,8 @@ TUTORIAL, SCENE, MEASURED, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/api.md",
 )
 INDENTED = None
-BESIDE = {ORACLE: ["compare/score", "compare/diagnosis"]}  # where the files are that a page names without a folder
+# where the files are that a page names without a folder
+BESIDE = {ORACLE: ["compare/score", "compare/diagnosis"]}
 EVERYWHERE = ["compare", "reference", "tests", "docs"]
 # what the blocks of each page are in; all but formulas, and what Sphinx itself carries out, is run
 LANGUAGES = {
@@ -82,7 +93,12 @@ def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them():
 
 
 def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed):
-    assert write_files(TUTORIAL, tmp_path) == ["pendulum.py", "sphere.py", "test_pendulum.py", "mine.toml"]
+    assert write_files(TUTORIAL, tmp_path) == [
+        "pendulum.py",
+        "sphere.py",
+        "test_pendulum.py",
+        "mine.toml",
+    ]
     for command, shown in commands(TUTORIAL):
         got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
@@ -95,7 +111,11 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, type
         got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     template = reference.load_scene(tmp_path / "mine.toml")
-    assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
+    assert (template.id, template.site.gravity_is, template.release.angle) == (
+        "mine",
+        "effective",
+        "5",
+    )
 
 
 def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
@@ -105,14 +125,21 @@ def test_from_a_tape_measure_to_the_hundredth_passage(tmp_path, typed):
         assert shows(shown, got), f"{command}\n{got}"
     late = (tmp_path / "passages.csv").read_text(encoding="utf-8").replace("446.38", "446.5")
     (tmp_path / "late.csv").write_text(late, encoding="utf-8")
-    assert "late.csv disagrees" in typed('foucault score hall --transits late.csv --section "gate 127"', tmp_path)
+    assert "late.csv disagrees" in typed(
+        'foucault score hall --transits late.csv --section "gate 127"', tmp_path
+    )
 
 
 def test_the_page_on_the_oracle_says_of_its_program_what_the_first_notebook_does(tmp_path, typed):
     """It is one program, and the notebook's test judges it."""
     write_files(ORACLE, tmp_path)
-    printed = [[float(word) for word in row.split(",")] for row in typed("python swing.py", tmp_path).splitlines()[1:]]
-    cell, explained, *_ = code_cells(json.loads((GALLERY / "first_verdict.ipynb").read_text("utf-8")))
+    printed = [
+        [float(word) for word in row.split(",")]
+        for row in typed("python swing.py", tmp_path).splitlines()[1:]
+    ]
+    cell, explained, *_ = code_cells(
+        json.loads((GALLERY / "first_verdict.ipynb").read_text("utf-8"))
+    )
     program, _, judged = "".join(cell["source"]).partition("first = compare.judge(")
     names = {}
     exec(program, names)
@@ -132,32 +159,53 @@ def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path, ty
 
 def test_the_table_of_golden_functions_is_that_of_the_files():
     page = functions_page.page()
-    assert page == functions_page.PAGE.read_text("utf-8"), "run: python tests/helpers/functions_page.py"
-    table = page.partition(functions_page.BEFORE)[2].partition(functions_page.AFTER)[0].split("|---|\n")[1]
-    cells = {line.split(" | ")[0].removeprefix("| "): line.split(" | ") for line in table.splitlines()}
+    assert page == functions_page.PAGE.read_text("utf-8"), (
+        "run: python tests/helpers/functions_page.py"
+    )
+    table = (
+        page.partition(functions_page.BEFORE)[2]
+        .partition(functions_page.AFTER)[0]
+        .split("|---|\n")[1]
+    )
+    cells = {
+        line.split(" | ")[0].removeprefix("| "): line.split(" | ") for line in table.splitlines()
+    }
     assert all(float(row[4]) <= 4e-15 for row in cells.values() if row[4] != "at rest")
-    pages = {name: json.loads((golden_root() / f"{name}.binary64/function.json").read_text("utf-8")) for name in cells}
-    assert all(float(row[6]) <= (1.1 if pages[name]["length_squared"] else 8) for name, row in cells.items())
+    pages = {
+        name: json.loads((golden_root() / f"{name}.binary64/function.json").read_text("utf-8"))
+        for name in cells
+    }
+    assert all(
+        float(row[6]) <= (1.1 if pages[name]["length_squared"] else 8)
+        for name, row in cells.items()
+    )
 
 
 def test_the_table_of_causes_is_that_of_the_code():
-    assert causes_page.page() == causes_page.PAGE.read_text("utf-8"), "run: python tests/helpers/causes_page.py"
+    assert causes_page.page() == causes_page.PAGE.read_text("utf-8"), (
+        "run: python tests/helpers/causes_page.py"
+    )
     source = (ROOT / "compare/diagnosis/conventions.py").read_text(encoding="utf-8")
     words = set(re.findall(r'Deviation\("(\w+)"', source)) | {
         word for word, _ in conventions.AXES_SAID.values() if word
     }
     told = {word for words in causes_page.HABITS for word in words.split(", ")}
-    assert words | {"z_down", "z_from_lowest", "rows_late", "rows_early"} == told  # those are made of parts
+    # those are made of parts
+    assert words | {"z_down", "z_from_lowest", "rows_late", "rows_early"} == told
 
 
 def test_the_page_on_scenes_has_every_field_with_its_default_unit_and_meaning():
     rows = {}
     for name, info in Scene.model_fields.items():
         inside = getattr(info.annotation, "model_fields", None)
-        rows |= {f"{name}.{key}": field for key, field in inside.items()} if inside else {name: info}
+        rows |= (
+            {f"{name}.{key}": field for key, field in inside.items()} if inside else {name: info}
+        )
     page = (ROOT / SCENE).read_text(encoding="utf-8")
     for name, info in rows.items():
-        default = "" if info.is_required() or info.default in (None, "", (), {}) else str(info.default)
+        default = (
+            "" if info.is_required() or info.default in (None, "", (), {}) else str(info.default)
+        )
         default = {"True": "true"}.get(default, default)
         unit = (info.json_schema_extra or {}).get("unit", "")
         assert f"| `{name}` | {default} | {unit} | {info.description} |" in page
@@ -174,13 +222,18 @@ def test_drag_and_azimuth_are_what_the_page_on_scenes_says(tmp_path, typed):
     )
     solved = reference.solve(path)
     x, y = (np.array(values, float) for values in (solved.x, solved.y))
-    assert x[0] == pytest.approx(y[0]) == pytest.approx(-12.3 * math.sin(math.radians(5)) / math.sqrt(2))
+    assert (
+        x[0]
+        == pytest.approx(y[0])
+        == pytest.approx(-12.3 * math.sin(math.radians(5)) / math.sqrt(2))
+    )
     width = np.hypot(x, y)
     swing = 36  # rows of one swing
     assert width[-swing:].max() / width[:swing].max() == pytest.approx(0.5, rel=0.005)
     motion = json.loads(typed(f"foucault show {path} --json", tmp_path))["motion"]
     sidereal = -15.0410671786 * math.sin(math.radians(51.48))
-    assert motion["precession_deg_per_h"] == pytest.approx(sidereal, rel=0.004)  # the rest is what Airy found
+    # the rest is what Airy found
+    assert motion["precession_deg_per_h"] == pytest.approx(sidereal, rel=0.004)
     assert motion["full_turn_h"] == pytest.approx(360 / abs(motion["precession_deg_per_h"]))
 
 
@@ -189,16 +242,30 @@ def test_the_error_budget_is_that_of_the_dataset():
     golden, doubles = reference.load("paris"), reference.load("paris.binary64")
     manifest = golden.manifest.model_dump()
     proof, bounds = manifest["enclosure"], manifest["bounds"]
-    assert f"at most {proof['position_radius_m']} m, and {proof['transit_radius_s']} s for a transit" in page
+    assert (
+        f"at most {proof['position_radius_m']} m, and {proof['transit_radius_s']} s for a transit"
+        in page
+    )
     assert f"between the {len(golden.directions)} that are listed" in page
-    assert f"{bounds['grid']['x']} m in *x* and *y*, {bounds['grid']['z']} m in *z*, {bounds['transit_s']} s" in page
+    assert (
+        f"{bounds['grid']['x']} m in *x* and *y*, {bounds['grid']['z']} m in *z*, {bounds['transit_s']} s"
+        in page
+    )
     for check in manifest["cross_checks"]:
         assert float(check["position_m"]) < 1e-46
-    own, other = (zip(*(table.exact(name) for name in ("x", "y", "z")), strict=True) for table in (golden, doubles))
-    gaps = ([float(a - b) for a, b in zip(p, q, strict=True)] for p, q in zip(own, other, strict=True))
+    own, other = (
+        zip(*(table.exact(name) for name in ("x", "y", "z")), strict=True)
+        for table in (golden, doubles)
+    )
+    gaps = (
+        [float(a - b) for a, b in zip(p, q, strict=True)] for p, q in zip(own, other, strict=True)
+    )
     apart = max(math.hypot(*gap) for gap in gaps)
     assert f"depart by {apart:.1e} m" in page
-    late = max(float(abs(p - q)) for p, q in zip(golden.transits.exact("t"), doubles.transits.exact("t"), strict=True))
+    late = max(
+        float(abs(p - q))
+        for p, q in zip(golden.transits.exact("t"), doubles.transits.exact("t"), strict=True)
+    )
     assert f"its transits by {late:.1e} s" in page
 
 
@@ -207,7 +274,9 @@ def test_the_experiments_of_the_oracle_measure_what_the_page_shows(tmp_path, typ
     """In every run those of the first ten minutes, whose errors alone are others than those of the page's hour."""
     metres = re.compile(r"(?<= )[\d.e-]+(?= m\b)")
     for command, shown in list(commands(ORACLE))[1:]:
-        asked = command.replace("/tmp/", f"{tmp_path}/").replace("--t-end 3600", size("--t-end 600", "--t-end 3600"))
+        asked = command.replace("/tmp/", f"{tmp_path}/").replace(
+            "--t-end 3600", size("--t-end 600", "--t-end 3600")
+        )
         got = typed(asked, ROOT).replace(f"{tmp_path}/", "/tmp/")
         ours, theirs = size([metres.sub("0", text) for text in (shown, got)], [shown, got])
         assert shows(ours, theirs), f"{asked}\n{got}"
@@ -237,7 +306,9 @@ def test_the_programs_and_the_test_of_the_page_on_python_pass(tmp_path, typed):
     assert re.match(r"16\.4355\d+ ± \de-1\d s", typed(f"python {swing}", tmp_path))
     low, high = map(float, typed(f"python {box}", tmp_path).split())
     assert low < 599.898 < high < low + 0.01  # what the point's own transit is: 599.8984 s
-    assert typed(f"python {limits}", tmp_path).startswith("pendulum.length moves the period by 1.2e-04 s at most: 93.")
+    assert typed(f"python {limits}", tmp_path).startswith(
+        "pendulum.length moves the period by 1.2e-04 s at most: 93."
+    )
     assert typed(f"python -m pytest -q {name}", tmp_path).startswith(".  ")
 
 
@@ -276,7 +347,8 @@ def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch
     Path("draws.csv").write_text("pendulum.length,site.latitude\n60,40\n61,41\n", encoding="utf-8")
     rows = []
     for name, *words in shell(SWEEPS):
-        status, out, err = foucault(*words, "--t-end", "20", "--engine", "heyoka")  # the last --t-end counts
+        # the last --t-end counts
+        status, out, err = foucault(*words, "--t-end", "20", "--engine", "heyoka")
         assert (name, status) == ("foucault", 0), err
         rows.append(int(re.findall(r"^(\d+) rows: \1 ok$", out, re.M)[0]))
     assert rows == [181, 10 * 20, 3 * 2, 2]
@@ -290,7 +362,9 @@ def test_what_the_page_on_sweeps_exports_is_all_that_dask_needs_for_tls(tmp_path
     exports, _, sweep = block.strip().rpartition("\n")
     assert sweep.startswith("foucault sweep ") and sweep.endswith(" --cluster local:2")
     pairs = [line.partition("=")[::2] for line in output(f"{exports}\nenv", tmp_path).splitlines()]
-    exported = dask.config.collect_env({name: value for name, value in pairs if name.startswith("DASK_")})
+    exported = dask.config.collect_env(
+        {name: value for name, value in pairs if name.startswith("DASK_")}
+    )
     with dask.config.set(dask.config.merge(dask.config.config, exported)):
         found = security.Security()
     assert found.require_encryption
@@ -327,9 +401,14 @@ def test_what_the_contributor_types_are_targets_and_what_the_readme_types_is_wha
 
 def test_every_command_and_option_in_the_text_of_a_page_is_there():
     known = typer.main.get_command(commands_of_foucault()).commands
-    options = {name: {option for param in known[name].params for option in param.opts} | {"--help"} for name in known}
+    options = {
+        name: {option for param in known[name].params for option in param.opts} | {"--help"}
+        for name in known
+    }
     for page in {*PAGES} - {"CHANGELOG.md"}:  # which tells of what was
-        for name, words in re.findall(r"`foucault ([a-z]+)([^`]*)`", (ROOT / page).read_text(encoding="utf-8")):
+        for name, words in re.findall(
+            r"`foucault ([a-z]+)([^`]*)`", (ROOT / page).read_text(encoding="utf-8")
+        ):
             assert set(re.findall(r"(?<!\S)--[\w-]+", words)) <= options[name], (page, name, words)
 
 
@@ -338,13 +417,20 @@ def build(source: Path, site: Path, *more: str) -> tuple[int, str]:
     from sphinx.builders.html import StandaloneHTMLBuilder
     from sphinx.cmd.build import main
 
-    (line,) = re.findall(r"-m sphinx (.+) -c docs \. build/docs$", (ROOT / "Makefile").read_text("utf-8"), re.M)
+    (line,) = re.findall(
+        r"-m sphinx (.+) -c docs \. build/docs$", (ROOT / "Makefile").read_text("utf-8"), re.M
+    )
     err = io.StringIO()
-    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings(), contextlib.redirect_stderr(err):
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        warnings.catch_warnings(),
+        contextlib.redirect_stderr(err),
+    ):
         warnings.simplefilter("ignore")  # Sphinx's own about its future
         patch.setattr(StandaloneHTMLBuilder, "search", False)
         patch.setattr(sys, "path", [*sys.path])
-        patch.setattr(locale, "setlocale", lambda *_: "C")  # it would choose one for all tests that follow
+        # it would choose one for all tests that follow
+        patch.setattr(locale, "setlocale", lambda *_: "C")
         status = main([*line.split(), *more, "-c", str(ROOT / "docs"), str(source), str(site)])
     return status, err.getvalue()
 
@@ -354,7 +440,8 @@ def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     # the theme lists all pages on each page, a fifth of the work; the site with a broken link has it
     status, err = build(ROOT, folder, "-D", "html_theme=basic")
-    assert status == 0, err  # any warning is an error: broken links, unknown names, pages in no list
+    # any warning is an error: broken links, unknown names, pages in no list
+    assert status == 0, err
     return folder
 
 
@@ -374,13 +461,23 @@ def test_every_command_is_on_the_page_on_commands_with_its_options(site):
     page = (site / "docs/commands.html").read_text(encoding="utf-8")
     listed = set(re.findall(r'<section id="foucault-(\w+)">', page))
     assert listed == set(typer.main.get_command(commands_of_foucault()).list_commands(None))
-    assert commands_page.page() == commands_page.PAGE.read_text("utf-8"), "run: python tests/helpers/commands_page.py"
+    assert commands_page.page() == commands_page.PAGE.read_text("utf-8"), (
+        "run: python tests/helpers/commands_page.py"
+    )
 
 
 def test_a_broken_link_fails(tmp_path):
     (tmp_path / "docs").mkdir()
-    links = ["[a](other.md)", "[b](other.md#there)", "[c](other.md#gone)", "[d](gone.md)", "[e](#nowhere)"]
-    (tmp_path / "docs/index.md").write_text("# I\n\n" + " ".join(links) + "\n\n```{toctree}\nother\n```\n", "utf-8")
+    links = [
+        "[a](other.md)",
+        "[b](other.md#there)",
+        "[c](other.md#gone)",
+        "[d](gone.md)",
+        "[e](#nowhere)",
+    ]
+    (tmp_path / "docs/index.md").write_text(
+        "# I\n\n" + " ".join(links) + "\n\n```{toctree}\nother\n```\n", "utf-8"
+    )
     (tmp_path / "docs/other.md").write_text("# O\n\n## There\n", "utf-8")
     status, err = build(tmp_path, tmp_path / "site")
     assert status == 1
@@ -392,7 +489,10 @@ def test_every_file_and_folder_that_a_page_names_exists():
     for page in PAGES:
         text = (ROOT / page).read_text(encoding="utf-8")
         links = [target for target in re.findall(r"\]\(([^)#]+)\)", text) if "://" not in target]
-        paths = [ROOT / path for path in re.findall(r"`((?:reference|compare|tests|docs|data)/[\w./]*)`", text)]
+        paths = [
+            ROOT / path
+            for path in re.findall(r"`((?:reference|compare|tests|docs|data)/[\w./]*)`", text)
+        ]
         paths += [(ROOT / page).parent / link for link in links]
         missing += [(page, path) for path in paths if not path.exists()]
     assert missing == []
@@ -408,5 +508,12 @@ def names_below(folder: str) -> set[str]:
 def test_every_script_that_a_page_names_is_in_the_tree_or_written_by_the_page(page, tmp_path):
     there = {name for folder in BESIDE.get(page, EVERYWHERE) for name in names_below(folder)}
     there |= {path.name for path in ROOT.glob("*.py")} | {*write_files(page, tmp_path)}
-    scripts = [word for span in code_spans(page) for word in span.split() if re.fullmatch(r"[\w./-]+\.(py|js)", word)]
-    assert [word for word in scripts if not ((ROOT / word).is_file() if "/" in word else word in there)] == []
+    scripts = [
+        word
+        for span in code_spans(page)
+        for word in span.split()
+        if re.fullmatch(r"[\w./-]+\.(py|js)", word)
+    ]
+    assert [
+        word for word in scripts if not ((ROOT / word).is_file() if "/" in word else word in there)
+    ] == []

@@ -102,7 +102,11 @@ LINE = {  # what is typed, and what the message has to say
     "methods all": "unexpected extra argument",
 }
 ROWS = {"t": [0, 60], "x": [0.3, -0.1763], "y": [0.4, -0.4158]}
-INFINITE = {"id": "a", "pendulum": {"length": float("inf")}, "release": {"angle": "5", "azimuth": "0"}}
+INFINITE = {
+    "id": "a",
+    "pendulum": {"length": float("inf")},
+    "release": {"angle": "5", "azimuth": "0"},
+}
 TYPO = {"id": "a", "pendulum": {"lenght": "12.3"}, "release": {"angle": "5", "azimuth": "0"}}
 PYTHON = {
     'reference.solve("pari")': "Did you mean paris?",

@@ -33,16 +33,24 @@ LONG = {"error_against_time"}  # `compare.judge` of files by name alone, as in f
 
 
 @pytest.mark.parametrize(
-    "path", [pytest.param(path, marks=[pytest.mark.long] * (path.stem in LONG), id=path.stem) for path in NOTEBOOKS]
+    "path",
+    [
+        pytest.param(path, marks=[pytest.mark.long] * (path.stem in LONG), id=path.stem)
+        for path in NOTEBOOKS
+    ],
 )
-def test_every_cell_prints_what_the_notebook_keeps(path: Path, size: Callable[[Any, Any], Any]) -> None:
+def test_every_cell_prints_what_the_notebook_keeps(
+    path: Path, size: Callable[[Any, Any], Any]
+) -> None:
     """Pictures, which are not compared, are drawn under --long; test_python.py draws each kind."""
     pytest.importorskip("matplotlib")
     cells = code_cells(json.loads(path.read_text(encoding="utf-8")))
     for cell, (printed, value) in zip(cells, run(path), strict=True):
         now = text_of({"outputs": outputs(printed, value, with_pictures=size(False, True))})
         optional = "optional" in cell["metadata"].get("tags", ())
-        assert same(text_of(cell), now) or (optional and WITHOUT_FLINT in now), "run: python tests/helpers/notebooks.py"
+        assert same(text_of(cell), now) or (optional and WITHOUT_FLINT in now), (
+            "run: python tests/helpers/notebooks.py"
+        )
 
 
 def test_a_number_or_a_word_that_is_another_is_found() -> None:

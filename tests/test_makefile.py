@@ -21,19 +21,30 @@ def made(folder: Path, target: str, locale: str) -> subprocess.CompletedProcess[
     """Make a target in a folder that has the Makefile and empty locks, in a locale."""
     folder.mkdir()
     shutil.copy(ROOT / "Makefile", folder)
-    for name in ("requirements.lock", "requirements-test.lock", "requirements-peers.lock", "pyproject.toml"):
+    for name in (
+        "requirements.lock",
+        "requirements-test.lock",
+        "requirements-peers.lock",
+        "pyproject.toml",
+    ):
         (folder / name).touch()
     # the tests may themselves be run by make, which tells others of its kind so
-    environment = {name: value for name, value in os.environ.items() if "MAKE" not in name and name != "MFLAGS"}
+    environment = {
+        name: value for name, value in os.environ.items() if "MAKE" not in name and name != "MFLAGS"
+    }
     environment["LC_ALL"] = locale
     command = ["make", target, f"PYTHON={PYTHON}"]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
 
 
 @pytest.mark.skipif(READS_UTF8, reason="this Python reads paths in UTF-8")
 @pytest.mark.parametrize("target", ["golden", "test", "quick", "peers"])
 @pytest.mark.parametrize("locale", ["C", "xx_XX.UTF-8"])  # the second is installed nowhere
-def test_a_locale_that_lacks_a_letter_of_the_path_is_refused_before_anything_is_installed(tmp_path, target, locale):
+def test_a_locale_that_lacks_a_letter_of_the_path_is_refused_before_anything_is_installed(
+    tmp_path, target, locale
+):
     folder = tmp_path / "Pendel Übung"
     done = made(folder, target, locale)
     assert done.returncode == 2
@@ -41,7 +52,9 @@ def test_a_locale_that_lacks_a_letter_of_the_path_is_refused_before_anything_is_
     assert not [*folder.glob(".venv*")]
 
 
-@pytest.mark.parametrize(("name", "locale"), [("Pendel Übung", "C.UTF-8"), ("plain", "C"), ("plain", "xx_XX.UTF-8")])
+@pytest.mark.parametrize(
+    ("name", "locale"), [("Pendel Übung", "C.UTF-8"), ("plain", "C"), ("plain", "xx_XX.UTF-8")]
+)
 def test_a_locale_that_has_every_letter_of_the_path_is_taken(tmp_path, name, locale):
     done = made(tmp_path / name, "locale", locale)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

@@ -22,7 +22,9 @@ def written(tmp_path):
 
     def write(text):
         path.write_text(text)
-        return {str(mutation).removeprefix(f"{path} "): mutation for mutation in mutations_of(str(path))}
+        return {
+            str(mutation).removeprefix(f"{path} "): mutation for mutation in mutations_of(str(path))
+        }
 
     return write
 
@@ -77,7 +79,9 @@ def f(a, b):
     before = written(folded)
     after = written(unfolded)
     lost = set(before) - set(after)
-    assert lost == {"f, swap neighbours: a * a + b, g(a + b)"}, "two values that were assigned at once"
+    assert lost == {"f, swap neighbours: a * a + b, g(a + b)"}, (
+        "two values that were assigned at once"
+    )
     assert before["f, drop factor: a"] in after.values()
     assert after["f, drop term: b (3)"].source().splitlines()[-1] == "    return (c + d, g(a))"
 
@@ -107,7 +111,9 @@ def test_the_source_of_a_mutation_is_the_file_with_its_change_and_no_other():
 
 
 def test_a_mutated_module_is_noticed_if_its_check_fails_or_does_not_end(written):
-    every = written("def f(n):\n    while n > 0:\n        n = n - 1\n    return n + 1\ndef g():\n    return 1")
+    every = written(
+        "def f(n):\n    while n > 0:\n        n = n - 1\n    return n + 1\ndef g():\n    return 1"
+    )
 
     def check(module):
         assert module.f(3) == 1
@@ -145,4 +151,6 @@ def test_a_draw_depends_on_its_seed_and_not_on_other_places():
     every = mutations_of("reference/numbers/precision.py")
     first = mutations.drawn(every, 1)
     assert first != mutations.drawn(every, 2)
-    assert mutations.drawn(every[::2], 1) == [mutation for mutation in first if mutation in every[::2]]
+    assert mutations.drawn(every[::2], 1) == [
+        mutation for mutation in first if mutation in every[::2]
+    ]

@@ -42,8 +42,14 @@ def test_fields_are_replaced_by_words_or_a_mapping(values):
 
 def test_numbers_of_any_kind_in_a_scene_are_what_they_print_as():
     number = {"length": Decimal("67.10"), "drag": np.int64(0)}
-    document = {"id": "a", "pendulum": number, "release": {"x": np.float64(0.1), "y": Decimal("1E-3")}}
-    solution = reference.solve(document | {"run": {"t_end": np.int64(60), "digits": np.int64(12)}}, level="computed")
+    document = {
+        "id": "a",
+        "pendulum": number,
+        "release": {"x": np.float64(0.1), "y": Decimal("1E-3")},
+    }
+    solution = reference.solve(
+        document | {"run": {"t_end": np.int64(60), "digits": np.int64(12)}}, level="computed"
+    )
     scene = solution.scene
     assert (scene.pendulum.length, scene.pendulum.drag, scene.run.t_end) == ("67.10", "0", "60")
     assert (scene.release.x, scene.release.y, scene.run.digits) == ("0.1", "0.001", 12)
@@ -57,9 +63,13 @@ def test_one_word_is_one_word():
     assert len(reference.sweep("paris", "site.latitude=0,10", t_end=60, engine="heyoka")) == 2
 
 
-@pytest.mark.parametrize("latitudes", [range(0, 90, 30), [0, 30, 60], np.linspace(0, 60, 3), "0:60:30"])
+@pytest.mark.parametrize(
+    "latitudes", [range(0, 90, 30), [0, 30, 60], np.linspace(0, 60, 3), "0:60:30"]
+)
 def test_an_axis_of_a_sweep_is_a_range_a_list_an_array_or_text(latitudes):
-    swept = reference.sweep("paris", {"site.latitude": latitudes, "pendulum.length": 60}, t_end=60, engine="heyoka")
+    swept = reference.sweep(
+        "paris", {"site.latitude": latitudes, "pendulum.length": 60}, t_end=60, engine="heyoka"
+    )
     assert swept["site.latitude"].tolist() == [0, 30, 60]
     assert repr(swept) == "Swept(paris: 3 rows, 3 ok; heyoka)"
     frame = swept.to_pandas()
@@ -72,11 +82,15 @@ def test_a_sweep_whose_rows_all_go_through_the_solver_names_it():
     assert repr(swept) == "Swept(paris: 1 row, 1 ok; the solver)"
 
 
-@pytest.mark.parametrize("columns", [ROWS, {k: np.array(v) for k, v in ROWS.items()}, pandas.DataFrame(ROWS)])
+@pytest.mark.parametrize(
+    "columns", [ROWS, {k: np.array(v) for k, v in ROWS.items()}, pandas.DataFrame(ROWS)]
+)
 def test_columns_by_name_are_judged(columns):
     score = compare.judge(columns, "paris", tolerance=1e-8)
     assert score.agrees
-    assert str(score).startswith("candidate agrees with paris (2 rows") and "largest error" in str(score)
+    assert str(score).startswith("candidate agrees with paris (2 rows") and "largest error" in str(
+        score
+    )
     assert repr(score) == "Score(agrees with paris: 2.6e-10 m)"
     assert score._repr_html_().startswith("<pre>candidate agrees")
 
@@ -84,7 +98,10 @@ def test_columns_by_name_are_judged(columns):
 @pytest.mark.parametrize(
     ("candidate", "message"),
     [
-        ({"x": [0.3], "y": [0.4]}, "candidate: got 'no t in x, y', expected one column t. Wanted: t, x, y"),
+        (
+            {"x": [0.3], "y": [0.4]},
+            "candidate: got 'no t in x, y', expected one column t. Wanted: t, x, y",
+        ),
         ([[0.0, 0.3, 0.4]], "candidate: got 'list', expected a file"),
         (np.zeros((2, 3)), "candidate: got 'ndarray', expected a file"),
         ({**ROWS, "x": ["a", "b"]}, "candidate: x: got 'dtype"),
@@ -98,7 +115,10 @@ def test_other_candidates_are_refused(candidate, message):
 
 
 def test_columns_may_have_the_names_and_units_of_a_header():
-    centimetres = {"Time [ms]": [0.0, 60000.0], **{f"{name} (cm)": 100 * np.array(ROWS[name]) for name in "xy"}}
+    centimetres = {
+        "Time [ms]": [0.0, 60000.0],
+        **{f"{name} (cm)": 100 * np.array(ROWS[name]) for name in "xy"},
+    }
     score = compare.judge(centimetres, "paris", tolerance=1e-8)
     assert score.agrees and "x from cm, y from cm, converted to SI units" in str(score)
 

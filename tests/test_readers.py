@@ -20,7 +20,8 @@ from reference.numbers.columns import STATE
 
 READERS = ROOT / "docs/readers"
 PARIS = ROOT / "data/golden/paris"
-END = 30  # s, of the motions whose functions are evaluated; one has more than a hundred pieces by then
+# s, of the motions whose functions are evaluated; one has more than a hundred pieces by then
+END = 30
 # the tool that is wanted, what compiles the program (none for scripts), and what runs it
 COMMANDS = {
     "golden.c": (["cc", "-O2", "{file}", "-o", "{program}"], ["{program}"]),
@@ -54,7 +55,9 @@ def paris():
 def test_every_program_is_run_and_stands_in_the_table():
     files = {path.name for path in READERS.iterdir()} - {"README.md"}
     assert files == {*COMMANDS, *EVALUATORS}
-    table = re.findall(r"^\|[^|]+\| \[([\w.]+)\]\(\1\) \|", (READERS / "README.md").read_text(), re.M)
+    table = re.findall(
+        r"^\|[^|]+\| \[([\w.]+)\]\(\1\) \|", (READERS / "README.md").read_text(), re.M
+    )
     assert set(table) == files
 
 
@@ -64,7 +67,9 @@ def programs(tmp_path_factory):
     return tmp_path_factory.mktemp("programs")
 
 
-def printed(name: str, folder: Path, programs: Path, *words: str, flags: tuple[str, ...] = ()) -> list[list[str]]:
+def printed(
+    name: str, folder: Path, programs: Path, *words: str, flags: tuple[str, ...] = ()
+) -> list[list[str]]:
     """Return the words of each line that a program prints about a dataset, given more words."""
     program = programs / "-".join(("run", name.replace(".", "_"), *flags))
     places = {"file": str(READERS / name), "program": str(program)}
@@ -72,18 +77,22 @@ def printed(name: str, folder: Path, programs: Path, *words: str, flags: tuple[s
     compiling, running = ([word.format(**places) for word in command] for command in both)
     if compiling and not program.exists():
         subprocess.run([*compiling, *flags], check=True, capture_output=True, cwd=programs)
-    done = subprocess.run([*running, str(folder), *words], check=True, capture_output=True, text=True, cwd=programs)
+    done = subprocess.run(
+        [*running, str(folder), *words], check=True, capture_output=True, text=True, cwd=programs
+    )
     return [line.split() for line in done.stdout.splitlines()]
 
 
 def works(tool: str) -> bool:
     """Return whether a tool is there, and more than the name of one that a home has to choose, as with rustup."""
     return shutil.which(tool) is not None and (
-        tool != "rustc" or not subprocess.run([tool, "--version"], capture_output=True, check=False).returncode
+        tool != "rustc"
+        or not subprocess.run([tool, "--version"], capture_output=True, check=False).returncode
     )
 
 
-LONG = {"golden.go", "function.go"}  # a fresh go compiles its own library first, for a quarter of a minute
+# a fresh go compiles its own library first, for a quarter of a minute
+LONG = {"golden.go", "function.go"}
 NAMES = [pytest.param(name, marks=[pytest.mark.long] if name in LONG else []) for name in COMMANDS]
 
 
@@ -96,8 +105,12 @@ def test_it_reads_paris(name, paris, programs):
     grid, state, transits, *vectors = _parted(printed(name, PARIS, programs))
     assert grid == ["grid", str(len(paris.times))]
     assert [words[0] for words in state] == ["t", "x", "y", "z", "vx", "vy", "vz"]
-    assert [float(words[1]) for words in state] == [float(paris.exact(words[0])[-1]) for words in state]
-    assert [float(words[2]) for words in state[1:]] == [float(paris.grid.bound(words[0])[-1]) for words in state[1:]]
+    assert [float(words[1]) for words in state] == [
+        float(paris.exact(words[0])[-1]) for words in state
+    ]
+    assert [float(words[2]) for words in state[1:]] == [
+        float(paris.grid.bound(words[0])[-1]) for words in state[1:]
+    ]
     assert transits[:2] == ["transits", str(len(paris.directions))]
     assert float(transits[2]) == float(max(paris.transits.bound("t")))
     if name in WITH_JSON:
@@ -125,14 +138,21 @@ def test_fortran_reads_as_many_digits_as_quadruple_precision_has(paris, programs
 def with_function(request, tmp_path_factory):
     """A dataset whose z follows from the sphere, and one in which z has a series."""
     pytest.importorskip("flint")
-    scene = reference.load_scene(request.param, [f"run.t_end={END}", f"run.grid_step={END // 2}", "run.digits=12"])
-    solution = reference.solve(scene, level="enclosed", transits=False, engine="limbs", function=True)
+    scene = reference.load_scene(
+        request.param, [f"run.t_end={END}", f"run.grid_step={END // 2}", "run.digits=12"]
+    )
+    solution = reference.solve(
+        scene, level="enclosed", transits=False, engine="limbs", function=True
+    )
     return reference.write(solution, tmp_path_factory.mktemp("function") / scene.id)
 
 
 FUSED = pytest.param("function.c", ("-O3", "-ffp-contract=fast", "-mfma"), id="function.c-fused")
 EVALUATING = [
-    *(pytest.param(name, (), marks=[pytest.mark.long] if name in LONG else []) for name in EVALUATORS),
+    *(
+        pytest.param(name, (), marks=[pytest.mark.long] if name in LONG else [])
+        for name in EVALUATORS
+    ),
     FUSED,
 ]
 

@@ -34,7 +34,8 @@ def test_the_python_in_the_readme_runs_and_prints_what_it_shows():
 
 
 @pytest.mark.parametrize(
-    "module", ["reference", "compare", "compare.testing", "compare.methods", "compare.approximations"]
+    "module",
+    ["reference", "compare", "compare.testing", "compare.methods", "compare.approximations"],
 )
 def test_the_packages_own_examples_are_true(module):
     result = doctest.testmod(import_module(module))
@@ -50,7 +51,9 @@ def test_the_readme_takes_three_minutes():
 
 def test_the_pictures_of_the_readme_are_drawn_from_the_numbers():
     for name, text in pictures.pictures().items():
-        assert (ROOT / name).read_text(encoding="utf-8") == text, "run: python tests/helpers/pictures.py"
+        assert (ROOT / name).read_text(encoding="utf-8") == text, (
+            "run: python tests/helpers/pictures.py"
+        )
 
 
 def test_the_readme_counts_nothing_that_a_new_file_would_change():

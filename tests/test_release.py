@@ -25,12 +25,33 @@ COMMANDS = [
     ["--version"],
     ["scenes"],
     ["verify", "hard"],
-    ["generate", "paris", "--t-end", "60", "--digits", "10", "--level", "confirmed", "--out", "short"],
+    [
+        "generate",
+        "paris",
+        "--t-end",
+        "60",
+        "--digits",
+        "10",
+        "--level",
+        "confirmed",
+        "--out",
+        "short",
+    ],
     ["verify", "short"],
     ["score", "paris", "mine.csv", "--t-end", "60"],
     ["score", "paris", "wrong.csv", "--t-end", "60"],
     ["plot", "mine.csv", "--out", "mine.svg"],
-    ["sweep", "paris", "--over", "site.latitude=0:40:20", "--t-end", "60", "--engine", "heyoka", "--json"],
+    [
+        "sweep",
+        "paris",
+        "--over",
+        "site.latitude=0:40:20",
+        "--t-end",
+        "60",
+        "--engine",
+        "heyoka",
+        "--json",
+    ],
     ["atlas", "--data", ".", "--out", "atlas"],
 ]
 QUICKER = {"score": ["--no-diagnosis"]}  # an explanation reads no file that a verdict does not
@@ -54,12 +75,17 @@ print(json.dumps({"statuses": statuses, "from": [m.__file__ for m in (foucault, 
 
 def test_what_is_cited_is_what_is_released():
     """One place has version, authors and addresses: pyproject.toml."""
-    assert citation.text() == citation.PAGE.read_text(encoding="utf-8"), "run: python tests/helpers/citation.py"
+    assert citation.text() == citation.PAGE.read_text(encoding="utf-8"), (
+        "run: python tests/helpers/citation.py"
+    )
 
 
 def test_a_person_and_the_addresses_come_from_the_one_place():
     urls = {"Repository": "https://example.org/code", "Documentation": "https://example.org/pages"}
-    told = citation.project() | {"urls": urls, "authors": [{"name": "Ada M. Lovelace", "email": "ada@example.org"}]}
+    told = citation.project() | {
+        "urls": urls,
+        "authors": [{"name": "Ada M. Lovelace", "email": "ada@example.org"}],
+    }
     lines = [*citation.lines(told)]
     assert "repository-code: https://example.org/code" in lines
     assert "url: https://example.org/pages" in lines
@@ -68,7 +94,11 @@ def test_a_person_and_the_addresses_come_from_the_one_place():
 
 def built(kind: str, folder: Path) -> Path:
     """Build the wheel or the source distribution; return its path."""
-    subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)], cwd=ROOT, check=True)
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(folder)],
+        cwd=ROOT,
+        check=True,
+    )
     (path,) = folder.iterdir()
     return path
 
@@ -83,19 +113,30 @@ def names_of(root: Path, *parts: str) -> set[str]:
     try:
         if not (root / ".git").exists():
             return _all_of(root, *parts)
-        listed = subprocess.run(["git", "ls-files", "-z", *parts], cwd=root, capture_output=True, text=True, check=True)
+        listed = subprocess.run(
+            ["git", "ls-files", "-z", *parts], cwd=root, capture_output=True, text=True, check=True
+        )
         return {name for name in listed.stdout.split("\0") if (root / name).is_file()}
-    except (FileNotFoundError, subprocess.CalledProcessError):  # no git here, or a checkout of another owner
+    except (
+        FileNotFoundError,
+        subprocess.CalledProcessError,
+    ):  # no git here, or a checkout of another owner
         return _all_of(root, *parts)
 
 
 def _all_of(root: Path, *parts: str) -> set[str]:
     files = (path for part in parts for path in [root / part, *(root / part).rglob("*")])
-    return {str(path.relative_to(root)) for path in files if path.is_file() and "__pycache__" not in path.parts}
+    return {
+        str(path.relative_to(root))
+        for path in files
+        if path.is_file() and "__pycache__" not in path.parts
+    }
 
 
 @pytest.mark.parametrize("tools", ["", os.environ["PATH"]], ids=["no git", "git refuses"])
-def test_files_are_listed_where_git_does_not_tell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tools: str) -> None:
+def test_files_are_listed_where_git_does_not_tell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tools: str
+) -> None:
     monkeypatch.setenv("PATH", tools)
     (tmp_path / ".git").write_text("gitdir: of somebody else")
     (tmp_path / "docs").mkdir()
@@ -104,7 +145,8 @@ def test_files_are_listed_where_git_does_not_tell(tmp_path: Path, monkeypatch: p
     assert names_of(tmp_path, "docs", "alone.py") == {"docs/page.md", "alone.py"}
 
 
-EVALUATOR = "compare/report/atlas/function.mjs"  # of docs/readers, which the pages of the atlas evaluate by
+# of docs/readers, which the pages of the atlas evaluate by
+EVALUATOR = "compare/report/atlas/function.mjs"
 
 
 def test_the_wheel_holds_every_module_and_all_data_and_no_more(wheel: Path) -> None:
@@ -113,11 +155,16 @@ def test_the_wheel_holds_every_module_and_all_data_and_no_more(wheel: Path) -> N
         assert archive.read(EVALUATOR) == (ROOT / "docs/readers/function.mjs").read_bytes()
     code = {EVALUATOR} | names_of(ROOT, "foucault.py", "reference", "compare")
     data = {f"reference/{name}" for name in names_of(ROOT, "data")}
-    data.add("compare/report/atlas/function.mjs")  # one of docs/readers, which the atlas's pages carry
+    # one of docs/readers, which the atlas's pages carry
+    data.add("compare/report/atlas/function.mjs")
     assert found >= code | data
-    assert {name for name in found - code - data if not name.startswith("reference/data/golden/")} == set()
+    assert {
+        name for name in found - code - data if not name.startswith("reference/data/golden/")
+    } == set()
     assert wheel.stat().st_size < WHEEL_BYTES
-    assert sum(path.stat().st_size for path in data_root().rglob("*") if path.is_file()) < DATA_BYTES
+    assert (
+        sum(path.stat().st_size for path in data_root().rglob("*") if path.is_file()) < DATA_BYTES
+    )
 
 
 def files_of_sdist() -> set[str]:
@@ -128,9 +175,23 @@ def files_of_sdist() -> set[str]:
 def test_the_source_distribution_holds_what_makes_and_tests_it(wheel: Path) -> None:
     """The wheel is packed already, with nearly all of the bytes; the rest is compressed here as it would be there."""
     found = files_of_sdist()
-    kept = names_of(ROOT, "foucault.py", "reference", "compare", "data", "docs", "tests", "Makefile", "README.md")
+    kept = names_of(
+        ROOT,
+        "foucault.py",
+        "reference",
+        "compare",
+        "data",
+        "docs",
+        "tests",
+        "Makefile",
+        "README.md",
+    )
     assert kept <= found
-    rest = (name for name in sorted(found) if not name.startswith(("foucault.py", "reference/", "compare/", "data/")))
+    rest = (
+        name
+        for name in sorted(found)
+        if not name.startswith(("foucault.py", "reference/", "compare/", "data/"))
+    )
     packed = zlib.compress(b"".join((ROOT / name).read_bytes() for name in rest), 9)
     assert wheel.stat().st_size + len(packed) < WHEEL_BYTES
 
@@ -140,17 +201,23 @@ def test_the_source_distribution_is_written_as_hatchling_finds_it(tmp_path: Path
     path = built("sdist", tmp_path)
     with tarfile.open(path) as archive:
         found = {name.partition("/")[2] for name in archive.getnames()}
-    assert found - files_of_sdist() == {"PKG-INFO", "pyproject.toml", ".gitignore"} - files_of_sdist()
+    assert (
+        found - files_of_sdist() == {"PKG-INFO", "pyproject.toml", ".gitignore"} - files_of_sdist()
+    )
     assert files_of_sdist() <= found
     assert path.stat().st_size < WHEEL_BYTES
 
 
 def test_every_scene_ships_and_every_dataset_that_the_index_names_is_there() -> None:
     assert {name.partition(".")[0] for name in seals()} == set(scene_ids())
-    assert {path.name for path in (data_root() / "golden").iterdir() if path.is_dir()} == set(seals())
+    assert {path.name for path in (data_root() / "golden").iterdir() if path.is_dir()} == set(
+        seals()
+    )
 
 
-def test_its_commands_work_in_an_empty_folder(wheel: Path, tmp_path: Path, size: Callable[[Any, Any], Any]) -> None:
+def test_its_commands_work_in_an_empty_folder(
+    wheel: Path, tmp_path: Path, size: Callable[[Any, Any], Any]
+) -> None:
     """What numba compiles, most of a minute of work, is compiled under --long; its absence is an installation too.
 
     So is what explains the error of a wrong file.
@@ -161,7 +228,11 @@ def test_its_commands_work_in_an_empty_folder(wheel: Path, tmp_path: Path, size:
     place.mkdir()
     (place / "mine.csv").write_text("t,x,y\n0,0.3,0.4\n60,-0.176326733,-0.415867688\n")
     (place / "wrong.csv").write_text("t,x,y\n0,0.3,0.4\n60,-0.176,-0.415\n")
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site"), "FOUCAULT_CACHE": str(tmp_path / "cache")}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(tmp_path / "site"),
+        "FOUCAULT_CACHE": str(tmp_path / "cache"),
+    }
     environment |= size({"NUMBA_DISABLE_JIT": "1"}, {})
     commands = [[*words, *size(QUICKER.get(words[0], []), [])] for words in COMMANDS]
     done = subprocess.run(
@@ -174,8 +245,16 @@ def test_its_commands_work_in_an_empty_folder(wheel: Path, tmp_path: Path, size:
     )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout.splitlines()[-1])
-    assert found["statuses"] == [int("wrong.csv" in words) for words in COMMANDS], done.stdout + done.stderr
+    assert found["statuses"] == [int("wrong.csv" in words) for words in COMMANDS], (
+        done.stdout + done.stderr
+    )
     assert all(path.startswith(str(tmp_path / "site")) for path in found["from"])
     assert found["release"] == [0.3, 0.4]
-    assert {path.name for path in place.iterdir()} == {"mine.csv", "wrong.csv", "short", "mine.svg", "atlas"}
+    assert {path.name for path in place.iterdir()} == {
+        "mine.csv",
+        "wrong.csv",
+        "short",
+        "mine.svg",
+        "atlas",
+    }
     assert (place / "atlas" / "index.html").is_file()

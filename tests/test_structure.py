@@ -61,12 +61,20 @@ def test_imports_lead_downwards():
 def test_no_circle_among_files_nor_among_the_rooms_of_a_folder():
     assert structure.circles(*structure.modules(ROOT)) == []
     folders = {path.parent.relative_to(ROOT).as_posix() for path in SOURCES[1:]}
-    assert {place: circles for place in folders if (circles := structure.circles(*structure.arrows(ROOT, place)))} == {}
+    assert {
+        place: circles
+        for place in folders
+        if (circles := structure.circles(*structure.arrows(ROOT, place)))
+    } == {}
 
 
 def test_the_measure_of_the_structure_sees_a_circle_and_an_arrow_upwards(tmp_path):
     (tmp_path / "foucault.py").write_text("import reference.a\n")
-    for name, text in (("a", "from . import b\n"), ("b", "def late():\n    from .a import something\n"), ("c", "")):
+    for name, text in (
+        ("a", "from . import b\n"),
+        ("b", "def late():\n    from .a import something\n"),
+        ("c", ""),
+    ):
         (tmp_path / "reference").mkdir(exist_ok=True)
         (tmp_path / f"reference/{name}.py").write_text(text)
     (tmp_path / "reference/__init__.py").write_text("")
@@ -99,11 +107,20 @@ DOORS = {
 def test_what_is_behind_the_doors_of_the_diagnosis_is_imported_by_nobody_else():
     inside = ROOT / "compare/diagnosis"
     outside = [path for path in SOURCES if inside not in path.parents]
-    assert [path for path in outside for target in structure.imported(path, ROOT) if inside in target.parents] == []
+    assert [
+        path
+        for path in outside
+        for target in structure.imported(path, ROOT)
+        if inside in target.parents
+    ] == []
 
 
 def test_a_library_has_one_door():
-    used = [(library, path.relative_to(ROOT).as_posix()) for path in SOURCES for library in imported(path) & {*DOORS}]
+    used = [
+        (library, path.relative_to(ROOT).as_posix())
+        for path in SOURCES
+        for library in imported(path) & {*DOORS}
+    ]
     assert {library for library, _ in used} == {*DOORS}
     assert [(library, path) for library, path in used if not path.startswith(DOORS[library])] == []
 
@@ -172,7 +189,9 @@ def test_compare_uses_the_public_names_of_reference_alone():
         if path.is_relative_to(ROOT / "compare"):
             for node in structure.imports(path):
                 if isinstance(node, ast.Import):
-                    assert not [one.name for one in node.names if one.name.startswith("reference")], path
+                    assert not [
+                        one.name for one in node.names if one.name.startswith("reference")
+                    ], path
                 elif node.level == 0 and (node.module or "").startswith("reference"):
                     used.setdefault(str(node.module), set()).update(one.name for one in node.names)
     assert {module: " ".join(sorted(names)) for module, names in used.items()} == {
@@ -193,7 +212,9 @@ STARTS = (
 def test_starting_loads_nothing_heavy():
     told = "print('loaded', [name for name in HEAVY if name in sys.modules])"
     code = "\n".join([f"import sys\nHEAVY = {HEAVY}", *(f"{script}\n{told}" for script in STARTS)])
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     loaded = [line for line in done.stdout.splitlines() if line.startswith("loaded ")]
     assert dict(zip(STARTS, loaded, strict=True)) == dict.fromkeys(STARTS, "loaded []")
 
@@ -201,13 +222,17 @@ def test_starting_loads_nothing_heavy():
 def test_an_engine_at_work_in_a_process_of_its_own_reads_no_scene():
     """Without what checks scenes such a process takes 0.6 to 0.8 of the CPU time to start."""
     code = "import sys, reference.engines.heyoka.run, reference.enclosure.prove; print('pydantic' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     assert done.stdout == "False\n"
 
 
 def test_every_file_begins_with_a_line_that_says_what_it_holds():
     docstrings = {path: ast.get_docstring(structure.tree(path)) or "\n" for path in SOURCES}
-    firsts = {path.relative_to(ROOT).as_posix(): text.splitlines()[0] for path, text in docstrings.items()}
+    firsts = {
+        path.relative_to(ROOT).as_posix(): text.splitlines()[0] for path, text in docstrings.items()
+    }
     good = re.compile(r"(?!What ).{,117}[.?]")
     assert {name: first for name, first in firsts.items() if not good.fullmatch(first)} == {}
 

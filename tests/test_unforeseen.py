@@ -19,13 +19,28 @@ def with_broken(
     """Run a command where a library raises an exception as it is imported; `redirected` is for the shell."""
     (folder / f"{library}.py").write_text(f"raise {raised}\n")
     path = os.pathsep.join([str(folder), str(ROOT)])
-    command = ["bash", "-c", f'exec "$@" {redirected}', "bash", sys.executable, "-m", "foucault", *words]
+    command = [
+        "bash",
+        "-c",
+        f'exec "$@" {redirected}',
+        "bash",
+        sys.executable,
+        "-m",
+        "foucault",
+        *words,
+    ]
     return subprocess.run(
-        command, cwd=ROOT, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=False
+        command,
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
     )
 
 
-@pytest.mark.parametrize("library", ["heyoka", "pydantic"])  # which a command imports, and the command line itself
+# which a command imports, and the command line itself
+@pytest.mark.parametrize("library", ["heyoka", "pydantic"])
 @pytest.mark.parametrize("raised", ["TypeError('odd')", "EOFError('odd')", "MemoryError('odd')"])
 def test_what_nobody_foresaw_is_no_verdict_and_says_how_to_report_it(tmp_path, library, raised):
     done = with_broken(library, raised, tmp_path, "show", "paris", "--json")
@@ -38,7 +53,9 @@ def test_what_nobody_foresaw_is_no_verdict_and_says_how_to_report_it(tmp_path, l
 
 def test_a_traceback_writes_control_characters_out(tmp_path):
     done = with_broken("heyoka", r"TypeError('\x1b[2J')", tmp_path, "show", "paris")
-    assert done.returncode == 70 and r"TypeError: \x1b[2J" in done.stderr and "\x1b" not in done.stderr
+    assert (
+        done.returncode == 70 and r"TypeError: \x1b[2J" in done.stderr and "\x1b" not in done.stderr
+    )
 
 
 @pytest.mark.parametrize(

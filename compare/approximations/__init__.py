@@ -24,9 +24,15 @@ APPROXIMATIONS: Mapping[str, Approximation] = Registry(
 
 def motions() -> dict[str, Motion]:
     """Return the approximations that give a trajectory, by id."""
-    return {word: declared for word, declared in APPROXIMATIONS.items() if isinstance(declared, Motion)}
+    return {
+        word: declared for word, declared in APPROXIMATIONS.items() if isinstance(declared, Motion)
+    }
 
 
 def quantities() -> dict[str, Quantity]:
     """Return the approximations that give one number, by id."""
-    return {word: declared for word, declared in APPROXIMATIONS.items() if isinstance(declared, Quantity)}
+    return {
+        word: declared
+        for word, declared in APPROXIMATIONS.items()
+        if isinstance(declared, Quantity)
+    }

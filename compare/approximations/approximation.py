@@ -76,10 +76,16 @@ class Motion(Approximation):
         self.check(scene)
         grid = np.asarray(times, dtype=np.float64)
         if grid.ndim != 1 or not len(grid) or grid[0] < 0 or not np.all(np.diff(grid) > 0):
-            raise InputError("times", f"{grid.shape} numbers", "increasing times in s, the first not negative")
+            raise InputError(
+                "times", f"{grid.shape} numbers", "increasing times in s, the first not negative"
+            )
         try:
             case = PaperCase.of_scene(scene)
-            rows = self.path(case, grid) if grid[0] == 0 else self.path(case, np.insert(grid, 0, 0.0))[1:]
+            rows = (
+                self.path(case, grid)
+                if grid[0] == 0
+                else self.path(case, np.insert(grid, 0, 0.0))[1:]
+            )
         except OverflowError:
             rows = np.array([np.inf])
         if not np.isfinite(rows).all():

@@ -20,7 +20,8 @@ from reference.model.force import tension
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE, Array
 
-PREC = 200  # bits, 60 digits: a series that cancels to Ω⁶, some 40 digits below its first term, keeps 20 digits
+# bits, 60 digits: a series that cancels to Ω⁶, some 40 digits below its first term, keeps 20 digits
+PREC = 200
 Derivatives = Callable[[State, Constants, Functions], State]
 
 
@@ -111,11 +112,17 @@ class PlumbLine:
         """Turn rows x, y, z, vx, vy, vz from the plumb line's axes to the scene's."""
         x, y, z, vx, vy, vz = rows.T
         sin, cos = float(self.sin), float(self.cos)
-        return np.column_stack((x, cos * y - sin * z, sin * y + cos * z, vx, cos * vy - sin * vz, sin * vy + cos * vz))
+        return np.column_stack(
+            (x, cos * y - sin * z, sin * y + cos * z, vx, cos * vy - sin * vz, sin * vy + cos * vz)
+        )
 
 
 def integrated(
-    variables: Sequence[str], derivatives: Derivatives, start: Sequence[Any], case: PaperCase, times: Array
+    variables: Sequence[str],
+    derivatives: Derivatives,
+    start: Sequence[Any],
+    case: PaperCase,
+    times: Array,
 ) -> Array:
     """Integrate a system with the constants of a case and return its states at the times.
 
@@ -141,7 +148,9 @@ def integrated(
     def rates(state: State, functions: Functions, parameters: Sequence[Any] = ()) -> State:
         return derivatives(state, Constants.of(dict(zip(used, parameters, strict=True))), functions)
 
-    propagator = Propagator(variables, rates, DOUBLE, parameters=len(used), radians=case.fastest_rate * times[-1])
+    propagator = Propagator(
+        variables, rates, DOUBLE, parameters=len(used), radians=case.fastest_rate * times[-1]
+    )
     begin, constants = map(propagator.numbers.all_of, (start, [*used.values()]))
     return np.asarray(propagator.from_zero(begin, times, constants, MAX_STEPS))
 
@@ -160,7 +169,9 @@ def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:
     l2 = float(length) ** 2
     square = l2 - x * x - y * y
     if not np.min(square) > 0:
-        raise UnreachableError("the approximate motion leaves the sphere.", "The amplitude is beyond its domain.")
+        raise UnreachableError(
+            "the approximate motion leaves the sphere.", "The amplitude is beyond its domain."
+        )
     z = -np.sqrt(square)
     return np.column_stack((x, y, z, vx, vy, -(x * vx + y * vy) / z))
 
@@ -184,7 +195,11 @@ def at_rest(scene: Scene) -> str | None:
 
 def under_gravity(scene: Scene) -> str | None:
     """Return a reason to refuse a scene without gravity, where nothing pulls the bob back, or None."""
-    return None if scene.exact.gravity else "Without gravity nothing pulls the bob back: give site.gravity above 0"
+    return (
+        None
+        if scene.exact.gravity
+        else "Without gravity nothing pulls the bob back: give site.gravity above 0"
+    )
 
 
 SWINGING = (underneath, without_drag, under_gravity)

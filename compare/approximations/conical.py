@@ -12,7 +12,8 @@ from reference.numbers.precision import Array
 from .approximation import Motion
 from .case import SWINGING, PaperCase, lowest_point
 
-_CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
+# part of the circle's speed by which the velocity of release may differ from it
+_CONICAL_ENOUGH = 0.1
 
 
 def _circle(case: PaperCase) -> tuple[Any, Any]:
@@ -38,7 +39,8 @@ def _on_a_circle(scene: Scene) -> str | None:
     miss = case.ctx.hypot(case.velocity[0] - circular[0], case.velocity[1] - circular[1])
     if not radius or not omega or miss > _CONICAL_ENOUGH * radius * abs(omega):
         return (
-            "The bob moves on a circle: give a velocity at right angles to x, y of about sqrt(g/|z|) times the radius"
+            "The bob moves on a circle: give a velocity at right angles to x, y of about "
+            "sqrt(g/|z|) times the radius"
         )
     return None
 

@@ -53,7 +53,11 @@ def _spherical(case: PaperCase) -> Any:
 
 def _turning(scene: Scene) -> str | None:
     still = not scene.exact.rotation_rate or not scene.exact.latitude
-    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else None
+    return (
+        "The plane does not turn: give a rotation rate and a latitude other than 0"
+        if still
+        else None
+    )
 
 
 _frequency = partial(Quantity, needs=SWINGING, truth=frequency, unit="Hz")
@@ -177,7 +181,11 @@ def _pulled(scene: Scene) -> str | None:
 
 def _not_at_a_pole(scene: Scene) -> str | None:
     pole = abs(scene.exact.latitude) == 90
-    return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude" if pole else None
+    return (
+        "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude"
+        if pole
+        else None
+    )
 
 
 _rest_angle = partial(
@@ -193,7 +201,8 @@ _REST = (
         title="rest position by the equation of forces",
         where="Mathar (46); (45) is the same in y",
         drops="nothing",
-        formula=lambda case: case.ctx.findroot(partial(line_of_46, case), case.tilt),  # south of the vertical
+        # south of the vertical
+        formula=lambda case: case.ctx.findroot(partial(line_of_46, case), case.tilt),
     ),
     *(
         _rest_angle(

@@ -57,7 +57,9 @@ def constants_of(place: Pair, speed: Pair, omega: Any, turn: Any) -> tuple[Any, 
     """Return c1, c1', c2, c2' of 6.1; arguments as in `oscillation`."""
     (x, y), (vx, vy) = place, speed
     slow, fast = omega - turn, omega + turn
-    return tuple(part / (2 * omega) for part in (slow * x - vy, slow * y + vx, fast * x + vy, fast * y - vx))
+    return tuple(
+        part / (2 * omega) for part in (slow * x - vy, slow * y + vx, fast * x + vy, fast * y - vx)
+    )
 
 
 def oscillation(place: Pair, speed: Pair, omega: Any, turn: Any, times: Array) -> Any:
@@ -95,7 +97,9 @@ def _any_release(case: PaperCase, times: Array) -> Array:
     return _rows(case, *oscillation(place, speed, omega, turn, times))
 
 
-def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -> tuple[Any, Any, Any, Any]:
+def in_turning_axes(
+    minor: Any, omega: Any, turn: Any, t: Any, functions: Any
+) -> tuple[Any, Any, Any, Any]:
     """Return x, y, v_x, v_y over r0 of X = r0 cos ωt, Y = r0 `minor` sin ωt in axes that turn at -Ω_z.
 
     These are the lines of 6.2 with `minor` = 0, of 6.3 with Ω_z/ω.
@@ -118,7 +122,9 @@ def _ellipse(case: PaperCase, times: Array, sense: int) -> Array:
     """Return rows of that motion, X along the release: `sense` 0 is 6.2, 1 is 6.3."""
     omega, turn = small_angles(case)
     east, north, _ = case.plumb.inward(case.position)
-    x, y, vx, vy = in_turning_axes(float(sense * turn / omega), float(omega), float(turn), times, np)
+    x, y, vx, vy = in_turning_axes(
+        float(sense * turn / omega), float(omega), float(turn), times, np
+    )
     release = complex(east, north)
     return _rows(case, release * (x + 1j * y), release * (vx + 1j * vy))
 
@@ -147,7 +153,8 @@ APPROXIMATIONS = (
         id="gastebois_6_2",
         title="small angles, launched so that the swing stays in a plane of the turning axes",
         where="Gastebois 6.2",
-        drops=_DROPS + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
+        drops=_DROPS
+        + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
         needs=SWINGING,
         path=partial(_ellipse, sense=0),
         rest=hanging,

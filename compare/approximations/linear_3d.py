@@ -42,14 +42,17 @@ def _path(case: PaperCase, times: Array) -> Array:
     plumb = plumb_line(case)
     a, b, turn = stiffness(case)
     east, north = ctx.sqrt(a), ctx.sqrt(b)
-    skew = ctx.matrix([[0, 0, east, 0], [0, 0, 0, north], [-east, 0, 0, 2 * turn], [0, -north, -2 * turn, 0]])
+    skew = ctx.matrix(
+        [[0, 0, east, 0], [0, 0, 0, north], [-east, 0, 0, 2 * turn], [0, -north, -2 * turn, 0]]
+    )
     frequencies, modes = ctx.eighe(ctx.j * skew)  # S q = -i w q
     x, y, _ = plumb.inward(case.position)
     vx, vy, _ = plumb.inward(case.velocity)
     weights = modes.H * ctx.matrix([east * x, north * y, vx, vy])
     shares = np.array([[complex(modes[i, j] * weights[j]) for j in range(4)] for i in range(4)])
     phases = np.exp(-1j * np.outer([float(w) for w in frequencies], times))
-    p = (shares[:, :, None] * phases).sum(axis=1).real  # term by term: a product by BLAS rounds as the processor likes
+    # term by term: a product by BLAS rounds as the processor likes
+    p = (shares[:, :, None] * phases).sum(axis=1).real
     return plumb.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))
 
 

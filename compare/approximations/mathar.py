@@ -31,7 +31,9 @@ VARIANT = "variant of item 1"
 Item = int | str
 
 
-def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
+def derivatives(
+    state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()
+) -> State:
     """Return the derivatives of x, y, vx, vy by (43) without the terms of items 2, 3 and 5.
 
     With no item this is `reference.model.formulations.Plane.derivatives`, where powers of z are cancelled. It is
@@ -49,7 +51,8 @@ def derivatives(state: State, k: Constants, functions: Functions, items: frozens
     depth = 1 if 5 in items else functions.sqrt(1 - x * x - y * y)  # item 5: z becomes l
     cube, fourth = depth * depth * depth, depth * depth * depth * depth
     area = x * vy - y * vx
-    centripetal = 0 if 3 in items else vx * vx + vy * vy - area * area  # item 3: (33), (39) keep g only
+    # item 3: (33), (39) keep g only
+    centripetal = 0 if 3 in items else vx * vx + vy * vy - area * area
     drive = minus(centripetal, product(cube, k.pull[2]))
     _, north, up = k.turn
     _, yy, yz, zz = k.centrifugal
@@ -90,7 +93,9 @@ def _path(case: PaperCase, times: Array, items: frozenset[Item]) -> Array:
     try:
         states = integrated(VARIABLES, partial(derivatives, items=items), start, less, times)
     except IntegrationError as error:
-        raise IntegrationError(f"{error} (43) holds only until the bob comes to the horizontal.") from None
+        raise IntegrationError(
+            f"{error} (43) holds only until the bob comes to the horizontal."
+        ) from None
     x, y, vx, vy = (states * float(case.length)).T
     return hung(x, y, vx, vy, case.length)
 
@@ -114,7 +119,11 @@ def slow_down(case: PaperCase) -> Any:
 
 
 def _harmonic(
-    case: PaperCase, times: Array, apparent: bool = True, about_rest: bool = True, slowed: bool = False
+    case: PaperCase,
+    times: Array,
+    apparent: bool = True,
+    about_rest: bool = True,
+    slowed: bool = False,
 ) -> Array:
     """Return rows of (51)-(52): ω² = ω0² + (Ω sin φ)², with ω0² = g/l about the vertical as printed.
 
@@ -125,7 +134,9 @@ def _harmonic(
         about_rest: swing about the rest position.
         slowed: divide ω by `slow_down`.
     """
-    omega = turntable_frequency(case, case.apparent_gravity if apparent else case.gravity, case.turn)
+    omega = turntable_frequency(
+        case, case.apparent_gravity if apparent else case.gravity, case.turn
+    )
     omega = omega / slow_down(case) if slowed else omega
     centre = case.ctx.mpf(case.rest[1]) * case.length if about_rest else case.ctx.zero
     place = (case.position[0], case.position[1] - centre)

@@ -47,7 +47,9 @@ def _path(case: PaperCase, times: Array) -> Array:
     length = float(case.length)
     toward = complex(x / aside, y / aside) if aside else 1
     place, speed = length * sine * toward, length * cosine * rate * toward
-    return np.column_stack((place.real, place.imag, -length * cosine, speed.real, speed.imag, length * sine * rate))
+    return np.column_stack(
+        (place.real, place.imag, -length * cosine, speed.real, speed.imag, length * sine * rate)
+    )
 
 
 def _not_upright(scene: Scene) -> str | None:

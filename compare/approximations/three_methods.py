@@ -33,7 +33,9 @@ def _rotating_frame(case: PaperCase, times: Array) -> Array:
     x, vx = x0 * cos + (vx0 + p * y0) / w * sin, (vx0 + p * y0) * cos - x0 * w * sin
     y, vy = y0 * cos + (vy0 - p * x0) / w * sin, (vy0 - p * x0) * cos - y0 * w * sin
     across, along = vx - p * y, vy + p * x
-    return hung(x * c - y * s, x * s + y * c, across * c - along * s, across * s + along * c, case.length)
+    return hung(
+        x * c - y * s, x * s + y * c, across * c - along * s, across * s + along * c, case.length
+    )
 
 
 def _coriolis_theorem(case: PaperCase, times: Array) -> Array:
@@ -43,7 +45,9 @@ def _coriolis_theorem(case: PaperCase, times: Array) -> Array:
     start = np.array([float(part) for part in case.position[:2]])
     speed = np.array([float(part) for part in case.velocity[:2]]) - rotate @ start
     place = np.outer(start, np.cos(w * times)) + np.outer(speed / w, np.sin(w * times))
-    rate = np.outer(speed, np.cos(w * times)) - np.outer(start * w, np.sin(w * times)) + rotate @ place
+    rate = (
+        np.outer(speed, np.cos(w * times)) - np.outer(start * w, np.sin(w * times)) + rotate @ place
+    )
     cos, sin = np.cos(turn * times), np.sin(turn * times)
 
     def ground(v: Any) -> Any:
@@ -58,7 +62,10 @@ def _complex_variable(case: PaperCase, times: Array) -> Array:
     w, p = _rates(case)
     b = complex(case.position[0], case.position[1])
     a = (complex(case.velocity[0], case.velocity[1]) + 1j * p * b) / w
-    wave, rate = a * np.sin(w * times) + b * np.cos(w * times), w * (a * np.cos(w * times) - b * np.sin(w * times))
+    wave, rate = (
+        a * np.sin(w * times) + b * np.cos(w * times),
+        w * (a * np.cos(w * times) - b * np.sin(w * times)),
+    )
     back = np.exp(-1j * p * times)
     z, speed = back * wave, back * (rate - 1j * p * wave)
     return hung(z.real, z.imag, speed.real, speed.imag, case.length)

@@ -14,7 +14,8 @@ from reference.numbers.precision import Array
 from .candidate import ADVICE, COLUMNS, Candidate, checked_transits
 from .names import NEEDED, Layout, Naming, by_number, given, layout, meaning
 
-MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
+# bytes of the arrays that are read, unpacked: two million rows of long doubles
+MAX_UNPACKED = 1 << 28
 MOST_ARRAYS = 1000
 TRANSITS = "transits"
 TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
@@ -36,13 +37,20 @@ def candidate_of(
     Raises:
         InputError: as in `Candidate.of`.
     """
-    columns = {key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays}
-    wide = {key: arrays[key] for key in columns if arrays[key].dtype.kind == "f"}  # an empty column may be of text
+    columns = {
+        key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays
+    }
+    # an empty column may be of text
+    wide = {key: arrays[key] for key in columns if arrays[key].dtype.kind == "f"}
     with np.errstate(invalid="ignore"):  # of infinite numbers, which are refused
-        remainders = {key: np.asarray(array - columns[key], dtype=np.float64) for key, array in wide.items()}
+        remainders = {
+            key: np.asarray(array - columns[key], dtype=np.float64) for key, array in wide.items()
+        }
     low = {key: part for key, part in remainders.items() if part.any() and np.isfinite(part).all()}
     columns, low = made.converted(columns, low)
-    return Candidate.of(name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions)
+    return Candidate.of(
+        name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions
+    )
 
 
 def candidate_from(columns: Any) -> Candidate:
@@ -53,7 +61,9 @@ def candidate_from(columns: Any) -> Candidate:
     """
     if not (hasattr(columns, "__getitem__") and hasattr(columns, "keys")):
         got = type(columns).__name__
-        raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
+        raise InputError(
+            "candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE
+        )
     return _of_arrays({str(name): columns[name] for name in columns}, "candidate", Naming())
 
 
@@ -81,20 +91,29 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     # arrays whose names mean something, or the only one if it has no name
     try:
         with zipfile.ZipFile(stream) as archive:
-            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
+            members = {
+                member.filename.removesuffix(".npy"): member
+                for member in archive.infolist()[:MOST_ARRAYS]
+            }
         if any(word.startswith("xl/") for word in members):
-            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
+            raise InputError(
+                name, "an Excel workbook", "text with named columns", "Save the sheet as CSV."
+            )
         chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
         chosen = chosen or [word for word in members if word == TABLE]
         size = sum(members[word].file_size for word in chosen)
         if size > MAX_UNPACKED:
-            raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
+            raise InputError(
+                name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out."
+            )
         stream.seek(0)
         with np.load(stream, allow_pickle=False) as arrays:
             loaded = {word: arrays[word] for word in chosen}
     except InputError:
         raise
-    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
+    except (
+        Exception
+    ) as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
     return _of_arrays(loaded, name, naming)
 
@@ -108,7 +127,9 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     try:
         array = np.load(stream, allow_pickle=False)
     except Exception as error:  # numpy raises several kinds of errors for a damaged file
-        raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
+        raise InputError(
+            name, "a damaged .npy file", "a table of real numbers", f"{error}."
+        ) from None
     words = array.dtype.names  # of which none means transits: there is one for each row
     records = {word: array[word] for word in words or () if word != TRANSITS}
     return _of_arrays(records or {TABLE: array}, name, naming)
@@ -120,20 +141,30 @@ def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidat
         raise InputError(name, "none of them", _EXPECTED)
     if [*arrays] != [TABLE]:
         if naming.columns:
-            raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
+            raise InputError(
+                "--columns", ",".join(naming.columns), "no such option for arrays with names"
+            )
         times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
         transits = None if times is None else checked_transits(real_array(times, field), field)
-        return _candidate(name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits)
+        return _candidate(
+            name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits
+        )
     table = real_array(arrays[TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
     made = given(count, naming) if naming.columns and count else by_number(count, NEEDED, naming)
     if made is None:
         advice = "One row for each time; --columns names the columns."
-        raise InputError(name, f"shape {table.shape}", "a table of 3, 4 or 7 columns, t, x, y first", advice)
+        raise InputError(
+            name, f"shape {table.shape}", "a table of 3, 4 or 7 columns, t, x, y first", advice
+        )
     return _candidate(name, [*table.T], made)
 
 
-def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Array | None = None) -> Candidate:
+def _candidate(
+    name: str, arrays: Sequence[object], made: Layout, transits: Array | None = None
+) -> Candidate:
     """Make a candidate of arrays of which each column is the one at its place."""
-    columns = {column: real_array(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
+    columns = {
+        column: real_array(arrays[i], f"{name}: {column}") for column, i in made.places.items()
+    }
     return candidate_of(name, columns, transits, made)

@@ -92,7 +92,12 @@ class Candidate:
         """
         t = np.unique(times[times > 0])
         if not len(t):
-            raise InputError(f"{name}: t", "no transit after t = 0", "at least one", "Did the program stop early?")
+            raise InputError(
+                f"{name}: t",
+                "no transit after t = 0",
+                "at least one",
+                "Did the program stop early?",
+            )
         return cls(name, t, {"vx": np.zeros(len(t))}, transits=times)
 
     @classmethod
@@ -104,18 +109,27 @@ class Candidate:
         """
         for required in ("x", "y"):
             if required not in columns:
-                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {required}", ADVICE)
+                raise InputError(
+                    name, f"columns t, {', '.join(columns)}", f"a column {required}", ADVICE
+                )
         for word, column in (("t", t), *columns.items()):
             if column.ndim != 1 or len(column) != t.size:
-                expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
+                expected = "a one-dimensional array" + (
+                    "" if word == "t" else f" of {t.size} numbers, as t"
+                )
                 raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
         lost = _lost_frames(columns)
         for word, column in (("t", t), *columns.items()):
             invalid = ~(np.abs(column) <= LARGEST) & ~lost  # true for NaN as well
             if invalid.any():
-                row, expected = int(np.argmax(invalid)), f"a finite number below {LARGEST:g} in size"
+                row, expected = (
+                    int(np.argmax(invalid)),
+                    f"a finite number below {LARGEST:g} in size",
+                )
                 advice = "The run failed there: score the rows before it, or correct it."
-                raise NotFiniteError(f"{name}: {word}", f"{column[row]} in row {row + 1}", expected, advice)
+                raise NotFiniteError(
+                    f"{name}: {word}", f"{column[row]} in row {row + 1}", expected, advice
+                )
         if lost.any():
             first = float(t[int(np.argmax(lost))])
             note = f"{counted(int(lost.sum()), 'row')} of NaN left out, the first at t = {first:.10g} s"
@@ -125,7 +139,9 @@ class Candidate:
             columns = {word: column[~lost] for word, column in columns.items()}
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
-        _check_order(t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True)
+        _check_order(
+            t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True
+        )
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
 
 
@@ -164,7 +180,9 @@ def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: boo
     unordered = np.diff(times) <= 0 if strictly else np.diff(times) < 0
     if unordered.any():
         row, expected = int(np.argmax(unordered)), f"{'strictly ' * strictly}increasing times, in s"
-        raise InputError(name, f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}", expected, advice)
+        raise InputError(
+            name, f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}", expected, advice
+        )
 
 
 def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:

@@ -36,7 +36,10 @@ def seconds_of(text: str, where: str) -> Fraction:
     hours, minutes, seconds = clock.groups()
     if hours is None and not {".", ","} & {*seconds}:
         raise InputError(
-            where, text[:40], "hours:minutes:seconds", "Are these hours and minutes, or minutes and seconds?"
+            where,
+            text[:40],
+            "hours:minutes:seconds",
+            "Are these hours and minutes, or minutes and seconds?",
         )
     return _of_day(hours or "0", minutes, seconds)
 

@@ -37,9 +37,12 @@ SETTING = "{setting}"  # stands in a command for the step, tolerance or precisio
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0
 REPEATS = 3
-LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
-MARK = "FOUCAULT_RUN"  # the variable of the environment that holds the marks of a run and of those around it
-ROUNDS = 100  # searches for descendants at most: a process may be started while the others are killed
+# a program that takes longer than this, in s, is timed once, by the run that is scored
+LONG_S = 20.0
+# the variable of the environment that holds the marks of a run and of those around it
+MARK = "FOUCAULT_RUN"
+# searches for descendants at most: a process may be started while the others are killed
+ROUNDS = 100
 # $1 is the mark; a line on stdin is the process group, and its end that of the process which wrote it
 _GUARD = """
 read -r group
@@ -89,10 +92,15 @@ def placeholders(scene: Scene) -> dict[str, str]:
     """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
     start = Start.of(scene.exact, PLACEHOLDER_BITS)
     names = ("x0", "y0", "z0", "vx0", "vy0", "vz0")
-    words = {name: repr(float(value)) for name, value in zip(names, (*start.position, *start.velocity), strict=True)}
+    words = {
+        name: repr(float(value))
+        for name, value in zip(names, (*start.position, *start.velocity), strict=True)
+    }
     fields = scene.release.model_dump(exclude_none=True)
     words |= {f"{name}0": text for name, text in fields.items() if f"{name}0" in words}
-    words |= {name: fields.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+    words |= {
+        name: fields.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")
+    }
     words |= scene.pendulum.model_dump() | scene.site.model_dump()
     return words | {"t_end": scene.run.t_end, "grid_step": scene.run.grid_step}
 
@@ -110,17 +118,22 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
         raise InputError("--run", command, "a command")
-    with contextlib.suppress(ValueError):  # where quotes are escaped, it is not known which words stand in quotes
+    # where quotes are escaped, it is not known which words stand in quotes
+    with contextlib.suppress(ValueError):
         for word in shlex.split(command, posix=False):
             if _FOR_A_SHELL.fullmatch(word):
-                raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
+                raise InputError(
+                    "--run", command, f"a program and its arguments, without {word}", _NO_SHELL
+                )
 
     def value(match: re.Match[str]) -> str:
         if match[1]:
             return match[1]
         if match[2] not in values:
             words = ", ".join(f"{{{word}}}" for word in (*values, "setting"))
-            advice = f"{did_you_mean(match[2], values, '')} Write {{{match[0]}}} for {match[0]} itself."
+            advice = (
+                f"{did_you_mean(match[2], values, '')} Write {{{match[0]}}} for {match[0]} itself."
+            )
             raise InputError("--run", match[0], f"one of {words}", advice.lstrip())
         return values[match[2]]
 
@@ -134,15 +147,26 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
     """
     start, mark = time.monotonic(), secrets.token_hex(16)
-    with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as meanwhile, contextlib.ExitStack() as stack:
+    with (
+        tempfile.TemporaryFile() as errors,
+        contextlib.ExitStack() as meanwhile,
+        contextlib.ExitStack() as stack,
+    ):
         output = stack.enter_context(tempfile.TemporaryFile())
         guard = meanwhile.enter_context(_guarded(mark))
         try:
             env = {**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()}
-            process = Popen(words, stdin=DEVNULL, stdout=output, stderr=errors, env=env, start_new_session=True)
-        except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
+            process = Popen(
+                words, stdin=DEVNULL, stdout=output, stderr=errors, env=env, start_new_session=True
+            )
+        except (
+            OSError,
+            ValueError,
+        ) as error:  # ValueError: a word with a zero byte, or that is no text
             why = error.strerror if isinstance(error, OSError) else error
-            raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
+            raise InputError(
+                "--run", words[0], "a program that can be started", f"{why}."
+            ) from None
         try:
             guard(process.pid)
             with terminable():
@@ -153,7 +177,9 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
             process.wait()
         if process.returncode:
             got = f"exit status {process.returncode} of {shlex.join(words)}"
-            raise (CrashedError if process.returncode < 0 else InputError)("--run", got, "exit status 0", _tail(errors))
+            raise (CrashedError if process.returncode < 0 else InputError)(
+                "--run", got, "exit status 0", _tail(errors)
+            )
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
@@ -182,7 +208,9 @@ def _guarded(mark: str) -> Iterator[Callable[[int], None]]:
         yield tell
 
 
-def _end_of(process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float) -> Any:
+def _end_of(
+    process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float
+) -> Any:
     """Wait for a process, and return its resources.
 
     It is looked at often enough to tell its wall-clock time to 2 %, or to 20 ms.
@@ -201,7 +229,9 @@ def _end_of(process: Popen[bytes], words: list[str], output: BinaryIO, errors: B
             expected = f"a program that ends within {timeout_s:g} s (--timeout)"
             raise OutOfTimeError("--run", shlex.join(words), expected, _tail(errors))
         if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
-            raise InputError("--run", shlex.join(words), f"at most {MAX_BYTES} bytes of output", _tail(errors))
+            raise InputError(
+                "--run", shlex.join(words), f"at most {MAX_BYTES} bytes of output", _tail(errors)
+            )
         time.sleep(min(0.02, waited / 50))
 
 
@@ -232,12 +262,15 @@ def _marked(mark: str) -> Iterator[Process]:
 
 
 def _tail(errors: BinaryIO) -> str:
-    size = os.fstat(errors.fileno()).st_size  # the program may still be writing: its place in the file stays
+    # the program may still be writing: its place in the file stays
+    size = os.fstat(errors.fileno()).st_size
     text = os.pread(errors.fileno(), _TAIL, max(0, size - _TAIL)).decode(errors="replace").strip()
     return f"It said: {text}" if text else "It said nothing on stderr."
 
 
-def timed(words: list[str], timeout_s: float = TIMEOUT_S, repeats: int = REPEATS) -> tuple[BinaryIO, Timing]:
+def timed(
+    words: list[str], timeout_s: float = TIMEOUT_S, repeats: int = REPEATS
+) -> tuple[BinaryIO, Timing]:
     """Run a program once as a warm-up, whose output is returned, and `repeats` more times to measure its run time."""
     output, cpu, wall = run_program(words, timeout_s)
     if wall > LONG_S or repeats == 0:
@@ -250,4 +283,6 @@ def timed(words: list[str], timeout_s: float = TIMEOUT_S, repeats: int = REPEATS
     cpus = [seconds[0] for seconds in runs]
     median = statistics.median(cpus)
     spread = (max(cpus) - min(cpus)) / median if median else 0.0
-    return output, Timing(median, statistics.median(seconds[1] for seconds in runs), len(runs), spread)
+    return output, Timing(
+        median, statistics.median(seconds[1] for seconds in runs), len(runs), spread
+    )

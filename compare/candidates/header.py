@@ -13,8 +13,10 @@ from .names import Layout, Naming, advice, by_number, given, layout, meaning, un
 from .text import SEPARATORS, says_nothing, split, without_end, words
 
 MOST = 1000  # lines above the first row that are looked at
-FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
-UNITS_LABEL = re.compile(r"(?:units?|einheit(?:en)?)\s*[:=]?[\s,;]+", re.IGNORECASE)  # of a line that holds them
+# names of columns in a comment, and half of its words, from which on it is meant as the header
+FEW = 2
+# of a line that holds them
+UNITS_LABEL = re.compile(r"(?:units?|einheit(?:en)?)\s*[:=]?[\s,;]+", re.IGNORECASE)
 SI_UNITS = ("", "s", "m", "m/s")
 COMMAS = "Numbers with a decimal comma cannot be told apart between commas: separate the columns by semicolons."
 
@@ -54,7 +56,11 @@ class Header:
             return False
         most = len(split(row, separator))
         least = len(without_end(split(row, separator)))
-        ways = [without_end(split(line.text, separator)) for line in self.lines if separator in line.text]
+        ways = [
+            without_end(split(line.text, separator))
+            for line in self.lines
+            if separator in line.text
+        ]
         return any(least <= len(way) <= most and set(self.needed) <= _columns(way) for way in ways)
 
     def add(self, number: int, text: str, comment: bool) -> None:
@@ -93,7 +99,9 @@ class Header:
             if not set(self.needed) <= _columns(header):
                 self._refuse_line_below_header(i, header)
             units = self._units_beside(i, len(header))
-            return layout(header, self.needed, self.naming, f"{self.name}: header", units), len(header)
+            return layout(header, self.needed, self.naming, f"{self.name}: header", units), len(
+                header
+            )
         made = by_number(least, self.needed, self.naming)
         if made is None or (len(self.needed) == 1 and self.lines):
             expected = "a header that names the columns"
@@ -105,16 +113,23 @@ class Header:
         """Refuse a comment that names columns, but not as many as there are, or in another order or unit than taken."""
         for line in self.lines:
             for way in words(line.text):
-                meanings = [meant for meant in (meaning(word, {}) for word in way) if meant is not None]
+                meanings = [
+                    meant for meant in (meaning(word, {}) for word in way) if meant is not None
+                ]
                 named = [meant.column for meant in meanings]
                 if not set(self.needed) <= {*named} or 2 * len(named) < len(way):
                     continue
                 separated = any(
-                    without_end(split(line.text, mark)) == way for mark in SEPARATORS if mark in line.text and mark
+                    without_end(split(line.text, mark)) == way
+                    for mark in SEPARATORS
+                    if mark in line.text and mark
                 )
                 taken = meanings[: len(columns)]
-                same = [meant.column for meant in taken] == [*columns] and all(meant.factor == 1 for meant in taken)
-                labelled = way[0].endswith(":")  # as "columns: t x y …", with further columns behind
+                same = [meant.column for meant in taken] == [*columns] and all(
+                    meant.factor == 1 for meant in taken
+                )
+                # as "columns: t x y …", with further columns behind
+                labelled = way[0].endswith(":")
                 same = same and (len(named) == len(columns) or (labelled and len(way) == count + 1))
                 if separated or not same:
                     raise self._unequal(number, count, line, len(way), "")
@@ -133,7 +148,9 @@ class Header:
         first = min(headers, default=len(self.lines))
         for i in reversed(range(len(self.lines))):
             fitting = sorted(count for count in lengths[i] | {least} if least <= count <= most)
-            if i > first and any(self._units(i, count) is not None for count in fitting if count in headers[first]):
+            if i > first and any(
+                self._units(i, count) is not None for count in fitting if count in headers[first]
+            ):
                 continue
             for count in reversed(fitting):
                 if count in headers.get(i, ()):
@@ -150,16 +167,26 @@ class Header:
         for line in self.lines[:i]:
             ways = [way for way in words(line.text) if len(way) == len(words_of_line)]
             if not line.comment and any(set(self.needed) <= _columns(way) for way in ways):
-                where, got = f"{self.name}: line {self.lines[i].number}", ", ".join(words_of_line)[:80]
+                where, got = (
+                    f"{self.name}: line {self.lines[i].number}",
+                    ", ".join(words_of_line)[:80],
+                )
                 expected = f"units below the header of line {line.number}, or a row of numbers"
                 raise InputError(
-                    where, got, expected, "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark."
+                    where,
+                    got,
+                    expected,
+                    "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark.",
                 )
 
-    def _unequal(self, number: int, count: int, line: HeaderLine, named: int, separator: str) -> InputError:
+    def _unequal(
+        self, number: int, count: int, line: HeaderLine, named: int, separator: str
+    ) -> InputError:
         """Return the error for a first row with another number of fields than the header."""
         expected = f"{named} as in the header, line {line.number}"
-        what_to_do = "Is the line cut off?" if count < named else "Name each column, or say --columns."
+        what_to_do = (
+            "Is the line cut off?" if count < named else "Name each column, or say --columns."
+        )
         if separator == "," and named < count < 2 * named + 1:
             what_to_do = f"{what_to_do} {COMMAS}"
         return InputError(f"{self.name}: line {number}", f"{count} fields", expected, what_to_do)
@@ -212,7 +239,10 @@ class Header:
         found = [units for units in beside if units is not None]
         for units in found[1:]:
             if units != found[0]:
-                where, got = f"{self.name}: lines of units", f"{', '.join(found[0])} and {', '.join(units)}"
+                where, got = (
+                    f"{self.name}: lines of units",
+                    f"{', '.join(found[0])} and {', '.join(units)}",
+                )
                 raise InputError(where, got, "one of them", "Leave one out.")
         if not found and not self.naming.units:
             self._refuse_loose_units()
@@ -227,7 +257,12 @@ class Header:
             units = units_of(found) if label or not line.comment or len(found) > 1 else None
             if units and not {*units} <= {*SI_UNITS}:
                 where, expected = f"{self.name}: line {line.number}", "a unit for each column"
-                raise InputError(where, line.text[:80], expected, "Write units into the header, or say --units ms,cm.")
+                raise InputError(
+                    where,
+                    line.text[:80],
+                    expected,
+                    "Write units into the header, or say --units ms,cm.",
+                )
 
     def refuse(self, expected: str) -> InputError:
         """Return the error for a text without rows."""
@@ -235,12 +270,18 @@ class Header:
             if any(set(self.needed) <= _columns(way) for way in words(line.text)):
                 later = [below for below in self.lines[i + 1 :] if not below.comment]
                 if later:
-                    return InputError(f"{self.name}: line {later[0].number}", later[0].text[:80], "a row of numbers")
+                    return InputError(
+                        f"{self.name}: line {later[0].number}",
+                        later[0].text[:80],
+                        "a row of numbers",
+                    )
                 why = "All lines are comments." if self.lines[i + 1 :] else "Is the output empty?"
                 return InputError(self.name, "no rows", "at least one row", why)
         first = next((line for line in self.lines if not line.comment), None)
         if first is not None:
-            return InputError(f"{self.name}: line {first.number}", first.text[:80], expected, advice(self.needed))
+            return InputError(
+                f"{self.name}: line {first.number}", first.text[:80], expected, advice(self.needed)
+            )
         return InputError(self.name, "no header and no rows", expected, advice(self.needed))
 
 

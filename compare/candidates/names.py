@@ -20,21 +20,29 @@ from reference.system.documents import texts_of
 from .candidate import COLUMNS, Deviation, multiplied
 
 vocabulary = texts_of(__file__)
-DIRECTIONS: dict[str, tuple[str, int]] = {word: (axis, sign) for word, (axis, sign) in vocabulary["directions"].items()}
+DIRECTIONS: dict[str, tuple[str, int]] = {
+    word: (axis, sign) for word, (axis, sign) in vocabulary["directions"].items()
+}
 AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
 _AXIS = "|".join(sorted(AXES, key=len, reverse=True))
 _PLACE = "position|pos|coordinate|coord|displacement|disp|location|loc"
 _SPEED = "velocity|vel|speed"
 POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
-VELOCITY = re.compile(rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt")
+VELOCITY = re.compile(
+    rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt"
+)
 TIME_WORDS: set[str] = set(vocabulary["time_words"])
-TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
-LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
+# a column that is called so
+TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")
+# characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
+LONGEST = 100
 BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
-AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")  # one piece or two
+# one piece or two
+AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
 LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
 LABEL = re.compile(
-    r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?", re.IGNORECASE
+    r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?",
+    re.IGNORECASE,
 )
 TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
 LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
@@ -42,12 +50,20 @@ LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
 TYPES: set[str] = set(vocabulary["types"])  # words that a line of types below the header may hold
-PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
+PER = re.compile(
+    r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)"
+)
 SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
-NEEDED = ("t", "x", "y")  # columns of a trajectory, of which those of z and of velocities may be missing
+# columns of a trajectory, of which those of z and of velocities may be missing
+NEEDED = ("t", "x", "y")
 SKIPPED = ("-", "_", "")  # words for a column that is not read
 # by their number; the paper's program foucPend prints ten: t x y z X Y Z φ λ speed
-UNNAMED = {3: ("t", "x", "y"), 4: ("t", "x", "y", "z"), 7: ("t", *COLUMNS), 10: ("t", "x", "y", "z")}
+UNNAMED = {
+    3: ("t", "x", "y"),
+    4: ("t", "x", "y", "z"),
+    7: ("t", *COLUMNS),
+    10: ("t", "x", "y", "z"),
+}
 
 
 @dataclass(frozen=True)
@@ -78,7 +94,8 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         InputError: its unit contradicts `units`.
     """
     text = unquoted(word)
-    if len(text) > LONGEST or text[-1:] in (",", ";", "|"):  # what ends with a separator is a part of a line
+    # what ends with a separator is a part of a line
+    if len(text) > LONGEST or text[-1:] in (",", ";", "|"):
         return None
     label = LABEL.fullmatch(text)
     text = label[1] if label else text
@@ -102,7 +119,9 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
         if unit and default and size not in (1, size_of(default, column)):
-            raise InputError("--units", default, f"no other unit of {column} than {unit}, as its header says")
+            raise InputError(
+                "--units", default, f"no other unit of {column} than {unit}, as its header says"
+            )
         return Meaning(column, size * sign, unit or default, rank)
     return None
 
@@ -110,7 +129,9 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
 def unquoted(word: str) -> str:
     """Return a word without white space around it and without a pair of quotes."""
     text = word.strip()
-    return text[1:-1].strip() if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`" else text
+    return (
+        text[1:-1].strip() if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`" else text
+    )
 
 
 def _parts(text: str) -> list[tuple[str, str, str]]:
@@ -197,7 +218,9 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
             expected = f"units of time or length: {', '.join([*TIMES, *LENGTHS])}"
             raise InputError("--units", word, expected, "Separate two with a comma.")
         if columns[0] in units:
-            raise InputError("--units", ",".join(words), "one unit of time and one of length at most")
+            raise InputError(
+                "--units", ",".join(words), "one unit of time and one of length at most"
+            )
         units |= {column: f"{unit}/s" if column.startswith("v") else unit for column in columns}
     return units
 
@@ -233,7 +256,9 @@ class Layout:
     factors: dict[str, Fraction]
     conventions: tuple[Deviation, ...]
 
-    def converted(self, columns: dict[str, Array], low: dict[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+    def converted(
+        self, columns: dict[str, Array], low: dict[str, Array]
+    ) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return columns and their low parts in SI units."""
         columns, low = dict(columns), dict(low)
         for name, factor in self.factors.items():
@@ -245,7 +270,11 @@ class Layout:
 
 
 def layout(
-    words: Sequence[str], needed: Sequence[str], naming: Naming, where: str, units: Sequence[str] = ()
+    words: Sequence[str],
+    needed: Sequence[str],
+    naming: Naming,
+    where: str,
+    units: Sequence[str] = (),
 ) -> Layout:
     """Resolve the words of a header.
 
@@ -262,16 +291,25 @@ def layout(
     of_units = defaults(naming.units)
     meanings = [meaning(word, of_units) for word in words]
     if units:
-        meanings = [_with_line_of_units(*each, of_units, where) for each in zip(meanings, words, units, strict=True)]
+        meanings = [
+            _with_line_of_units(*each, of_units, where)
+            for each in zip(meanings, words, units, strict=True)
+        ]
     places: dict[str, int] = {}
     factors: dict[str, Fraction] = {}
     conventions, renamed, converted = [], [], []
     for name in ("t", *COLUMNS) if len(needed) > 1 else needed:
-        ranked = [(meant.rank, i, meant) for i, meant in enumerate(meanings) if meant and meant.column == name]
+        ranked = [
+            (meant.rank, i, meant)
+            for i, meant in enumerate(meanings)
+            if meant and meant.column == name
+        ]
         best = [(i, meant) for rank, i, meant in ranked if rank == min(ranked)[0]]
         if len(best) > 1:
             same = ", ".join(words[i].strip() for i, _ in best)
-            raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
+            raise InputError(
+                where, same, f"one column {name}", "Say with --columns which one it is."
+            )
         if not best and name in needed:
             got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
             what_to_do = "" if where == "--columns" else advice(needed)
@@ -279,7 +317,9 @@ def layout(
         for i, meant in best:
             if meant.factor is None:
                 column = f"{where}: {words[i].strip()}"
-                raise InputError(column, meant.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
+                raise InputError(
+                    column, meant.unit, f"a unit of {name} that is known", "Write s, m or m/s."
+                )
             places[name], factors[name] = i, meant.factor
             if meant.rank == 2:
                 renamed.append(f"{unquoted(words[i])} as {'-' if meant.factor < 0 else ''}{name}")
@@ -292,7 +332,11 @@ def layout(
         conventions.append(Deviation("columns", f"{', '.join(renamed)}{remark}"))
     if converted:
         conventions.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
-    return Layout(places, {name: factor for name, factor in factors.items() if factor != 1}, tuple(conventions))
+    return Layout(
+        places,
+        {name: factor for name, factor in factors.items() if factor != 1},
+        tuple(conventions),
+    )
 
 
 def _with_line_of_units(
@@ -312,10 +356,19 @@ def _with_line_of_units(
     if size is None:
         return replace(meant, factor=None, unit=unit)
     if said.unit and said.factor is not None and abs(said.factor) != size:
-        raise InputError(f"{where}: {word.strip()}", unit, f"{said.unit}, as the header says", "Leave one of them out.")
+        raise InputError(
+            f"{where}: {word.strip()}",
+            unit,
+            f"{said.unit}, as the header says",
+            "Leave one of them out.",
+        )
     default = of_units.get(meant.column)
     if default and size != size_of(default, meant.column):
-        raise InputError("--units", default, f"no other unit of {meant.column} than {unit}, as its line of units says")
+        raise InputError(
+            "--units",
+            default,
+            f"no other unit of {meant.column} than {unit}, as its line of units says",
+        )
     sign = 1 if meant.factor is None or meant.factor > 0 else -1
     return replace(meant, factor=size * sign, unit=unit)
 
@@ -334,7 +387,9 @@ def units_of(words: Sequence[str]) -> list[str] | None:
     Names of types, such as double, stand for no unit, and so does an empty word.
     """
     found = [bare_unit(word) for word in words]
-    known = [any(size_of(unit, column) is not None for column in ("t", "x", "vx")) for unit in found]
+    known = [
+        any(size_of(unit, column) is not None for column in ("t", "x", "vx")) for unit in found
+    ]
     other = [not unit or plain_unit(unit) in OTHER_UNITS for unit in found]
     typed = any(unquoted(word).lower() in TYPES for word in words)
     all_known = all(one or another for one, another in zip(known, other, strict=True))
@@ -354,7 +409,9 @@ def given(count: int, naming: Naming) -> Layout:
     unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
     if unknown:
         expected = f"names of {', '.join(['t', *COLUMNS])}"
-        raise InputError(option, ", ".join(unknown), expected, "Write - for a column that is not read.")
+        raise InputError(
+            option, ", ".join(unknown), expected, "Write - for a column that is not read."
+        )
     return layout(names, NEEDED, naming, option)
 
 

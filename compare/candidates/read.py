@@ -70,12 +70,15 @@ _TELLING = 6  # bytes that tell an archive from text
 CHUNK = 1 << 22
 SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
 DOUBLE_DIGITS = 17  # decimal digits that identify a double
-SURE_DIGITS = 15  # decimals of up to this many digits survive a double, so a precise program means the decimal itself
+# decimals of up to this many digits survive a double, so a precise program means the decimal itself
+SURE_DIGITS = 15
 _EXACT = Context(prec=40)  # rounds a difference to 40 digits, far more than a low part holds
 DECIMAL_COMMA = Deviation("decimal_comma", "numbers have a comma for the decimal point")
 
 
-def read(source: str | Path, *, columns: Sequence[str] = (), units: Sequence[str] = ()) -> Candidate:
+def read(
+    source: str | Path, *, columns: Sequence[str] = (), units: Sequence[str] = ()
+) -> Candidate:
     """Read a candidate from a file, or from standard input if `source` is "-".
 
     Args:
@@ -105,7 +108,13 @@ def read_stream(stream: IO[bytes], name: str, naming: Naming | None = None) -> C
     """Read a candidate in any of the formats from a stream of bytes that can be read twice, as no pipe can."""
     head = stream.read(_TELLING)
     stream.seek(-len(head), os.SEEK_CUR)
-    reader = read_archive if head.startswith(b"PK") else read_array if head.startswith(b"\x93NUMPY") else read_text
+    reader = (
+        read_archive
+        if head.startswith(b"PK")
+        else read_array
+        if head.startswith(b"\x93NUMPY")
+        else read_text
+    )
     return reader(stream, name, naming or Naming())
 
 
@@ -139,12 +148,19 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
                 while stream.tell() <= MAX_BYTES and (data := pipe.read(CHUNK)):
                     stream.write(data)
                 if not stream.tell() and str(source) != "-":
-                    advice = "Nobody writes to this pipe: start the program first, or let --run start it"
+                    advice = (
+                        "Nobody writes to this pipe: start the program first, or let --run start it"
+                    )
                     raise OSError(errno.EPIPE, advice)
                 stream.seek(0)
             start = stream.tell()
             if stream.seek(0, os.SEEK_END) > MAX_BYTES:
-                raise InputError(name, f"more than {MAX_BYTES} bytes", f"at most {MAX_BYTES}", "Thin the output out.")
+                raise InputError(
+                    name,
+                    f"more than {MAX_BYTES} bytes",
+                    f"at most {MAX_BYTES}",
+                    "Thin the output out.",
+                )
             stream.seek(start)
             yield stream, name
         except OSError as error:
@@ -184,7 +200,9 @@ def _binary(data: bytes) -> tuple[str, str] | None:
     for begins, kind in encodings.items():
         if data.startswith(begins):
             return kind, "Write it in UTF-8; PowerShell does by `| Out-File -Encoding utf8`."
-    return ("a zero byte", "Binary data is read from .npy and .npz only.") if b"\0" in data else None
+    return (
+        ("a zero byte", "Binary data is read from .npy and .npz only.") if b"\0" in data else None
+    )
 
 
 @dataclass(frozen=True)
@@ -215,7 +233,11 @@ class TextReading:
         """Return whether every field that is read is a number, or a mark for a missing one."""
         time, *others = self.fields(row) or [""]
         readable = is_number(time) or is_clock(time) or is_missing(time)
-        return self.counts(row) and readable and all(is_number(field) or is_missing(field) for field in others)
+        return (
+            self.counts(row)
+            and readable
+            and all(is_number(field) or is_missing(field) for field in others)
+        )
 
 
 class ColumnReader:
@@ -236,7 +258,8 @@ class ColumnReader:
         self.conventions: list[Deviation] = []
         self.notes: list[str] = []
         self.transits: list[float] = []  # that comments of foucPend name
-        self.clock_s: float | None = None  # what a clock showed in the first row, from which t is counted
+        # what a clock showed in the first row, from which t is counted
+        self.clock_s: float | None = None
 
     def columns(self, stream: IO[bytes]) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return the columns by name in SI units, and their low parts if some number is finer than a double.
@@ -260,7 +283,9 @@ class ColumnReader:
             if mark is None:
                 raise ValueError
             plain_rows = (self._counted(reading, i, mark) for i in range(len(self.rows)))
-            table = np.loadtxt(plain_rows, delimiter=separator or None, usecols=indices, comments=None, ndmin=2)
+            table = np.loadtxt(
+                plain_rows, delimiter=separator or None, usecols=indices, comments=None, ndmin=2
+            )
             if mark == ",":
                 self.conventions.append(DECIMAL_COMMA)
                 self.rows = [row.replace(",", ".") for row in self.rows]
@@ -269,7 +294,9 @@ class ColumnReader:
             indices, separator = [*range(len(indices))], ""
             table = np.loadtxt(self.rows, comments=None, ndmin=2)
         low = _low_parts(self.rows, separator or None, indices, table)
-        columns, rest = (dict(zip(places, np.ascontiguousarray(part.T), strict=True)) for part in (table, low))
+        columns, rest = (
+            dict(zip(places, np.ascontiguousarray(part.T), strict=True)) for part in (table, low)
+        )
         return reading.layout.converted(columns, rest if low.any() else {})
 
     def _take_lines(self, stream: IO[bytes]) -> None:
@@ -279,7 +306,10 @@ class ColumnReader:
                 got = f"a line of more than {MAX_LINE} bytes"
                 raise InputError(self.name, got, "lines of numbers", "Is it text?")
             if line > MAX_LINES:
-                got, most = f"more than {MAX_LINES} lines", f"at most {MAX_LINES}, comments and empty ones included"
+                got, most = (
+                    f"more than {MAX_LINES} lines",
+                    f"at most {MAX_LINES}, comments and empty ones included",
+                )
                 raise InputError(self.name, got, most, "Thin the output out.")
             if not self.rows and (binary := _binary(data)):
                 got, advice = binary
@@ -290,7 +320,10 @@ class ColumnReader:
                 continue
             if "\r" in text:
                 raise InputError(
-                    self.name, "lines that end with CR alone", "LF or CR LF", "Save it with other line ends."
+                    self.name,
+                    "lines that end with CR alone",
+                    "LF or CR LF",
+                    "Save it with other line ends.",
                 )
             cut_off = data[-1:] != b"\n"
             begins = text.lstrip()
@@ -302,7 +335,9 @@ class ColumnReader:
             elif self.rows or self._begins(text, line):
                 if len(self.rows) == MAX_ROWS:
                     most = f"at most {MAX_ROWS}"
-                    raise InputError(self.name, f"more than {MAX_ROWS} rows", most, "Thin the output out.")
+                    raise InputError(
+                        self.name, f"more than {MAX_ROWS} rows", most, "Thin the output out."
+                    )
                 self.rows.append(text)
                 self.lines.append(line)
             if cut_off:
@@ -321,7 +356,9 @@ class ColumnReader:
         if not separators:
             self.header.add(line, text, False)
             return False
-        of_header = [(separator, 0.0) for separator in SEPARATORS if self.header.uses(separator, text)]
+        of_header = [
+            (separator, 0.0) for separator in SEPARATORS if self.header.uses(separator, text)
+        ]
         separators = of_header or separators
         refusals, readings = [], []
         for separator, share in separators:
@@ -356,14 +393,21 @@ class ColumnReader:
             for row, line in zip(self.rows, self.lines, strict=True):
                 first, second = ([*map(_value, way.fields(row))] for way in (possible[0], other))
                 if not same_columns or first != second:
-                    got, expected = f"{', '.join(first)} or {', '.join(second)} from {row!r}", "one way to read it"
+                    got, expected = (
+                        f"{', '.join(first)} or {', '.join(second)} from {row!r}",
+                        "one way to read it",
+                    )
                     advice = "Name the columns in a first line, and separate them by semicolons."
                     raise InputError(f"{self.name}: line {line}", got[:80], expected, advice)
         return (possible or self.readings)[0]
 
     def _sure_mark(self, reading: TextReading) -> str | None:
         """Return the decimal mark of all numbers if a look at the rows shows it; None if each has to be looked at."""
-        marks = [mark for mark in ',."' if mark != reading.separator and any(mark in row for row in self.rows)]
+        marks = [
+            mark
+            for mark in ',."'
+            if mark != reading.separator and any(mark in row for row in self.rows)
+        ]
         if len(marks) != 1 or marks == ['"']:
             return None
         mark = marks[0]
@@ -417,7 +461,9 @@ class ColumnReader:
                 column.append(field)
             lines.append(self.lines[i])
         if not lines:
-            raise InputError(self.name, f"no number of {' or '.join(names[1:])} in any row", "rows of numbers")
+            raise InputError(
+                self.name, f"no number of {' or '.join(names[1:])} in any row", "rows of numbers"
+            )
         if lost:
             self.notes.append(
                 f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}"
@@ -440,7 +486,9 @@ class ColumnReader:
         if THOUSANDS.fullmatch(field):
             advice = "Write numbers without marks between thousands."
         elif name == "t":
-            advice = HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
+            advice = (
+                HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
+            )
         return InputError(f"{self.name}: line {line}: {name}", field[:40], "a number", advice)
 
     def _clock(self, texts: Sequence[str], reading: TextReading) -> list[str]:
@@ -450,10 +498,16 @@ class ColumnReader:
             InputError: a text is not a time of day, or its column has a unit that no time of day has.
         """
         if "t" in reading.layout.factors:
-            raise InputError(f"{self.name}: t", texts[0], "a number, as its unit says", "Leave the unit out.")
+            raise InputError(
+                f"{self.name}: t", texts[0], "a number, as its unit says", "Leave the unit out."
+            )
         places = [f"{self.name}: line {line}: t" for line in self.lines]
         times = [seconds_of(text, place) for text, place in zip(texts, places, strict=True)]
-        kind = "dates with hours:minutes:seconds" if MOMENT.fullmatch(texts[0]) else "hours:minutes:seconds"
+        kind = (
+            "dates with hours:minutes:seconds"
+            if MOMENT.fullmatch(texts[0])
+            else "hours:minutes:seconds"
+        )
         self.conventions.append(Deviation("clock_text", f"times are {kind}, converted to seconds"))
         if self.alone or not times[0]:
             return [decimal(time) for time in times]
@@ -474,10 +528,17 @@ class ColumnReader:
             raise InputError(self.name, got, expected, advice)
         fractions = any("." in number or "," in number for column in columns for number in column)
         needless = (
-            None if fractions or not commas_separate else padded([number for column in columns for number in column])
+            None
+            if fractions or not commas_separate
+            else padded([number for column in columns for number in column])
         )
         if needless is not None:
-            raise InputError(self.name, f"{needless} between commas", "whole numbers without needless zeros", COMMAS)
+            raise InputError(
+                self.name,
+                f"{needless} between commas",
+                "whole numbers without needless zeros",
+                COMMAS,
+            )
 
 
 def _value(field: str) -> str:
@@ -503,7 +564,8 @@ def low_part(text: str, near: float, of_time: bool = False) -> float:
 
     A time beside numbers more precise than doubles is the decimal itself where it has few digits, as 0.1 has.
     """
-    digits = sum(map(str.isdigit, text.lower().partition("e")[0].strip().lstrip("+-0.")))  # that are significant
+    # that are significant
+    digits = sum(map(str.isdigit, text.lower().partition("e")[0].strip().lstrip("+-0.")))
     sure = of_time and digits <= SURE_DIGITS
     # a number that underflows to 0 is below every scale here
     if near == 0 or not math.isfinite(near) or (digits <= DOUBLE_DIGITS and not sure):

@@ -20,10 +20,13 @@ SEPARATORS = (",", ";", "\t", "|", "")  # the last is white space
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+|[0-9]*,[0-9]+)([eEdD][+-]?[0-9]+)?")
 NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 FORTRAN = re.compile(r"(?<=[0-9.])[dD](?=[+-]?[0-9])")
-HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
-GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}([,.][0-9]{3})+")  # thousands, or a decimal mark before three digits
+# never read, but no word either
+HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)
+# thousands, or a decimal mark before three digits
+GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}([,.][0-9]{3})+")
 THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}([,.'’ \u00a0\u202f][0-9]{3})+([.,][0-9]*)?")
-PADDED = re.compile(r"[+-]?0[0-9]+")  # how no program prints a whole number, but the digits after a comma
+# how no program prints a whole number, but the digits after a comma
+PADDED = re.compile(r"[+-]?0[0-9]+")
 MISSING = ("", "na", "n/a", "#n/a", "null", "none")  # of a field without a number, in small letters
 APART = re.compile(r"\s{2,}|\t")
 BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
@@ -88,7 +91,10 @@ def possible_separators(line: str) -> list[tuple[str, float]]:
         if separator not in line:
             continue
         fields = [field for field in split(line, separator) if not is_missing(field)]
-        numbers = [is_number(field) or is_clock(field) or bool(HEXFLOAT.fullmatch(field)) for field in fields]
+        numbers = [
+            is_number(field) or is_clock(field) or bool(HEXFLOAT.fullmatch(field))
+            for field in fields
+        ]
         share = sum(numbers) / max(1, len(fields))
         if share > 0.5:
             found.append((separator, share))

@@ -56,12 +56,17 @@ class Runnable:
             self.out.mkdir(parents=True, exist_ok=True)
             if any(self.out.iterdir()) and not (self.out / f"{GIVEN}.txt").exists():
                 expected = "a new folder, or one of earlier experiments"
-                raise InputError("--out", str(self.out), expected, "It has other files: choose another name.")
+                raise InputError(
+                    "--out", str(self.out), expected, "It has other files: choose another name."
+                )
 
     @property
     def step(self) -> float:
         """The value of {setting}, if none is given a step in s, whole ones to a grid step, at least 200 a period."""
-        grid, rate = float(self.scene.exact.grid_step), Start.of(self.scene.exact, DOUBLE.prec).fastest_rate
+        grid, rate = (
+            float(self.scene.exact.grid_step),
+            Start.of(self.scene.exact, DOUBLE.prec).fastest_rate,
+        )
         return self.setting or grid / math.ceil(grid * rate * STEPS / (2 * math.pi))
 
     def words(self, scene: Scene, command: str = "", finer: int = 1) -> list[str]:
@@ -77,7 +82,10 @@ class Runnable:
     def experimented(self, score: Score, naming: Naming) -> Score:
         """Return a score with what experiments measure, which are made now."""
         assert score.explanation is not None
-        made, kept = 0, "what the program has printed is kept" if self.out else "nothing was written"
+        made, kept = (
+            0,
+            "what the program has printed is kept" if self.out else "nothing was written",
+        )
         with stoppable(kept), progress() as show:
             move = show("experiments", MOST_RUNS, "runs")
 
@@ -91,7 +99,9 @@ class Runnable:
                     return read_stream(output, chosen.title, naming=naming)
 
             planned = possible(score.scene, self.command)
-            measured = experiment(run, score.explanation, score.candidate, score.scene, score.allowed_m, planned)
+            measured = experiment(
+                run, score.explanation, score.candidate, score.scene, score.allowed_m, planned
+            )
             if measured is None:
                 return score
             experiments, explanation = measured

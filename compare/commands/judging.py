@@ -42,7 +42,9 @@ TRANSITS = ".transits"
 DOCUMENT = ".json"  # of a baseline that is no trajectory
 
 
-def suite_files(folder: Path, option: str = "--suite") -> dict[str, tuple[Path | None, Path | None]]:
+def suite_files(
+    folder: Path, option: str = "--suite"
+) -> dict[str, tuple[Path | None, Path | None]]:
     """Return the candidates of a folder by their scenes, sorted, such as paris.csv, with paris.transits.csv beside it.
 
     Returns:
@@ -53,7 +55,12 @@ def suite_files(folder: Path, option: str = "--suite") -> dict[str, tuple[Path |
         InputError: it is no folder, holds no candidates, or two for one scene.
     """
     if not folder.is_dir():
-        raise InputError(option, str(folder), "a folder", "Its files are named by their scenes: paris.csv, hard.npz.")
+        raise InputError(
+            option,
+            str(folder),
+            "a folder",
+            "Its files are named by their scenes: paris.csv, hard.npz.",
+        )
     by_scene: dict[str, dict[bool, Path]] = {}
     for path in sorted(folder.iterdir()):
         if path.suffix.lower() not in SUFFIXES or not path.is_file():
@@ -61,11 +68,18 @@ def suite_files(folder: Path, option: str = "--suite") -> dict[str, tuple[Path |
         of_transits = path.stem.endswith(TRANSITS)
         files = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
         if of_transits in files:
-            raise InputError(option, f"{files[of_transits].name} and {path.name}", "one file for a scene")
+            raise InputError(
+                option, f"{files[of_transits].name} and {path.name}", "one file for a scene"
+            )
         files[of_transits] = path
     if not by_scene:
         expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
-        raise InputError(option, str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
+        raise InputError(
+            option,
+            str(folder),
+            expected,
+            "For paris: paris.csv, and paris.transits.csv if you like.",
+        )
     suite = {}
     for scene, paths in sorted(by_scene.items()):
         described = folder / f"{scene}.toml"
@@ -97,7 +111,9 @@ class Judging:
             return Outcome(plain(name), plain(scene_id), error=error)
         return Outcome(score.candidate.name, score.scene.id, score)
 
-    def score(self, scene: Scene, candidate: Candidate | None, times: Array | None, baseline: Any = None) -> Score:
+    def score(
+        self, scene: Scene, candidate: Candidate | None, times: Array | None, baseline: Any = None
+    ) -> Score:
         """Judge a candidate, with its transits or transits alone, beside a baseline if there is one."""
         with stoppable("nothing was written"), progress() as show, named("--baseline"):
             options = self.options | {"baseline": baseline, "announce": announce}
@@ -106,7 +122,9 @@ class Judging:
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(name, scene.id, lambda: self.score(scene, self._read(name), times, self._earlier()))
+        return self.outcome(
+            name, scene.id, lambda: self.score(scene, self._read(name), times, self._earlier())
+        )
 
     def _earlier(self) -> Candidate | dict[str, Any] | None:
         """Read the baseline, a trajectory or a document, if there is one."""
@@ -118,7 +136,9 @@ class Judging:
         """Judge transits alone."""
         return self.outcome(name, scene.id, lambda: self.score(scene, None, self.times(name)))
 
-    def program(self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
+    def program(
+        self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool
+    ) -> Outcome:
         """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
         scene = program.scene
 
@@ -127,7 +147,11 @@ class Judging:
             candidate, timing = printed(program.command, name, repeats)
             command = self.baseline is not None and not Path(self.baseline).is_file()
             with named("--baseline"):
-                earlier = printed(str(self.baseline), str(self.baseline), 0)[0] if command else self._earlier()
+                earlier = (
+                    printed(str(self.baseline), str(self.baseline), 0)[0]
+                    if command
+                    else self._earlier()
+                )
             return replace(self.score(scene, candidate, times, earlier), timing=timing)
 
         def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
@@ -151,12 +175,16 @@ class Judging:
         motion = APPROXIMATIONS[word]
         if not isinstance(motion, Motion):
             expected = "an approximation of the motion"
-            raise InputError("--approximation", word, expected, "This one gives a number, not a motion.")
+            raise InputError(
+                "--approximation", word, expected, "This one gives a number, not a motion."
+            )
 
         def trial() -> Score:
             times = [float(t) for t in scene.exact.grid]
             columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-            return self.score(scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits))
+            return self.score(
+                scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits)
+            )
 
         return self.outcome(word, scene.id, trial)
 
@@ -168,7 +196,11 @@ class Judging:
         for scene, files in suite_files(folder, option).items():
             name = Path(scene).stem
             before: object = earlier.pop(name, None if self.baseline is None else {"rows": []})
-            outcomes.append(self.outcome(str(files[0] or files[1]), name, partial(self._trial, scene, *files, before)))
+            outcomes.append(
+                self.outcome(
+                    str(files[0] or files[1]), name, partial(self._trial, scene, *files, before)
+                )
+            )
         for name in earlier:
             error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
             outcomes.append(Outcome(name, name, error=error))
@@ -183,15 +215,25 @@ class Judging:
         path = Path(self.baseline)
         if path.suffix == DOCUMENT:
             with named("--baseline"):
-                return {str(row["scene"]): {"rows": [row], FILE: str(path)} for row in rows_of(document_of(path))}
+                return {
+                    str(row["scene"]): {"rows": [row], FILE: str(path)}
+                    for row in rows_of(document_of(path))
+                }
         outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
         return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
 
-    def _trial(self, word: str, candidate: Path | None, transits: Path | None, earlier: object) -> Score:
+    def _trial(
+        self, word: str, candidate: Path | None, transits: Path | None, earlier: object
+    ) -> Score:
         return self.score(load_scene(word), self._read(candidate), self.times(transits), earlier)
 
     def hold(
-        self, files: list[str] | None, transits: str | None, section: str | None, truth: Ranges | Scene, as_json: bool
+        self,
+        files: list[str] | None,
+        transits: str | None,
+        section: str | None,
+        truth: Ranges | Scene,
+        as_json: bool,
     ) -> None:
         """Hold files, or transits alone, against ranges, or passages of a section against a scene; print the outcome.
 
@@ -200,7 +242,12 @@ class Judging:
         scene = truth.scene if isinstance(truth, Ranges) else truth
         word = "" if section is None else _section_word(section, transits, scene)
         if not files and transits is None:
-            raise InputError("CANDIDATE", "nothing", "a file, - for stdin, or --transits", "Name what was measured.")
+            raise InputError(
+                "CANDIDATE",
+                "nothing",
+                "a file, - for stdin, or --transits",
+                "Name what was measured.",
+            )
         times, tolerance = self.times(transits), self.options["tolerance"]
         scores: list[Measured | PassageScore] = []
         for rows in [self._read(file) for file in files or ()] or [None]:
@@ -208,12 +255,30 @@ class Judging:
                 label = "the truth" if truth is scene else "the proof"
                 report: Any = show(f"{label} of {scene.id}", float(scene.exact.t_end))
                 if isinstance(truth, Ranges):
-                    scores.append(measured(rows, times, truth, tolerance or 0.0, str(transits), report, word or None))
+                    scores.append(
+                        measured(
+                            rows,
+                            times,
+                            truth,
+                            tolerance or 0.0,
+                            str(transits),
+                            report,
+                            word or None,
+                        )
+                    )
                 else:
                     assert times is not None
-                    scores.append(score_passages(str(transits), times, scene, word, tolerance, announce, report))
+                    scores.append(
+                        score_passages(
+                            str(transits), times, scene, word, tolerance, announce, report
+                        )
+                    )
         if as_json:
-            emit(scores[0].document() if len(scores) == 1 else {"rows": [score.document() for score in scores]})
+            emit(
+                scores[0].document()
+                if len(scores) == 1
+                else {"rows": [score.document() for score in scores]}
+            )
         else:
             for line in (line for score in scores for line in score.lines()):
                 typer.echo(line)
@@ -225,7 +290,11 @@ class Judging:
         return None if name is None else read_transits(name, self.naming.units)
 
     def _read(self, name: str | Path | None) -> Candidate | None:
-        return None if name is None else read(name, columns=self.naming.columns, units=self.naming.units)
+        return (
+            None
+            if name is None
+            else read(name, columns=self.naming.columns, units=self.naming.units)
+        )
 
 
 def ranges_named(word: str | None) -> Ranges | None:
@@ -249,5 +318,7 @@ def _section_word(section: str, transits: str | None, scene: Scene) -> str:
         refuse({"--section": section}, "without --transits")
     words = scene.with_values({"run.sections": section}).run.sections or ()
     if len(words) != 1:
-        raise InputError("--section", section, "one section", "Score the passages of each by themselves.")
+        raise InputError(
+            "--section", section, "one section", "Score the passages of each by themselves."
+        )
     return words[0]

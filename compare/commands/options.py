@@ -18,7 +18,11 @@ def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], l
     def lists(incomplete: str) -> list[str]:
         before, comma, last = incomplete.rpartition(",")
         used = before.split(",")
-        return [f"{before}{comma}{name}" for name in names() if name.startswith(last) and name not in used]
+        return [
+            f"{before}{comma}{name}"
+            for name in names()
+            if name.startswith(last) and name not in used
+        ]
 
     return lists
 
@@ -36,9 +40,15 @@ METHODS = option(
     "A,B,…",
     completion_of_lists(method_ids),
 )
-FOLDER = option("--out", "Write CSV, JSON and an HTML page into this folder (default: none).", "DIR")
-PROGRAM = option("--run", "Study your program too; {setting} is its step. May be repeated.", "'COMMAND'")
-NAME = option("--name", "Name of the program of --run, one for each (default: its file's name).", "WORD")
+FOLDER = option(
+    "--out", "Write CSV, JSON and an HTML page into this folder (default: none).", "DIR"
+)
+PROGRAM = option(
+    "--run", "Study your program too; {setting} is its step. May be repeated.", "'COMMAND'"
+)
+NAME = option(
+    "--name", "Name of the program of --run, one for each (default: its file's name).", "WORD"
+)
 
 Methods = Annotated[str | None, METHODS]
 Folder = Annotated[Path | None, FOLDER]
@@ -72,7 +82,9 @@ def check_positive(option: str, value: float | None, unit: str = "seconds") -> N
         raise InputError(option, f"{value:g}", f"a positive number of {unit}")
 
 
-def programs_of(run: Sequence[str] | None, names: Sequence[str] | None, scene: Scene) -> dict[str, str]:
+def programs_of(
+    run: Sequence[str] | None, names: Sequence[str] | None, scene: Scene
+) -> dict[str, str]:
     """Return the commands of --run by the names that they have; refuse any that cannot be run with a scene's values."""
     from ..candidates.external import SETTING, arguments
     from ..methods import named_programs
@@ -96,7 +108,12 @@ def announce(text: str) -> None:
     typer.echo(text, err=True)
 
 
-def finish(document: dict[str, Any], text: Callable[[dict[str, Any]], str], page: Path | None, as_json: bool) -> None:
+def finish(
+    document: dict[str, Any],
+    text: Callable[[dict[str, Any]], str],
+    page: Path | None,
+    as_json: bool,
+) -> None:
     """Print a result as a JSON document, or as text with the path of the page that was written."""
     if as_json:
         emit(document)

@@ -17,7 +17,9 @@ from reference.commands.terminal import AsJson, option, stoppable
 from ..papers.foucpend_options import SWITCHES, Options, Switch
 from .options import finish
 
-OUT = option("--out", "Write a page with figures, CSV and JSON into this folder (extra plot).", "DIR")
+OUT = option(
+    "--out", "Write a page with figures, CSV and JSON into this folder (extra plot).", "DIR"
+)
 ALSO = {"O": "-0", "l": "-1"}  # the letters may be read as digits where they are printed
 
 
@@ -56,7 +58,9 @@ def pend(*, exact: bool = False, **typed: str | None) -> None:
     """
     from ..papers.foucpend import lines
 
-    options = Options.parse({letter: text for letter, text in typed.items() if text is not None}, exact)
+    options = Options.parse(
+        {letter: text for letter, text in typed.items() if text is not None}, exact
+    )
     output = lines(options)
     while block := [line for _, line in zip(range(4096), output, strict=False)]:
         sys.stdout.write("\n".join(block) + "\n")
@@ -66,7 +70,9 @@ def _parameter(letter: str, switch: Switch) -> Parameter:
     """Return the parameter of `pend` for a switch."""
     names = [f"-{letter}", *([ALSO[letter]] if letter in ALSO else [])]
     option = typer.Option(*names, metavar=switch.unit, help=f"{switch.help} [{switch.default}].")
-    return Parameter(letter, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])
+    return Parameter(
+        letter, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option]
+    )
 
 
 _EXACT = Annotated[bool, typer.Option("--exact", help="Print the same lines from the reference.")]

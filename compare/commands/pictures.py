@@ -45,7 +45,9 @@ WHAT = option(
 PAGES = option("--out", "Write the pages into this folder (extra plot).", "DIR")
 DATA = option("--data", "The folder of the datasets (default: those that ship).", "DIR")
 STUDIES = option(
-    "--studies", "Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).", "DIR"
+    "--studies",
+    "Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).",
+    "DIR",
 )
 FILES = option("--files", "Link files to URL/DATASET/FILE (default: name them alone).", "URL")
 
@@ -97,7 +99,9 @@ def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> Pi
         return motion_of(source)
     scene = load_scene(source, replacements(assignments, {"--t-end": ("run.t_end", t_end)}))
     with stoppable("nothing was written"), progress() as show:
-        return motion_of(scene, announce, show(f"the motion of {scene.id}", float(scene.exact.t_end)))
+        return motion_of(
+            scene, announce, show(f"the motion of {scene.id}", float(scene.exact.t_end))
+        )
 
 
 def atlas(
@@ -120,7 +124,12 @@ def atlas(
         drawing = show("atlas", unit="scenes")
         sizes = build(data or golden_root(), out, studies or studies_folder(), files, drawing)
     if as_json:
-        emit({"out": str(out), "pages": [{"page": name, "bytes": size} for name, size in sizes.items()]})
+        emit(
+            {
+                "out": str(out),
+                "pages": [{"page": name, "bytes": size} for name, size in sizes.items()],
+            }
+        )
         return
     scenes = counted(sum(name.endswith(".html") for name in sizes) - 1, "scene")
     typer.echo(f"{out / PAGE}: {scenes}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} files")

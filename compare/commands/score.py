@@ -59,10 +59,16 @@ def _how(language: str | None) -> None:
 
 
 SCENE = scene_argument("A scene's id, or the path of a TOML file; with --suite none.")
-CANDIDATES = typer.Argument(metavar="CANDIDATE", help="Files: text with named columns, .npy, .npz; - is stdin.")
+CANDIDATES = typer.Argument(
+    metavar="CANDIDATE", help="Files: text with named columns, .npy, .npz; - is stdin."
+)
 SUITE = option("--suite", "Score a folder of files named after scenes: paris.csv.", "DIR")
 HOW = option(
-    "--how", "Print how to write such a file in c, fortran, python …", "LANGUAGE", callback=_how, is_eager=True
+    "--how",
+    "Print how to write such a file in c, fortran, python …",
+    "LANGUAGE",
+    callback=_how,
+    is_eager=True,
 )
 COLUMNS = option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…")
 UNITS = option("--units", "Units of times and lengths: ms,cm (default: s,m).", "A,B")
@@ -80,22 +86,36 @@ APPROXIMATION = option(
     hidden=True,
 )
 BASELINE = option(
-    "--baseline", "Say what changed since a file, --json document, command or suite of an earlier version.", "FILE"
+    "--baseline",
+    "Say what changed since a file, --json document, command or suite of an earlier version.",
+    "FILE",
 )
-TOLERANCE = option("--tolerance", "Allow errors up to this, in m (default: 1e-6 of the amplitude).", "M")
+TOLERANCE = option(
+    "--tolerance", "Allow errors up to this, in m (default: 1e-6 of the amplitude).", "M"
+)
 COVERS = option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE")
 T_END = option("--t-end", "Ignore rows after this time, in s (default: the scene's).", "S")
 INPUTS = option(
-    "--inputs", "Read the scene as decimal or binary64; auto: by the file.", "READING", completion(_readings)
+    "--inputs",
+    "Read the scene as decimal or binary64; auto: by the file.",
+    "READING",
+    completion(_readings),
 )
 PLOT = option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE")
 TIMEOUT = option("--timeout", f"Stop --run after this many seconds (default: {TIMEOUT_S:g}).", "S")
 TIMINGS = option(
-    "--repeats", f"Time the program of --run this often after a warm-up (default: {REPEATS}).", "N", hidden=True
+    "--repeats",
+    f"Time the program of --run this often after a warm-up (default: {REPEATS}).",
+    "N",
+    hidden=True,
 )
 AS_MODEL = option("--as-model", "Count agreement with a named simpler model.")
 NO_DIAGNOSIS = option("--no-diagnosis", "Do not look for the reasons of an error.")
-OUT = option("--out", "With --suite: write a page and tables into this folder; with --experiments: the outputs.", "DIR")
+OUT = option(
+    "--out",
+    "With --suite: write a page and tables into this folder; with --experiments: the outputs.",
+    "DIR",
+)
 JUNIT = option("--junit", "Write the outcome as JUnit XML, a test for each.", "FILE")
 GITHUB = option("--github", "Annotate for GitHub Actions; write the job's summary.")
 
@@ -139,11 +159,15 @@ def command(
     from ..candidates.names import Naming
     from .judging import Judging, ranges_named, ranges_to_prove
 
-    naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
+    naming = Naming(
+        tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ())
+    )
     reading = None if chosen("--inputs", inputs, _readings()) == "auto" else inputs
     check_positive("--tolerance", tolerance, "metres")
     if no_diagnosis:
-        refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")
+        refuse(
+            {"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis"
+        )
     if as_json:
         refuse({"--github": github}, "together with --json")
     if run is None:
@@ -155,32 +179,62 @@ def command(
         refuse({"--out": None if experiments else out}, "without --suite or --experiments")
         options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
         if scene_word is None:
-            raise InputError("SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them.")
+            raise InputError(
+                "SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them."
+            )
         if (ranges := ranges_named(scene_word)) is not None:
-            refuse({"--uncertain": uncertain, "--set": set_, "--t-end": t_end, "--inputs": reading}, "with ranges")
-        scene = ranges.scene if ranges else load_scene(scene_word, replacements(set_, options, UNUSED, announce))
+            refuse(
+                {"--uncertain": uncertain, "--set": set_, "--t-end": t_end, "--inputs": reading},
+                "with ranges",
+            )
+        scene = (
+            ranges.scene
+            if ranges
+            else load_scene(scene_word, replacements(set_, options, UNUSED, announce))
+        )
         if ranges is None and (widths := widths_by_name(uncertain, scene)):
             ranges = ranges_to_prove(scene, widths)
         if ranges is not None or section is not None:
-            unused: dict[str, object] = {"--run": run, "--approximation": approximation, "--covers": covers}
+            unused: dict[str, object] = {
+                "--run": run,
+                "--approximation": approximation,
+                "--covers": covers,
+            }
             unused |= {"--baseline": baseline, "--plot": plot, "--junit": junit, "--github": github}
             unused |= {"--as-model": as_model, "--no-diagnosis": no_diagnosis}
             refuse(unused, "together with --section" if ranges is None else BESIDE_RANGES)
             if ranges is None and candidates:
                 advice = "Its passages stand in one file: `foucault score SCENE --transits FILE --section WORD`."
-                raise InputError("CANDIDATE", candidates[0], "no file beside that of --transits", advice)
-            read_as = scene if reading else scene.with_values(["inputs=binary64"])  # as programs in double have them
-            Judging(naming, {"tolerance": tolerance}).hold(candidates, transits, section, ranges or read_as, as_json)
+                raise InputError(
+                    "CANDIDATE", candidates[0], "no file beside that of --transits", advice
+                )
+            # as programs in double have them
+            read_as = scene if reading else scene.with_values(["inputs=binary64"])
+            Judging(naming, {"tolerance": tolerance}).hold(
+                candidates, transits, section, ranges or read_as, as_json
+            )
             return
     else:
-        unused = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
+        unused = {
+            "SCENE": scene_word,
+            "--run": run,
+            "--transits": transits,
+            "--approximation": approximation,
+        }
         unused |= {"--section": section, "--t-end": t_end, "--columns": columns}
         refuse(unused | {"--uncertain": uncertain, "--set": set_ or None}, "together with --suite")
     if covers is not None and not 0 < covers <= 1:
-        raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
+        raise InputError(
+            "--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1"
+        )
     if [*(candidates or ()), transits].count("-") > 1:
-        raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
-    timeout, repeats = TIMEOUT_S if timeout is None else timeout, REPEATS if repeats is None else repeats
+        raise InputError(
+            "CANDIDATE", "- more than once", "standard input once", "It can be read only once."
+        )
+    timeout, repeats = (
+        TIMEOUT_S if timeout is None else timeout,
+        REPEATS if repeats is None else repeats,
+    )
     check_positive("--timeout", timeout)
     check_positive("--setting", setting)
     if not 0 <= repeats <= MAX_REPEATS:
@@ -193,7 +247,11 @@ def command(
 
     end = None if t_end is None else float(scene.exact.t_end)
     limits: dict[str, Any] = {"tolerance": tolerance, "covers": covers or 0.0, "t_end": end}
-    judging = Judging(naming, limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis}, baseline)
+    judging = Judging(
+        naming,
+        limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis},
+        baseline,
+    )
     if suite is not None:
         outcomes = judging.suite(suite, out)
     else:
@@ -203,7 +261,9 @@ def command(
             program = Runnable(scene, run, setting, timeout, out)
             if experiments:
                 program.check()
-            outcomes.append(judging.program(program, name or "the program", transits, repeats, experiments))
+            outcomes.append(
+                judging.program(program, name or "the program", transits, repeats, experiments)
+            )
         if approximation is not None:
             outcomes.append(judging.approximation(scene, approximation, transits))
         if not outcomes and transits is not None:
@@ -221,7 +281,9 @@ def command(
         raise typer.Exit(status)
 
 
-def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
+def _show(
+    outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool
+) -> None:
     """Print and write outcomes in the forms that were asked for."""
     from ..report.suite import annotation, append_summary, suite_document, summary, write_junit
     from ..score.document import of_outcome

@@ -9,7 +9,16 @@ import typer
 
 from reference import Scene, load_scene, scene_ids
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, Assignments, SceneWord, emit, option, refuse, replacements, stoppable
+from reference.commands.terminal import (
+    AsJson,
+    Assignments,
+    SceneWord,
+    emit,
+    option,
+    refuse,
+    replacements,
+    stoppable,
+)
 
 from .options import (
     Commands,
@@ -34,24 +43,38 @@ OF_METHODS = {
     "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Methods are given doubles, and are held against the solution for doubles.",
 }
-OF_PRECISIONS = OF_METHODS | {"run.digits": "The truth has as many digits as the finest precision needs."}
+OF_PRECISIONS = OF_METHODS | {
+    "run.digits": "The truth has as many digits as the finest precision needs."
+}
 OF_APPROXIMATIONS = dict.fromkeys(
     ("run.level", "run.digits", "run.transits", "run.grid_step"),
     "Approximations are held against one run, at set times.",
 )
 
-PRECISIONS = option("--precisions", "Bits: measure run time against digits at these precisions.", "53,113,…")
-APPROXIMATIONS = option(
-    "--approximations", "Study the source papers' approximations instead: where each stops being good."
+PRECISIONS = option(
+    "--precisions", "Bits: measure run time against digits at these precisions.", "53,113,…"
 )
-CANDIDATES = option("--candidates", "Put a file of somebody's output beside the methods. May be repeated.", "FILE")
-CPU = option("--cpu", "CPU seconds that each file of --candidates took; - where nobody knows.", "S,-,…")
+APPROXIMATIONS = option(
+    "--approximations",
+    "Study the source papers' approximations instead: where each stops being good.",
+)
+CANDIDATES = option(
+    "--candidates", "Put a file of somebody's output beside the methods. May be repeated.", "FILE"
+)
+CPU = option(
+    "--cpu", "CPU seconds that each file of --candidates took; - where nobody knows.", "S,-,…"
+)
 SETTINGS = option("--settings", f"Values of {{setting}} in --run (default: {STEPS_S}).", "S,S,…")
-T_END = option("--t-end", "End of the run in s (default: the scene's; at most 14400 with --precisions).", "S")
+T_END = option(
+    "--t-end", "End of the run in s (default: the scene's; at most 14400 with --precisions).", "S"
+)
 LIMIT = option("--limit", f"Allow one run this many CPU seconds (default: {LIMIT_S:g}).", "S")
 NO_FORMULATIONS = option("--no-formulations", "Leave out the comparison of formulations.")
 SCENES = option(
-    "--scenes", "Ids of scenes (default: paris and all that have flags).", "A,B,…", completion_of_lists(scene_ids)
+    "--scenes",
+    "Ids of scenes (default: paris and all that have flags).",
+    "A,B,…",
+    completion_of_lists(scene_ids),
 )
 STABILITY_LIMIT = option("--limit", "Allow one run this many CPU seconds.", "S")
 LONG = option("--long", "Also measure how errors grow over 30 days (takes minutes more).")
@@ -78,11 +101,27 @@ def study(
 
     Every method is run over its settings; with the same --out a study resumes.
     """
-    unused = OF_APPROXIMATIONS if approximations else OF_PRECISIONS if precisions is not None else OF_METHODS
+    unused = (
+        OF_APPROXIMATIONS
+        if approximations
+        else OF_PRECISIONS
+        if precisions is not None
+        else OF_METHODS
+    )
     scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}, unused))
     if approximations:
-        options: dict[str, object] = {"--methods": methods, "--precisions": precisions, "--run": run, "--name": name}
-        options |= {"--candidates": candidates, "--cpu": cpu, "--settings": settings, "--limit": limit}
+        options: dict[str, object] = {
+            "--methods": methods,
+            "--precisions": precisions,
+            "--run": run,
+            "--name": name,
+        }
+        options |= {
+            "--candidates": candidates,
+            "--cpu": cpu,
+            "--settings": settings,
+            "--limit": limit,
+        }
         refuse({**options, "--no-formulations": no_formulations}, "together with --approximations")
         _study_approximations(scene, out, as_json)
         return
@@ -177,8 +216,13 @@ def stability(
         )
         runs = []
         if items:
-            solving, report = show("the truth over 30 days", unit="days"), show("30 days", unit="runs")
-            runs = long_runs(items, journal_path=out and out / "long.jsonl", solving=solving, report=report)
+            solving, report = (
+                show("the truth over 30 days", unit="days"),
+                show("30 days", unit="runs"),
+            )
+            runs = long_runs(
+                items, journal_path=out and out / "long.jsonl", solving=solving, report=report
+            )
     document = document_of(cells, runs, programs)
     finish(document, REPORT.text, REPORT.write(document, out), as_json)
 
@@ -190,15 +234,25 @@ def methods(as_json: AsJson = False) -> None:
     from ..methods.method import available
 
     integrators = [
-        {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}
+        {
+            "id": method.id,
+            "title": method.title,
+            "setting": method.setting,
+            "missing": available(method),
+        }
         for method in METHODS.values()
     ]
-    analytic: list[dict[str, str | None]] = [{"id": each.id, "title": each.title} for each in APPROXIMATIONS.values()]
+    analytic: list[dict[str, str | None]] = [
+        {"id": each.id, "title": each.title} for each in APPROXIMATIONS.values()
+    ]
     if as_json:
         emit({"methods": integrators, "approximations": analytic})
         return
     width = max(map(len, (*METHODS, *APPROXIMATIONS)))
-    headings = "Methods (study, stability)", "Approximations (score --approximation, study --approximations)"
+    headings = (
+        "Methods (study, stability)",
+        "Approximations (score --approximation, study --approximations)",
+    )
     for heading, listed_there in zip(headings, (integrators, analytic), strict=True):
         typer.echo(f"{heading}:")
         for each in listed_there:

@@ -32,27 +32,45 @@ if TYPE_CHECKING:
     from reference import Swept
     from reference.sweeps.request import Request
 
-ON_SCENE = ("--set", "--t-end", "--section")  # options that change the scene, and not what is asked of a sweep of it
+# options that change the scene, and not what is asked of a sweep of it
+ON_SCENE = ("--set", "--t-end", "--section")
 _NO_GRID = dict.fromkeys(
-    ("run.grid_step", "run.digits", "run.level", "run.transits"), "Give --t-end, --digits, --level or --want."
+    ("run.grid_step", "run.digits", "run.level", "run.transits"),
+    "Give --t-end, --digits, --level or --want.",
 )
 
 SCENE = scene_argument(
-    "A scene's id, or the path of a TOML file; without it, go on with the sweep in --out.", "[SCENE]"
+    "A scene's id, or the path of a TOML file; without it, go on with the sweep in --out.",
+    "[SCENE]",
 )
 OVER = option(
-    "--over", "Vary a field: START:STOP:STEP, or V1,V2,…, or @FILE.csv; several give all combinations.", "KEY=VALUES"
+    "--over",
+    "Vary a field: START:STOP:STEP, or V1,V2,…, or @FILE.csv; several give all combinations.",
+    "KEY=VALUES",
 )
 ROWS = option("--rows", "Instead: CSV or Parquet, a column for each field, a row a scene.", "FILE")
 WANT = option(
-    "--want", "frequency, precession, transits, state, amplitude, all of these (default), transit-times.", "A,B,…"
+    "--want",
+    "frequency, precession, transits, state, amplitude, all of these (default), transit-times.",
+    "A,B,…",
 )
-LEVEL = option("--level", "Above computed, every row goes through the solver.", "L", names=completion(lambda: LEVELS))
-DIGITS = option("--digits", "Significant digits of every row, by the solver (default: those of double).", "D")
+LEVEL = option(
+    "--level",
+    "Above computed, every row goes through the solver.",
+    "L",
+    names=completion(lambda: LEVELS),
+)
+DIGITS = option(
+    "--digits", "Significant digits of every row, by the solver (default: those of double).", "D"
+)
 TOLERANCE = option("--tolerance", "Solve rows again whose position may be off by more, in m.", "M")
 ENGINE = option("--engine", "Solve the rows with this engine (default: the fastest).", "E")
-AUDIT = option("--audit", "Solve N rows again in 28 digits (default: with --out a thousandth, else none).", "N")
-OUT = option("--out", "Write the rows into this folder, in Parquet; the same command goes on.", "DIR")
+AUDIT = option(
+    "--audit", "Solve N rows again in 28 digits (default: with --out a thousandth, else none).", "N"
+)
+OUT = option(
+    "--out", "Write the rows into this folder, in Parquet; the same command goes on.", "DIR"
+)
 PLOT = option("--plot", "Draw frequency and precession: .svg, .png or .pdf.", "FILE")
 
 
@@ -97,7 +115,9 @@ def command(
 
         check(request, plot)
     kept = (
-        f"what is done is in {out}: `foucault sweep --out {out}` goes on" if out else "nothing was kept; give --out DIR"
+        f"what is done is in {out}: `foucault sweep --out {out}` goes on"
+        if out
+        else "nothing was kept; give --out DIR"
     )
     with stoppable(kept), progress() as show:
         move, done = show(f"sweep of {request.scene.id}", request.table.count, "rows"), [0]
@@ -136,7 +156,11 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
     sections = ",".join(options["--section"]) if options["--section"] else None
     given = {"--t-end": ("run.t_end", options["--t-end"]), "--section": ("run.sections", sections)}
     scene = load_scene(scene_word, replacements(options["--set"], given, _NO_GRID))
-    chosen = {word.strip("-"): value for word, value in options.items() if value is not None and word not in ON_SCENE}
+    chosen = {
+        word.strip("-"): value
+        for word, value in options.items()
+        if value is not None and word not in ON_SCENE
+    }
     if "want" in chosen:
         chosen["want"] = [word.strip() for word in chosen["want"].split(",")]
     request = asked_for(scene, out=out, **chosen)
@@ -156,9 +180,16 @@ def _judge(swept: Swept) -> None:
     failed = len(swept) - counts.get(Status.OK.value, 0)
     if failed:
         first = swept.first_bad
-        words = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items() if word != Status.OK.value)
+        words = ", ".join(
+            f"{count} {Status(word).words}"
+            for word, count in counts.items()
+            if word != Status.OK.value
+        )
         where = ", ".join(f"{key}={text}" for key, text in swept.request.table.texts(first).items())
-        typer.echo(f"foucault: {failed} of {len(swept)} rows failed: {words} (first: row {first}, {where})", err=True)
+        typer.echo(
+            f"foucault: {failed} of {len(swept)} rows failed: {words} (first: row {first}, {where})",
+            err=True,
+        )
     if swept.audit is not None and swept.audit.wrong:
         named = ", ".join(map(str, swept.audit.wrong))
         typer.echo(f"foucault: solved again, rows {named} lie outside of their errors", err=True)

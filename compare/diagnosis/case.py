@@ -16,13 +16,17 @@ from .programs import NAMES, Program, SphericalPendulum
 
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention has to explain
-HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
+# conventions that a model may go with
+HARMLESS = ("z_constant", "decimals", "digits", "single_precision")
 UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
-AS_IF = "as_if"  # stage of a number that no person typed: the motion is like that, the cause is not known
+# stage of a number that no person typed: the motion is like that, the cause is not known
+AS_IF = "as_if"
 BEGIN = "It seems that your program"
 EQUAL = 1.01  # ratio of two residuals that may be one: fits of the same motion end a little apart
-HARM = 3.0  # times a column's own error: an explanation that leaves more of it is refuted by the file
-FINEST = 1e-2  # of the tolerance: smaller residuals are rounding and steps of a program's own, or ours
+# times a column's own error: an explanation that leaves more of it is refuted by the file
+HARM = 3.0
+# of the tolerance: smaller residuals are rounding and steps of a program's own, or ours
+FINEST = 1e-2
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,9 @@ class FileRows:
     @property
     def relative(self) -> bool:
         """Whether smaller numbers are rounded by less: single precision, or a number of digits."""
-        return any(convention.id in ("single_precision", "digits") for convention in self.conventions)
+        return any(
+            convention.id in ("single_precision", "digits") for convention in self.conventions
+        )
 
     def changed(self, convention: Deviation, **fields: object) -> FileRows:
         """Return the rows with some fields replaced, and what is to be said of that."""
@@ -139,14 +145,23 @@ class Explanation:
             yield f"{'-' if listed else BEGIN} {cause.text}: {cause.size_m:.3g} m"
         if self.slip:
             yield self.slip
-        enough = self.corrected_m <= self.allowed_m  # which the rounding of a file, say, may be by itself
-        mended = self.causes or any(enough or convention.id not in UNCORRECTED for convention in self.conventions)
+        # which the rounding of a file, say, may be by itself
+        enough = self.corrected_m <= self.allowed_m
+        mended = self.causes or any(
+            enough or convention.id not in UNCORRECTED for convention in self.conventions
+        )
         if mended and math.isfinite(self.corrected_m):
             these = "this" if len(self.causes or self.conventions) == 1 else "all this"
             share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
             # a smaller rest is rounding, and not the same on every processor
-            left = f"{self.corrected_m:.2g}" if self.corrected_m > rounding else f"less than {rounding:.1g}"
-            beyond = f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
+            left = (
+                f"{self.corrected_m:.2g}"
+                if self.corrected_m > rounding
+                else f"less than {rounding:.1g}"
+            )
+            beyond = (
+                f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
+            )
             yield f"With {these} put right, {left} m are left{beyond}."
         elif not self.slip:
             yield "No mistake known to foucault explains the error."
@@ -198,7 +213,9 @@ class FileCase:
     def released(self) -> bool:
         """True if row 0 is the release to its last digit, so that neither its place nor its time is off."""
         off = np.abs(self.rows.positions[0, :2] - (self.right.x, self.right.y)).max()
-        return bool(self.rows.times[0] == 0 and off <= 2 * self.rows.noise + EXACT * self.right.length)
+        return bool(
+            self.rows.times[0] == 0 and off <= 2 * self.rows.noise + EXACT * self.right.length
+        )
 
     @property
     def pull(self) -> float:
@@ -208,12 +225,29 @@ class FileCase:
     @property
     def scales(self) -> Array:
         """Sizes of the numbers of theta, in the order of `NAMES`."""
-        length, rate, swing = self.right.length, max(abs(self.right.rate), 1e-6), math.sqrt(self.pull)
-        return np.array([*[rate] * 3, *[self.pull] * 3, swing, *[length] * 2, *[length * swing] * 2, length, 1.0, 1.0])
+        length, rate, swing = (
+            self.right.length,
+            max(abs(self.right.rate), 1e-6),
+            math.sqrt(self.pull),
+        )
+        return np.array(
+            [
+                *[rate] * 3,
+                *[self.pull] * 3,
+                swing,
+                *[length] * 2,
+                *[length * swing] * 2,
+                length,
+                1.0,
+                1.0,
+            ]
+        )
 
     def part(self, count: int) -> FileCase:
         """Return the case of the first `count` rows."""
-        rows = replace(self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count])
+        rows = replace(
+            self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count]
+        )
         return replace(self, rows=rows, truth=self.truth[:count])
 
     def tested(self, causes: tuple[Deviation, ...], residuals: Array, price: float) -> Explanation:
@@ -232,7 +266,9 @@ class FileCase:
             return self.explanation((), largest(errors), self.error, 0.0)
         return self.explanation(causes, largest(residuals), rms(residuals), price)
 
-    def explanation(self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float) -> Explanation:
+    def explanation(
+        self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float
+    ) -> Explanation:
         """Return the explanation that some causes make up.
 
         Args:
@@ -243,9 +279,15 @@ class FileCase:
         """
         # what is within the tolerance speaks against no explanation
         left = rest if corrected_m > self.enough else 0.0
-        score = math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions) + price
+        score = (
+            math.log10(max(left / self.allowed_m, 1e-2))
+            + CONVENTION * len(self.rows.conventions)
+            + price
+        )
         explained = 1 - rest / self.error if self.error else 0.0
-        return Explanation(self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m)
+        return Explanation(
+            self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m
+        )
 
     def pendulum_of(self, program: Program) -> tuple[SphericalPendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""

@@ -23,14 +23,39 @@ SOLAR_DAY = 86400.0
 SIDEREAL_DAYS = (86164.0, 86160.0, 86164.1, 86164.0905, 86164.09)
 MEAN_RADIUS = 6371000.0
 COMMON_GRAVITY = (9.8, 9.81, 9.80665, 9.82, 9.83, 10.0)
-ROUNDED_RATES = (7.29e-5, 7.3e-5, 7.27e-5, 7.2722e-5, 7.292e-5, 7.2921e-5, 7.29212e-5, 7.2921159e-5, 7.26e-5, 7e-5)
+ROUNDED_RATES = (
+    7.29e-5,
+    7.3e-5,
+    7.27e-5,
+    7.2722e-5,
+    7.292e-5,
+    7.2921e-5,
+    7.29212e-5,
+    7.2921159e-5,
+    7.26e-5,
+    7e-5,
+)
 UNITS = {
     "g": " m/s²", "length": " m", "latitude": " degrees", "drag": " 1/s", "x": " m", "y": " m", "altitude": " m",
     "vx": " m/s", "vy": " m/s",
 }  # fmt: skip
 EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal force (--set site.gravity_is=effective)"
 NO_CHANGE = "leaves out the centrifugal force's change along the swing"
-FACTORS = (2.0, 10.0, 50.0, 60.0, 100.0, 200.0, 300.0, 500.0, 1000.0, 2000.0, 3600.0, 5000.0, 10000.0)
+FACTORS = (
+    2.0,
+    10.0,
+    50.0,
+    60.0,
+    100.0,
+    200.0,
+    300.0,
+    500.0,
+    1000.0,
+    2000.0,
+    3600.0,
+    5000.0,
+    10000.0,
+)
 
 
 @dataclass(frozen=True)
@@ -90,7 +115,9 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
         text = f"has a cord of {cord:.10g} m on average: a spring for a cord, or an integrator that leaves the sphere"
         yield Cause("stretched_cord", "pendulum.length", text, _set(length=cord), NAMED)
     rows = case.intervals + 1
-    for pace, way in ((1 - 1 / rows, "slow"), (rows / case.intervals, "fast")) if case.intervals else ():
+    for pace, way in (
+        ((1 - 1 / rows, "slow"), (rows / case.intervals, "fast")) if case.intervals else ()
+    ):
         text = f"has a clock too {way} by one part in its {rows} rows (a linspace that counts its ends)"
         yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
     if not released:
@@ -117,7 +144,9 @@ def _coriolis(**factors: float) -> Callable[[Program], Program]:
     return change
 
 
-def fitted_number(word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input") -> Cause:
+def fitted_number(
+    word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input"
+) -> Cause:
     """Return the cause that a number of a program is another one."""
     return Cause(word, group, text, lambda program: program, cost, free, stage)
 
@@ -140,15 +169,24 @@ def _gravity(right: Program) -> Iterator[Cause]:
             yield reading("uniform", "uniform_gravity", NO_CHANGE)
         else:
             whole = right.gravity_reading != "effective"
-            yield reading("none", "no_centrifugal", "leaves out the centrifugal force" if whole else NO_CHANGE, 0.2)
+            yield reading(
+                "none",
+                "no_centrifugal",
+                "leaves out the centrifugal force" if whole else NO_CHANGE,
+                0.2,
+            )
             if right.gravity_reading == "effective":
                 twice = "to a g that contains it already (--set site.gravity_is=ellipsoid)"
-                yield reading("ellipsoid", "ellipsoid_gravity", f"adds the centrifugal force {twice}")
+                yield reading(
+                    "ellipsoid", "ellipsoid_gravity", f"adds the centrifugal force {twice}"
+                )
                 text = f"adds the centrifugal force, on a sphere of 6371000 m, {twice}"
                 on_sphere = _set(gravity_reading="ellipsoid", flattening=0.0, radius=MEAN_RADIUS)
                 yield Cause("ellipsoid_gravity", "gravity", text, on_sphere, RARE, stage="gravity")
     if right.radius:
-        text = "has gravity fall off with the distance from the Earth's centre and point there (1/r²)"
+        text = (
+            "has gravity fall off with the distance from the Earth's centre and point there (1/r²)"
+        )
         yield Cause("point_mass", "point_mass", text, _set(point_mass=1.0), stage="gravity")
 
         def both(program: Program) -> Program:
@@ -160,7 +198,9 @@ def _gravity(right: Program) -> Iterator[Cause]:
         text = "treats the Earth as a sphere of the equatorial radius"
         yield Cause("sphere", "earth", text, _set(flattening=0.0), stage="gravity")
         text = f"treats the Earth as a sphere of radius {MEAN_RADIUS:.0f} m"
-        yield Cause("mean_sphere", "earth", text, _set(flattening=0.0, radius=MEAN_RADIUS), stage="gravity")
+        yield Cause(
+            "mean_sphere", "earth", text, _set(flattening=0.0, radius=MEAN_RADIUS), stage="gravity"
+        )
     if right.radius and right.rate and ellipsoid:
         text = "takes site.altitude to be {value}"
         yield fitted_number("site.altitude", "earth", text, "altitude", RARE + FITTED, "gravity")
@@ -184,7 +224,12 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
     if natural:
         for value in ROUNDED_RATES:
             if abs(value / size - 1) > 1e-9:
-                yield rate("rounded_rate", f"rounds the rotation rate to {value:g} rad/s", sign * value, 0.4)
+                yield rate(
+                    "rounded_rate",
+                    f"rounds the rotation rate to {value:g} rad/s",
+                    sign * value,
+                    0.4,
+                )
         for day in SIDEREAL_DAYS:
             if abs(2 * math.pi / day / size - 1) > 1e-9:
                 text = f"turns the Earth once in {day:.10g} s"
@@ -194,7 +239,11 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
             yield rate("rate_per_hour", f"{text} (divide by 3600)", sign * 2 * math.pi / hours)
         text = "takes the rotation rate in degrees per hour as radians per second"
         yield rate("rate_in_degrees_per_hour", text, math.degrees(right.rate) * 3600)
-        yield rate("rate_in_degrees", "takes the rotation rate in degrees as radians", math.degrees(right.rate))
+        yield rate(
+            "rate_in_degrees",
+            "takes the rotation rate in degrees as radians",
+            math.degrees(right.rate),
+        )
     for factor in FACTORS:
         text = f"turns the Earth {factor:g} times too fast"
         yield rate("rate_factor", text, factor * right.rate, NAMED if factor > 2 else 0.45)
@@ -204,7 +253,11 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
     text = "turns {value} times as fast as the scene's Earth"
     yield fitted_number("site.rotation_rate", "rate", text, "rate")
     factors = [
-        ("coriolis_sign", "gives the Coriolis force the wrong sign: its plane turns the wrong way", -1.0),
+        (
+            "coriolis_sign",
+            "gives the Coriolis force the wrong sign: its plane turns the wrong way",
+            -1.0,
+        ),
         ("coriolis_half", "omits the factor 2 in the Coriolis force", 0.5),
         ("coriolis_double", "doubles the Coriolis force", 2.0),
         ("no_coriolis", "leaves out the Coriolis force", 0.0),
@@ -212,8 +265,18 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
     for word, text, factor in factors:
         yield Cause(word, "coriolis", text, _coriolis(both=factor))
     parts = [
-        ("vertical_only", "uses only the vertical part of Ω in the Coriolis force", _coriolis(north=0.0), NAMED),
-        ("horizontal_sign", "gives the horizontal part of Ω the wrong sign", _coriolis(north=-1.0), RARE),
+        (
+            "vertical_only",
+            "uses only the vertical part of Ω in the Coriolis force",
+            _coriolis(north=0.0),
+            NAMED,
+        ),
+        (
+            "horizontal_sign",
+            "gives the horizontal part of Ω the wrong sign",
+            _coriolis(north=-1.0),
+            RARE,
+        ),
         ("vertical_sign", "gives the vertical part of Ω the wrong sign", _coriolis(up=-1.0), RARE),
     ]
     for word, text, change, cost in parts if kind == "sphere" else ():
@@ -221,7 +284,14 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
     text = "is a pendulum that feels no rotation, whose plane is turned by hand"
     yield Cause("turned_plane", "coriolis", text, _set(turned_plane=True), RARE, stage="model")
     backwards = _set(turned_plane=True, coriolis=(1.0, 1.0, -1.0))
-    yield Cause("turned_plane_sign", "coriolis", f"{text} the wrong way round", backwards, RARE, stage="model")
+    yield Cause(
+        "turned_plane_sign",
+        "coriolis",
+        f"{text} the wrong way round",
+        backwards,
+        RARE,
+        stage="model",
+    )
     if kind == "sphere":
         frames = (
             ("frame_x_south", "x points south and y east", (0.0, -1.0, 1.0, 0.0)),
@@ -230,24 +300,35 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
             ("frame_x_north_y_east", "x points north and y east", (0.0, 1.0, 1.0, 0.0)),
         )
         for word, text, matrix in frames:
-            sentence = f"uses axes of its own, in which {text}, and takes the release's x and y in them"
+            sentence = (
+                f"uses axes of its own, in which {text}, and takes the release's x and y in them"
+            )
             yield Cause(word, "frame", sentence, _set(frame=matrix), 0.4, stage="frame")
 
 
 def _latitude(right: Program) -> Iterator[Cause]:
     latitude = right.latitude
     if latitude:
-        yield Cause("hemisphere", "latitude", "gives the latitude the wrong sign", _set(latitude=-latitude), 0.35)
+        yield Cause(
+            "hemisphere",
+            "latitude",
+            "gives the latitude the wrong sign",
+            _set(latitude=-latitude),
+            0.35,
+        )
         radians = math.degrees(latitude) % 360
         text = "takes the latitude in degrees as if it were in radians"
         yield Cause("radians", "latitude", text, _set(coriolis_latitude=radians))
-        folded = math.degrees(math.asin(math.sin(math.radians(radians))))  # its cosine's sign stays in the turn
+        # its cosine's sign stays in the turn
+        folded = math.degrees(math.asin(math.sin(math.radians(radians))))
         yield Cause("radians", "latitude", text, _set(latitude=folded, coriolis_latitude=radians))
     text = "uses the colatitude instead of the latitude"
     yield Cause("colatitude", "latitude", text, _set(latitude=90 - abs(latitude)))
     if abs(latitude) not in (0.0, 90.0):
         text = "takes the vertical part of Ω to be all of Ω, without the sine of the latitude"
-        yield Cause("no_sine", "latitude", text, _set(coriolis_latitude=math.copysign(90.0, latitude)))
+        yield Cause(
+            "no_sine", "latitude", text, _set(coriolis_latitude=math.copysign(90.0, latitude))
+        )
         if right.flattening:
             phi = math.radians(latitude)
             squeeze = (1 - right.flattening) ** 2
@@ -256,23 +337,39 @@ def _latitude(right: Program) -> Iterator[Cause]:
             yield Cause("geocentric", "latitude", text, _set(latitude=geocentric))
             text = "uses the geocentric latitude in the Coriolis force"
             yield Cause("geocentric", "latitude", text, _set(coriolis_latitude=geocentric), 0.4)
-        yield fitted_number("site.latitude", "latitude", "takes site.latitude to be {value}", "latitude")
+        yield fitted_number(
+            "site.latitude", "latitude", "takes site.latitude to be {value}", "latitude"
+        )
 
 
 def _release() -> Iterator[Cause]:
     speeds = (
         ("inertial_rest", "at rest relative to the stars, not to the ground", 1.0, NAMED),
-        ("inertial_rest_sign", "with the velocity of rest relative to the stars, but of the wrong sign", -1.0, 0.4),
+        (
+            "inertial_rest_sign",
+            "with the velocity of rest relative to the stars, but of the wrong sign",
+            -1.0,
+            0.4,
+        ),
         ("release_at_twice", "with twice the velocity of rest relative to the stars", 2.0, 0.4),
-        ("release_at_twice", "with twice the velocity of rest relative to the stars, of the wrong sign", -2.0, 0.4),
+        (
+            "release_at_twice",
+            "with twice the velocity of rest relative to the stars, of the wrong sign",
+            -2.0,
+            0.4,
+        ),
     )
     for word, how, factor, cost in speeds:
-        yield Cause(word, "release", f"releases the bob {how}", _set(released=factor), cost, stage="release")
+        yield Cause(
+            word, "release", f"releases the bob {how}", _set(released=factor), cost, stage="release"
+        )
 
 
 def _inputs(right: Program, released: bool) -> Iterator[Cause]:
     if right.vx or right.vy:
-        yield Cause("at_rest", "release", "releases the bob at rest", _set(vx=0.0, vy=0.0), stage="release")
+        yield Cause(
+            "at_rest", "release", "releases the bob at rest", _set(vx=0.0, vy=0.0), stage="release"
+        )
     if right.x != right.y and not released:
         swapped = _set(x=right.y, y=right.x, vx=right.vy, vy=right.vx)
         yield Cause("swapped", "start", "swaps x and y of the release", swapped, stage="release")
@@ -280,11 +377,17 @@ def _inputs(right: Program, released: bool) -> Iterator[Cause]:
         yield Cause("no_drag", "drag", "leaves out the drag", _set(drag=0.0))
         yield Cause("drag_half", "drag", "takes half the drag", _set(drag=right.drag / 2), 0.4)
         yield Cause("drag_double", "drag", "takes twice the drag", _set(drag=2 * right.drag), 0.4)
-    for name, word in (("g", "site.gravity"), ("length", "pendulum.length"), ("drag", "pendulum.drag")):
+    for name, word in (
+        ("g", "site.gravity"),
+        ("length", "pendulum.length"),
+        ("drag", "pendulum.drag"),
+    ):
         yield fitted_number(word, word, f"takes {word} to be {{value}}", name)
     for name in ("vx", "vy") if released else ("x", "y", "vx", "vy"):
         word = f"release.{name}"
         group = "start" if name in ("x", "y") else "release"
         # a push that the scene does not have is rarer than half a step of an integrator, which looks like one
         cost = FITTED if name in ("x", "y") or right.vx or right.vy else FITTED + PUSHED
-        yield fitted_number(word, f"{group}.{name}", f"takes {word} to be {{value}}", name, cost, "release")
+        yield fitted_number(
+            word, f"{group}.{name}", f"takes {word} to be {{value}}", name, cost, "release"
+        )

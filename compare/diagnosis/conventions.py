@@ -21,7 +21,8 @@ from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from .case import FileRows, largest
 from .phasors import as_angles, fit_phasors, sinc
 
-NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
+# of the distance from the vertical: a row 0 nearer than this to the release is the release
+NEAR = 2e-5
 FLAT = "gives z a constant: its bob does not rise as it swings"
 SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
 OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is reported
@@ -33,7 +34,8 @@ SHIFTS = 3  # rows by which a clock may be off
 DECAYS = 0.1  # of its frequency: a swing that decays, or grows, faster tells no unit of time
 LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in ("cm", "mm", "km", "ft", "in")}
 TIMES_SAID = {unit: f"counts time in {LONG_NAMES[unit]}" for unit in ("min", "h", "ms", "d")}
-AXES_SAID = {  # order and signs by which a file's horizontal columns become the scene's: x of the scene first
+# order and signs by which a file's horizontal columns become the scene's: x of the scene first
+AXES_SAID = {
     ((0, 1), (1, 1)): ("", ""),
     ((0, 1), (-1, 1)): ("x_west", "has x pointing west instead of east"),
     ((0, 1), (1, -1)): ("y_south", "has y pointing south instead of north"),
@@ -98,7 +100,12 @@ def heights(rows: FileRows, length: float) -> FileRows:
         rows = rows.changed(Deviation("z_offset", text, abs(offset)), positions=moved)
     orders = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
     down = "counts z downwards"
-    ways = ((1, 0.0, ""), (-1, 0.0, down), (1, length, "counts z from the lowest point"), (-1, length, down))
+    ways = (
+        (1, 0.0, ""),
+        (-1, 0.0, down),
+        (1, length, "counts z from the lowest point"),
+        (-1, length, down),
+    )
     for order, (sign, shift, text) in itertools.product(orders, ways):
         plane, printed = rows.positions[:, order[:2]], rows.positions[:, order[2]]
         column = printed * sign - shift
@@ -113,17 +120,23 @@ def heights(rows: FileRows, length: float) -> FileRows:
             word = "z_down" if sign < 0 else "z_from_lowest"
             right = right.changed(Deviation(word, text, float(np.abs(column - printed).max())))
         if order != (0, 1, 2):
-            right = right.changed(Deviation("vertical_is_not_z", f"calls the vertical {'xyz'[order[2]]}", length))
+            right = right.changed(
+                Deviation("vertical_is_not_z", f"calls the vertical {'xyz'[order[2]]}", length)
+            )
         reach = np.sqrt(square + column * column)
         drift = float(np.ptp(reach))
         if float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere)):
             return _flat(right.changed(Deviation("z_constant", FLAT)))
         if drift > max(20 * rows.noise, OFF * length):
-            return _flat(right.changed(Deviation("off_the_sphere", SPRING, drift), cord=float(reach.mean())))
+            return _flat(
+                right.changed(Deviation("off_the_sphere", SPRING, drift), cord=float(reach.mean()))
+            )
         if right is not rows:
             return replace(right, positions=np.column_stack([plane, column]))
         # a slight drift is no matter of its own, but no height to fit either
-        return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or rows.relative else rows
+        return (
+            _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or rows.relative else rows
+        )
     return _flat(rows)
 
 
@@ -159,24 +172,36 @@ def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRow
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
     units = [(1.0, ""), *((1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items())]
-    units += [(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")]
+    units += [
+        (float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")
+    ]
     units += [(1 / length, "is in cord lengths (x/l)")]
     ways = [*AXES_SAID]
-    for row, (scale, text), (order, signs) in itertools.product((first, last), units, ways if rename else ways[:1]):
+    for row, (scale, text), (order, signs) in itertools.product(
+        (first, last), units, ways if rename else ways[:1]
+    ):
         if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _renamed(_in_metres(rows, scale, text, length), order, signs)
     # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
     near = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
-    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):  # else its axes may be right
+    # else its axes may be right
+    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):
         near += [(units[0], way) for way in ways[1:] if rename]
     for (scale, text), (order, signs) in near:
-        if np.abs(first[[*order]] / scale * np.array(signs) - release[:2]).max() < ROUGHLY * np.hypot(*release[:2]):
+        if np.abs(
+            first[[*order]] / scale * np.array(signs) - release[:2]
+        ).max() < ROUGHLY * np.hypot(*release[:2]):
             return _renamed(_in_metres(rows, scale, text, length), order, signs)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
     polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
-    for (unit, size), expected in itertools.product((("degrees", 180 / math.pi), ("radians", 1.0)), (angles, polar)):
-        if np.abs(first[:2] / size - expected).max() <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size:
+    for (unit, size), expected in itertools.product(
+        (("degrees", 180 / math.pi), ("radians", 1.0)), (angles, polar)
+    ):
+        if (
+            np.abs(first[:2] / size - expected).max()
+            <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
+        ):
             theta = rows.plane / size
             plane = length * np.sin(theta)
             if expected is polar:
@@ -261,7 +286,9 @@ def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
         fitted = fit_phasors(rows.times[some] * scale, plane[some], frequency)
         rate = 0.0 if fitted is None or fitted[1] > 0.05 * size else abs(fitted[0].square) ** 0.5
         # a part of a wide swing in another unit looks like one that dies away, or grows, within it
-        return rate / frequency if fitted is not None and abs(fitted[0].drag) < DECAYS * rate else None
+        return (
+            rate / frequency if fitted is not None and abs(fitted[0].drag) < DECAYS * rate else None
+        )
 
     as_printed = ratio(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:
@@ -270,7 +297,8 @@ def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
     for unit, text in TIMES_SAID.items():
         scale = float(TIMES[unit])
         if not spacing * scale * frequency < math.pi < span * scale * frequency:
-            continue  # farther apart, rows of any frequency look like those of another; closer, they show none
+            # farther apart, rows of any frequency look like those of another; closer, they show none
+            continue
         scaled = ratio(scale)
         if scaled is not None and abs(scaled - 1) < 0.1:
             return rows.changed(Deviation("unit_of_time", text, size), times=rows.times * scale)
@@ -316,7 +344,9 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
         count = "one row" if abs(parts) == PARTS else f"{Fraction(abs(parts), PARTS)} rows"
         text = f"has its clock {'ahead of' if parts > 0 else 'behind'} its rows by {count} ({abs(shift):.6g} s)"
         size = abs(goal) * min(2.0, frequency * abs(shift))
-        right = right.changed(Deviation(f"rows_{'late' if parts < 0 else 'early'}", text, float(size)))
+        right = right.changed(
+            Deviation(f"rows_{'late' if parts < 0 else 'early'}", text, float(size))
+        )
     times = right.times - shift
     kept = times >= 0
     return replace(right, times=times[kept], positions=right.positions[kept], starts=True)

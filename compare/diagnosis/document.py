@@ -11,14 +11,18 @@ from .case import BEGIN, Explanation
 Readings = list[dict[str, Any]]
 
 
-def explanation_document(explanation: Explanation, readings: Readings | None = None) -> dict[str, Any]:
+def explanation_document(
+    explanation: Explanation, readings: Readings | None = None
+) -> dict[str, Any]:
     """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
     corrected = explanation.corrected_m
     conventions = [_as_document("your file", convention) for convention in explanation.conventions]
     return {
         "conventions": [*(readings or []), *conventions],
         "model": None if explanation.model is None else vars(explanation.model),
-        "causes": [_as_document("your program", cause) | _fitted(cause) for cause in explanation.causes],
+        "causes": [
+            _as_document("your program", cause) | _fitted(cause) for cause in explanation.causes
+        ],
         "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
         "slip": explanation.slip or None,
         "diagnosis": _summary(explanation),

@@ -15,7 +15,17 @@ from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import Deviation
 from .case import AS_IF, HARMLESS, Explanation, FileCase, FileRows, NamedModel, largest
 from .causes import NAMED
-from .conventions import ROUGHLY, axes, clock, digits, heights, other_conventions, rounded_clock, shifted, unit_of_time
+from .conventions import (
+    ROUGHLY,
+    axes,
+    clock,
+    digits,
+    heights,
+    other_conventions,
+    rounded_clock,
+    shifted,
+    unit_of_time,
+)
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
 from .gate import SHARE
@@ -43,7 +53,11 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
     try:
         with np.errstate(all="ignore"):
             return _explained(times, columns, scene, allowed_m)
-    except (FoucaultError, ArithmeticError, np.linalg.LinAlgError):  # no program solves such a scene, or fits it
+    except (
+        FoucaultError,
+        ArithmeticError,
+        np.linalg.LinAlgError,
+    ):  # no program solves such a scene, or fits it
         return Explanation()
 
 
@@ -75,7 +89,9 @@ class KnownScene:
         """The frequency of its swing in rad/s."""
         return math.sqrt(abs(self.right.theta()[5]))
 
-    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True) -> FileRows:
+    def rows(
+        self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True
+    ) -> FileRows:
         """Return the rows of a file in the scene's conventions.
 
         Args:
@@ -96,29 +112,48 @@ class KnownScene:
         chosen = _sample(len(rows.times))
         rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
         since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
-        truth = self.model.states(self.scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
+        truth = self.model.states(self.scene.exact, since_release)[
+            -len(rows.times) :, : rows.positions.shape[1]
+        ]
         right, frequency = self.right, self.frequency
         pendulum = SphericalPendulum(
             self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate))
         )
-        intervals = round(float(rows.times[-1] / rows.times[1])) if rows.times[0] == 0 < rows.times[-1] else 0
+        intervals = (
+            round(float(rows.times[-1] / rows.times[1]))
+            if rows.times[0] == 0 < rows.times[-1]
+            else 0
+        )
         return FileCase(rows, truth, right, pendulum, frequency, allowed_m, intervals)
 
 
-def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
+def _explained(
+    times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float
+) -> Explanation:
     problem = KnownScene.of(scene)
     rows = problem.rows(times, columns)
     best = first_good_explanation(problem.case(rows, allowed_m), scene)
-    alternatives = list(other_conventions(rows, problem.start)) if best.corrected_m > allowed_m else []
+    alternatives = (
+        list(other_conventions(rows, problem.start)) if best.corrected_m > allowed_m else []
+    )
     if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names
         alternatives.append(problem.rows(times, columns, rename=False))
     for alternative in alternatives:
         explanation = first_good_explanation(problem.case(alternative, allowed_m), scene)
-        if explanation.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in explanation.causes):
-            best, rows = min((best, rows), (explanation, alternative), key=lambda pair: pair[0].score)
-    shifts = [convention.size_m for convention in best.conventions if convention.id in ("rows_early", "rows_late")]
-    if shifts and not best.known and shifts[0] < SHARE * best.corrected_m:  # what is left may look like it
+        if explanation.corrected_m <= allowed_m and not any(
+            _is_mirrored(cause) for cause in explanation.causes
+        ):
+            best, rows = min(
+                (best, rows), (explanation, alternative), key=lambda pair: pair[0].score
+            )
+    shifts = [
+        convention.size_m
+        for convention in best.conventions
+        if convention.id in ("rows_early", "rows_late")
+    ]
+    # what is left may look like it
+    if shifts and not best.known and shifts[0] < SHARE * best.corrected_m:
         rows = problem.rows(times, columns, late=False)
         best = first_good_explanation(problem.case(rows, allowed_m), scene)
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
@@ -153,7 +188,9 @@ def _plain(case: FileCase) -> Explanation:
     return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
 
 
-def _of_approximation(case: FileCase, scene: Scene, named: Explanation | None) -> Explanation | None:
+def _of_approximation(
+    case: FileCase, scene: Scene, named: Explanation | None
+) -> Explanation | None:
     """Return the approximation of the source papers that leaves next to nothing, of equal ones the first.
 
     None if there is none, or causes explain the rows as well.
@@ -163,7 +200,9 @@ def _of_approximation(case: FileCase, scene: Scene, named: Explanation | None) -
     if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
         return None
     best: tuple[Deviation, NamedModel, Array] | None = None
-    least = max(CLOSELY * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5)
+    least = max(
+        CLOSELY * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5
+    )
     for word, motion in APPROXIMATIONS.items():
         if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
             continue
@@ -173,19 +212,29 @@ def _of_approximation(case: FileCase, scene: Scene, named: Explanation | None) -
         if rest < (least if best is None else least / 2):
             least, costs = rest, largest(positions - truth)
             text = f"solves {motion.title} ({motion.where}) instead of the full equations"
-            best = Deviation(word, text, costs, "model"), NamedModel(word, motion.title, largest(left), costs), left
+            best = (
+                Deviation(word, text, costs, "model"),
+                NamedModel(word, motion.title, largest(left), costs),
+                left,
+            )
     if best is None or (named is not None and best[1].exact_to_m > PLAINLY * named.corrected_m):
         return None
     cause, model, left = best
     corrected = model.exact_to_m
-    exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
+    exact = corrected <= case.enough and all(
+        convention.id in HARMLESS for convention in rows.conventions
+    )
     explanation = case.tested((cause,), left, NAMED)
     return replace(explanation, model=model) if exact and explanation.causes else explanation
 
 
 def _is_mirrored(cause: Deviation) -> bool:
     """Return whether a release is the scene's but for its sign, which is an axis that points the other way."""
-    if not cause.id.endswith(("release.x", "release.y")) or cause.value is None or cause.shift is None:
+    if (
+        not cause.id.endswith(("release.x", "release.y"))
+        or cause.value is None
+        or cause.shift is None
+    ):
         return False
     scene = cause.value - cause.shift
     return abs(cause.value + scene) < ROUGHLY * abs(scene)
@@ -194,4 +243,6 @@ def _is_mirrored(cause: Deviation) -> bool:
 def _sample(count: int) -> Array:
     even = np.linspace(0, count - 1, min(ROWS // 2, count))
     crowded = np.geomspace(1, count, min(ROWS // 2, count)) - 1
-    return np.unique(np.concatenate([even, crowded, np.arange(min(count, ROWS // 4))]).astype(np.int64))
+    return np.unique(
+        np.concatenate([even, crowded, np.arange(min(count, ROWS // 4))]).astype(np.int64)
+    )

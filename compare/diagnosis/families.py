@@ -19,11 +19,14 @@ from .case import EQUAL, FileCase, first_least, rms
 from .phasors import ComplexArray, Phasors, as_angles, fit_phasors
 from .programs import NAMES, Program, SphericalPendulum, phasors_of, theta_of
 
-LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")  # numbers that two phasors tell
+# numbers that two phasors tell
+LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")
 STEPS = 16  # Gauss-Newton steps in one window at most
 DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps, after each that fails
-SEEN = 1e-6  # of the amplitude: how far a nudge moves the rows, for differences that are linear and not noise
-WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)  # in scales: how far a number may be off
+# of the amplitude: how far a nudge moves the rows, for differences that are linear and not noise
+SEEN = 1e-6
+# in scales: how far a number may be off
+WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)
 HOPELESS = 0.05  # of the amplitude: what leaves more in a window is not followed to the next
 WINDOWS = 8.0  # ratio of the lengths of one window and the one before
 
@@ -100,14 +103,24 @@ def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Progr
     free = tuple(NAMES.index(name) for name in LINEAR)
     omega = abs(phasors.square) ** 0.5
     size = max(abs(phasors.start), abs(phasors.speed) / omega if omega else 0.0) or 1.0
-    sizes = {2: omega, 3: omega**2 * size / right.length, 4: omega**2 * size / right.length, 5: omega**2, 6: omega}
+    sizes = {
+        2: omega,
+        3: omega**2 * size / right.length,
+        4: omega**2 * size / right.length,
+        5: omega**2,
+        6: omega,
+    }
 
     def plane_of(theta: Array) -> ComplexArray:
         return phasors_of(theta, -theta[5], complex(theta[7], theta[8])).at(times)
 
     columns = []
     for i in free:
-        nudge = 1e-6 * sizes.get(i, size * omega if i > 8 else size) / (1 + omega * times[-1] * (i in (2, 5, 6)))
+        nudge = (
+            1e-6
+            * sizes.get(i, size * omega if i > 8 else size)
+            / (1 + omega * times[-1] * (i in (2, 5, 6)))
+        )
         move = nudge * np.eye(len(NAMES))[i]
         slope = (plane_of(theta + move) - plane_of(theta - move)) / (2 * nudge)
         columns.append(slope.view(float))
@@ -136,7 +149,9 @@ def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:
     return sorted(set(ends))
 
 
-def fit_pendulum(case: FileCase, pendulum: SphericalPendulum, guesses: Sequence[Array]) -> FamilyFit | None:
+def fit_pendulum(
+    case: FileCase, pendulum: SphericalPendulum, guesses: Sequence[Array]
+) -> FamilyFit | None:
     """Fit theta by Gauss-Newton from the best of some guesses, the span growing; None if nothing fits all rows.
 
     A number that the rows do not determine stays near its guess: it is held there as loosely as `WIDTHS` says.
@@ -159,13 +174,17 @@ def fit_pendulum(case: FileCase, pendulum: SphericalPendulum, guesses: Sequence[
     return best if best.rest <= HOPELESS * size else None
 
 
-def _nearest_of_equals(case: FileCase, fits: Sequence[FamilyFit], guesses: Sequence[Array]) -> tuple[FamilyFit, Array]:
+def _nearest_of_equals(
+    case: FileCase, fits: Sequence[FamilyFit], guesses: Sequence[Array]
+) -> tuple[FamilyFit, Array]:
     """Return the fit that leaves least, and its guess; of fits that leave as little, the nearest to its guess."""
     enough = EQUAL * max(min(fit.rest for fit in fits), case.resolution)
     equals = [(fit, guess) for fit, guess in zip(fits, guesses, strict=True) if fit.rest <= enough]
     if not equals:
         return fits[0], guesses[0]
-    moves = [float(np.linalg.norm((fit.theta - guess) / case.scales / WIDTHS)) for fit, guess in equals]
+    moves = [
+        float(np.linalg.norm((fit.theta - guess) / case.scales / WIDTHS)) for fit, guess in equals
+    ]
     return equals[first_least(moves)]
 
 
@@ -176,7 +195,9 @@ def _left(case: FileCase, pendulum: SphericalPendulum, theta: Array) -> float:
     return left if math.isfinite(left) else math.inf
 
 
-def _in_window(case: FileCase, pendulum: SphericalPendulum, theta: Array, guess: Array, nudges: Array) -> FamilyFit:
+def _in_window(
+    case: FileCase, pendulum: SphericalPendulum, theta: Array, guess: Array, nudges: Array
+) -> FamilyFit:
     """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped.
 
     One more step is taken from where the residual is rounding: up to it the numbers that rows hardly tell are those of
@@ -220,4 +241,6 @@ def _in_window(case: FileCase, pendulum: SphericalPendulum, theta: Array, guess:
 def _step(slopes: Array, left: Array, off: Array, noise: float, damping: float) -> Array:
     """Return the change of theta in scales that least squares ask for, each number held near its guess."""
     holds = noise / WIDTHS
-    return best_change(np.vstack([slopes, np.diag(holds)]), np.concatenate([left, -holds * off]), damping)
+    return best_change(
+        np.vstack([slopes, np.diag(holds)]), np.concatenate([left, -holds * off]), damping
+    )

@@ -12,26 +12,46 @@ from ..candidates.candidate import Deviation
 from .case import AS_IF, EQUAL, HARMLESS, Explanation, FileCase, NamedModel, largest, rms
 from .causes import Cause, causes_of
 from .families import FamilyFit, fits_of
-from .gate import CLEAN, Evidence, divides, hedged, is_typed, loose, supported_causes, without_doubtful_steps
+from .gate import (
+    CLEAN,
+    Evidence,
+    divides,
+    hedged,
+    is_typed,
+    loose,
+    supported_causes,
+    without_doubtful_steps,
+)
 from .programs import NAMES, Program
 from .readings import CauseReading, Reader, adjusted
 
 TRIED = 6  # readings of a family that are run
-CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
-NEAR = 1.0  # decades above the best reading within which others are polished before they are compared
+# decades by which a family's readings may be dearer than the best of another, before they are polished
+CLOSE = 0.5
+# decades above the best reading within which others are polished before they are compared
+NEAR = 1.0
 RIVAL = 3.0  # times what a reading leaves: another that leaves no more may be meant
 POLISHED = 3  # steps by which fitted numbers are moved
-TIE = 0.2  # decades: readings that may as well be true, and are distinguished by what they leave below the tolerance
+# decades: readings that may as well be true, and are distinguished by what they leave below the tolerance
+TIE = 0.2
 EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
 BETTER = 0.9  # of what was left, for a step that is taken
-EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
+# decades by which a simpler family has to be better
+EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}
 NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
 FITTED_SHARE = 0.01  # and if one of them is a fitted number
 ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
-WIDE = 2.0  # times the square of the swing: what the leading error of a step leaves of the whole one
+# times the square of the swing: what the leading error of a step leaves of the whole one
+WIDE = 2.0
 MODELS = {
-    "linear": ("linear_g", "is the linear two-dimensional model: its period does not grow with the amplitude"),
-    "angle": ("linear_in_angle", "is linear in the angle of the cord: its period does not grow with the amplitude"),
+    "linear": (
+        "linear_g",
+        "is the linear two-dimensional model: its period does not grow with the amplitude",
+    ),
+    "angle": (
+        "linear_in_angle",
+        "is linear in the angle of the cord: its period does not grow with the amplitude",
+    ),
 }
 TITLES = {
     "linear_g": "the linear two-dimensional model", "linear_in_angle": "the model linear in the angle",
@@ -58,19 +78,25 @@ def best_of(case: FileCase, stepped: bool = False) -> CauseReading | None:
         return None
 
     def causes(kind: str) -> list[Cause]:
-        return [cause for cause in causes_of(case, kind) if not stepped or cause.stage != "integrator"]
+        return [
+            cause for cause in causes_of(case, kind) if not stepped or cause.stage != "integrator"
+        ]
 
     run = ranked(case, readers_of(case, fits), causes)
     finest = max(case.resolution, 1.2 * least)
     if not stepped and run and _is_tied(case, run):
         exact = ranked(case, readers_of(case, fits, finest), causes)
-        run = next((readings for readings in (exact, run) if readings[0].rest <= EXACT * finest), [])
+        run = next(
+            (readings for readings in (exact, run) if readings[0].rest <= EXACT * finest), []
+        )
     best = run[0] if run else None
     if best is None or stepped:
         return best
-    if case.rows.plane.size <= len(NAMES):  # a family fits any such rows: what leaves much of them says nothing
+    # a family fits any such rows: what leaves much of them says nothing
+    if case.rows.plane.size <= len(NAMES):
         return best if best.rest <= case.enough else None
-    many_values = any(cause.free or cause.group == "g" for cause in best.causes)  # 9.81, 9.80665 and so on
+    # 9.81, 9.80665 and so on
+    many_values = any(cause.free or cause.group == "g" for cause in best.causes)
     share = FITTED_SHARE if many_values else NAMED_SHARE
     return best if best.rest <= max(share * case.error, noise) else None
 
@@ -84,8 +110,12 @@ def _is_tied(case: FileCase, run: Sequence[CauseReading]) -> bool:
     """Return whether a reading of another motion, with nothing in common with the best one, is about as likely."""
     best = run[0]
     groups = {cause.group for cause in best.causes}
-    likely = [reading for reading in run[1:] if reading.causes and _price(reading) < _price(best) + TIE]
-    rivals = [reading for reading in likely if groups.isdisjoint(cause.group for cause in reading.causes)]
+    likely = [
+        reading for reading in run[1:] if reading.causes and _price(reading) < _price(best) + TIE
+    ]
+    rivals = [
+        reading for reading in likely if groups.isdisjoint(cause.group for cause in reading.causes)
+    ]
     return any(not _is_same_motion(case, reading, best) for reading in rivals)
 
 
@@ -94,7 +124,9 @@ def _is_same_motion(case: FileCase, reading: CauseReading, other: CauseReading) 
     return rms(case.positions(reading.program) - case.positions(other.program)) <= case.resolution
 
 
-def _first_of_equals(case: FileCase, run: list[CauseReading], places: dict[int, int]) -> CauseReading:
+def _first_of_equals(
+    case: FileCase, run: list[CauseReading], places: dict[int, int]
+) -> CauseReading:
     """Return the best reading; of those that are as good, the surest, and then the first of the catalogue.
 
     Args:
@@ -127,11 +159,15 @@ def unsure_causes(case: FileCase, reading: CauseReading) -> int:
             continue
         shift = value - float(getattr(case.right, cause.free))
         uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
-        unsure += not is_typed(Deviation(cause.id, cause.text, 0.0, cause.stage, value, shift, uncertainty))
+        unsure += not is_typed(
+            Deviation(cause.id, cause.text, 0.0, cause.stage, value, shift, uncertainty)
+        )
     return unsure
 
 
-def readers_of(case: FileCase, fits: Sequence[FamilyFit], floor: float | None = None) -> list[Reader]:
+def readers_of(
+    case: FileCase, fits: Sequence[FamilyFit], floor: float | None = None
+) -> list[Reader]:
     """Return what reads a case, for each family that fits it about as well as the best.
 
     Args:
@@ -146,7 +182,10 @@ def readers_of(case: FileCase, fits: Sequence[FamilyFit], floor: float | None = 
 
 
 def ranked(
-    case: FileCase, readers: Sequence[Reader], causes_of: Callable[[str], Sequence[Cause]], tried: int = TRIED
+    case: FileCase,
+    readers: Sequence[Reader],
+    causes_of: Callable[[str], Sequence[Cause]],
+    tried: int = TRIED,
 ) -> list[CauseReading]:
     """Return the likeliest readings of a case, their programs run and the near ones polished, the best first.
 
@@ -165,9 +204,16 @@ def ranked(
         least = min(map(_price, run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
         likely = reader.readings(causes, most)
-        likely = [reading for reading in likely if sum(bool(cause.free) for cause in reading.causes) < numbers][:tried]
-        likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
-        for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
+        likely = [
+            reading
+            for reading in likely
+            if sum(bool(cause.free) for cause in reading.causes) < numbers
+        ][:tried]
+        likely += [
+            reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes
+        ]
+        # the distance from the fit is linear in theta: what counts is the program itself
+        for reading in likely:
             leaves = rms(case.left(reading.program))
             if math.isfinite(leaves):
                 run.append(reader.scored(reading.causes, reading.program, leaves))
@@ -188,13 +234,17 @@ def polished(case: FileCase, reading: CauseReading) -> CauseReading:
     if not names:
         return reading
     goal = case.rows.positions
-    program, size = adjusted(reading.program, names, case.positions, goal, steps=POLISHED, gain=BETTER)
+    program, size = adjusted(
+        reading.program, names, case.positions, goal, steps=POLISHED, gain=BETTER
+    )
     if program == reading.program:
         return reading
     return reading.reader.scored(reading.causes, program, size / math.sqrt(len(goal)))
 
 
-def explanation_of(case: FileCase, reading: CauseReading, step: Deviation | None = None) -> Explanation:
+def explanation_of(
+    case: FileCase, reading: CauseReading, step: Deviation | None = None
+) -> Explanation:
     """Return the explanation that the best reading of a case makes up, and a step that was taken from its rows."""
     rows, reader = case.rows, reading.reader
     kind, reading = reader.right.kind, _without_needless(case, reading)
@@ -202,7 +252,9 @@ def explanation_of(case: FileCase, reading: CauseReading, step: Deviation | None
     corrected = largest(left)
     spacing, enough = float(np.ptp(rows.times[:2])), max(case.allowed_m, 2 * rows.noise)
     shown = ("release.x", "release.y") if rows.starts and rows.times[0] == 0 else ()
-    evidence = Evidence(corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown)
+    evidence = Evidence(
+        corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown
+    )
     read = [*sized(case, reading), *([] if step is None else [step])]
     causes = list(supported_causes(read, evidence))
     program = _with(reading, causes)
@@ -218,7 +270,11 @@ def explanation_of(case: FileCase, reading: CauseReading, step: Deviation | None
         causes.append(loose(corrected))
     model = None
     simple = {cause.stage for cause in causes} <= {"gravity", "model"}
-    if simple and corrected <= case.allowed_m and all(convention.id in HARMLESS for convention in rows.conventions):
+    if (
+        simple
+        and corrected <= case.allowed_m
+        and all(convention.id in HARMLESS for convention in rows.conventions)
+    ):
         model = _model_of(kind, case.right, causes, corrected, largest(rows.positions - case.truth))
     price = sum(cause.cost for cause in reading.causes)
     explanation = case.tested(tuple(causes), left, price)
@@ -235,24 +291,38 @@ def _may_be_a_clock(case: FileCase, program: Program) -> bool:
     if not right.rate or pull * right.g <= 0 or program.rate == right.rate:
         return False
     pace = math.sqrt(pull * right.length / right.g)
-    clock = program.changed(g=right.g, length=right.length, rate=right.rate, pace=pace * program.pace)
+    clock = program.changed(
+        g=right.g, length=right.length, rate=right.rate, pace=pace * program.pace
+    )
     return rms(case.left(clock)) <= RIVAL * max(rms(case.left(program)), case.floor)
 
 
 def clean_share(case: FileCase, kind: str) -> float:
     """Return the share of what an integrator does that its leading error may leave."""
-    width = float(np.hypot(*case.rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
+    width = (
+        float(np.hypot(*case.rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
+    )
     return max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
 
 
 def _with(reading: CauseReading, reported: Sequence[Deviation]) -> Program:
     """Return the program that has, of the causes of a reading, those that are reported."""
     words = {cause.id.removeprefix(f"{AS_IF}.") for cause in reported}
-    drift = {"site.gravity", "pendulum.length", "pendulum.drag"} if "integrator_loose" in words else set()
-    kept = [cause for cause in reading.causes if cause.id in words | drift or cause.stage == "integrator"]
+    drift = (
+        {"site.gravity", "pendulum.length", "pendulum.drag"}
+        if "integrator_loose" in words
+        else set()
+    )
+    kept = [
+        cause
+        for cause in reading.causes
+        if cause.id in words | drift or cause.stage == "integrator"
+    ]
     if len(kept) == len(reading.causes):
         return reading.program
-    return reading.reader.without(reading, [cause for cause in reading.causes if cause not in kept]).program
+    return reading.reader.without(
+        reading, [cause for cause in reading.causes if cause not in kept]
+    ).program
 
 
 def _without_needless(case: FileCase, reading: CauseReading) -> CauseReading:
@@ -270,7 +340,9 @@ def _without_needless(case: FileCase, reading: CauseReading) -> CauseReading:
 def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
     kind = reading.reader.right.kind
-    changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (kind != "sphere")
+    changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (
+        kind != "sphere"
+    )
     program, before = case.right, case.truth
     for stage, cause in sorted(changes, key=lambda change: ORDER.index(change[0])):
         value = shift = uncertainty = None
@@ -286,19 +358,26 @@ def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
                 text = cause.sentence(value, uncertainty, case.right)
         after = case.positions(program)
         size = largest(after - before)
-        if cause is not None and size <= case.enough:  # another cause, put right before it, may have made it small
+        # another cause, put right before it, may have made it small
+        if cause is not None and size <= case.enough:
             without = reading.reader.without(reading, [cause]).program
             size = largest(case.positions(reading.program) - case.positions(without))
         yield Deviation(word, text, size, stage, value, shift, uncertainty)
         before = after
 
 
-def _model_of(kind: str, right: Program, causes: Sequence[Deviation], exact: float, costs: float) -> NamedModel | None:
+def _model_of(
+    kind: str, right: Program, causes: Sequence[Deviation], exact: float, costs: float
+) -> NamedModel | None:
     """Return the model that causes make up; None if one of them is no simplification with a name."""
     words = [cause.id for cause in causes]
     if kind != "sphere":
         words = [MODELS[kind][0], *(word for word in words if word != MODELS[kind][0])]
     if not words or any(word not in TITLES for word in words):
         return None
-    titles = TITLES if right.gravity_reading != "effective" else TITLES | {"no_centrifugal": TITLES["uniform_gravity"]}
+    titles = (
+        TITLES
+        if right.gravity_reading != "effective"
+        else TITLES | {"no_centrifugal": TITLES["uniform_gravity"]}
+    )
     return NamedModel("+".join(words), ", ".join(titles[word] for word in words), exact, costs)

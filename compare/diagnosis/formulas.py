@@ -35,7 +35,8 @@ HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
 SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
 FLAT = 1e-12  # of the largest: products whose share in the rows is less are not distinguished
 MOST = 3  # coefficients that are off
-SLIGHT = 0.05  # of the amplitude: a coefficient that is off by less may be so by an integrator's step
+# of the amplitude: a coefficient that is off by less may be so by an integrator's step
+SLIGHT = 0.05
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,11 @@ class Formula:
     @property
     def mirrored(self) -> Formula:
         """The same formula with the other sign of β."""
-        return replace(self, beta=-self.beta, coefficients=self.coefficients * np.array([[1], [-1], [1], [-1], [1]]))
+        return replace(
+            self,
+            beta=-self.beta,
+            coefficients=self.coefficients * np.array([[1], [-1], [1], [-1], [1]]),
+        )
 
     def fit(self, times: Array, right: Program) -> FamilyFit:
         """Return its rates as a fit of theta: of that they give β and ω² alone."""
@@ -105,7 +110,9 @@ def of_formula(case: FileCase) -> Explanation | None:
     if formula is None or formula.rest > case.floor:
         return None
     # rates that have to be fitted are those of equations with a slip, not of a formula
-    named = [cause for cause in causes_of(case, "linear") if cause.group != "drag" and not cause.free]
+    named = [
+        cause for cause in causes_of(case, "linear") if cause.group != "drag" and not cause.free
+    ]
     rates = [cause for cause in named if cause.stage in ("gravity", "model", "input")]
     releases = [cause for cause in named if cause.stage == "release"]
     same = max(SAME * float(np.hypot(case.right.x, case.right.y)), 10 * case.rows.noise)
@@ -124,11 +131,17 @@ def of_formula(case: FileCase) -> Explanation | None:
             slips = turned.slips(likely.program, same)
             price = NAMED * len(slips) + sum(cause.cost for cause in likely.causes)
             if 0 < len(slips) <= MOST and (best is None or price < best[0]):
-                best = price, likely, f"It follows a closed formula with a slip: {'; '.join(slips)}."
+                best = (
+                    price,
+                    likely,
+                    f"It follows a closed formula with a slip: {'; '.join(slips)}.",
+                )
     if best is None:
         return None
     price, reading, text = best
-    return replace(case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price), slip=text)
+    return replace(
+        case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price), slip=text
+    )
 
 
 def fit_formula(rows: FileRows, right: Program) -> Formula | None:
@@ -148,7 +161,9 @@ def fit_formula(rows: FileRows, right: Program) -> Formula | None:
         if not math.isfinite(left):
             return None
     omega, beta = rates.tolist()
-    return Formula(omega, beta, solved(_basis(times, omega, beta), plane, FLAT), left / math.sqrt(len(times)))
+    return Formula(
+        omega, beta, solved(_basis(times, omega, beta), plane, FLAT), left / math.sqrt(len(times))
+    )
 
 
 def _basis(times: Array, omega: float, beta: float) -> Array:
@@ -165,14 +180,18 @@ def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Ite
         yield times[:, None] * (np.column_stack(changed) @ coefficients)
 
 
-def _left(times: Array, plane: Array, hold: float, rates: Array) -> tuple[Array, Callable[[], Array]]:
+def _left(
+    times: Array, plane: Array, hold: float, rates: Array
+) -> tuple[Array, Callable[[], Array]]:
     """Return what products of two rates leave, and its slopes by the rates, each held, then by the coefficients."""
     omega, beta = rates.tolist()
     basis = _basis(times, omega, beta)
     coefficients = solved(basis, plane, FLAT)
 
     def slopes() -> Array:
-        moved = np.column_stack([slope.ravel() for slope in _slopes(times, omega, beta, coefficients)])
+        moved = np.column_stack(
+            [slope.ravel() for slope in _slopes(times, omega, beta, coefficients)]
+        )
         matrix = np.column_stack([moved, np.kron(basis, np.eye(2))])
         return np.vstack([matrix, hold * np.eye(2, matrix.shape[1])])
 

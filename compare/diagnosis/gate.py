@@ -15,8 +15,10 @@ CHANCE = 0.02  # that a number which nobody typed has as few digits, within its 
 SCARCE = 0.2  # and where all the rest agrees: a doubt of a tenth of the last digit, either way
 TYPED, MOST_DIGITS = 7, 9  # digits that people type, and that anybody does
 FACTOR_DIGITS = 4  # and of a factor
-SHARE = 3.0  # times what is left, or what is not known: a cause that moves the bob by less is not told from it
-FAR = 1.5  # times the scene's g or length, or less by as much: what no program has that is merely off
+# times what is left, or what is not known: a cause that moves the bob by less is not told from it
+SHARE = 3.0
+# times the scene's g or length, or less by as much: what no program has that is merely off
+FAR = 1.5
 METHOD_SHARE = 0.1  # of what a method does that may be left, or it is not told from another
 EXACTLY = 1e-3  # of the tolerance: a step that leaves less needs no other number to be known
 UNSURE_SHARE = 0.03  # where several steps divide the spacing of the rows
@@ -73,18 +75,29 @@ def supported_causes(causes: Sequence[Deviation], evidence: Evidence) -> Iterato
         return
     allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
     causes = [_in_whole_steps(cause, evidence) for cause in _drift_as_step(causes, evidence)]
-    causes = [cause for cause in causes if cause.size_m > evidence.enough_m and not is_the_scenes(cause, allowed)]
+    causes = [
+        cause
+        for cause in causes
+        if cause.size_m > evidence.enough_m and not is_the_scenes(cause, allowed)
+    ]
     typed = [
-        cause.stage == "integrator" or cause.value is None or cause.id in evidence.shown or is_typed(cause, agrees)
+        cause.stage == "integrator"
+        or cause.value is None
+        or cause.id in evidence.shown
+        or is_typed(cause, agrees)
         for cause in causes
     ]
-    unknown = max((cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0)
+    unknown = max(
+        (cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0
+    )
     steps = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
     # what a step does is known exactly where it was taken, and in a linear model
     exact = any(_is_step(cause) and cause.uncertainty is None for cause in causes)
     rough = evidence.clean * steps if evidence.clean > CLEAN and not exact else 0.0
     causes = [_as_known(cause, evidence, unknown) for cause in causes]
-    nameless = max((cause.size_m for cause in causes if cause.id == "integrator_loose"), default=0.0)
+    nameless = max(
+        (cause.size_m for cause in causes if cause.id == "integrator_loose"), default=0.0
+    )
     for cause, sure in zip(causes, typed, strict=True):
         if cause.stage != "integrator" and cause.size_m < rough:
             continue
@@ -92,8 +105,14 @@ def supported_causes(causes: Sequence[Deviation], evidence: Evidence) -> Iterato
         if cause.stage == "integrator" and doubtful and cause.size_m < unknown:
             continue  # several numbers that nobody typed make what a step does
         # what is not known may look like anything that is smaller, and what is not known of a step like a model
-        like = 0.0 if agrees else max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
-        if cause.size_m < max(SHARE * like, nameless if cause.stage in ("gravity", "model") else 0.0):
+        like = (
+            0.0
+            if agrees
+            else max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
+        )
+        if cause.size_m < max(
+            SHARE * like, nameless if cause.stage in ("gravity", "model") else 0.0
+        ):
             continue
         if sure:
             yield cause
@@ -106,16 +125,22 @@ def _as_known(cause: Deviation, evidence: Evidence, unknown: float) -> Deviation
     if not _is_step(cause):
         return cause
     left, agrees = evidence.left_m, evidence.agrees
-    run = agrees and (cause.uncertainty is None or (not cause.uncertainty and left < EXACTLY * evidence.allowed_m))
+    run = agrees and (
+        cause.uncertainty is None or (not cause.uncertainty and left < EXACTLY * evidence.allowed_m)
+    )
     share = min(evidence.clean, UNSURE_SHARE if cause.uncertainty else METHOD_SHARE)
     clear = agrees or left < share * cause.size_m
     return cause if run or (clear and not unknown) else loose(cause.size_m)
 
 
-def without_doubtful_steps(causes: Sequence[Deviation], left_m: float, enough_m: float) -> list[Deviation]:
+def without_doubtful_steps(
+    causes: Sequence[Deviation], left_m: float, enough_m: float
+) -> list[Deviation]:
     """Return causes of which those steps have no name any more that leave too much beside what they do."""
     return [
-        loose(cause.size_m) if _is_step(cause) and left_m > max(enough_m, METHOD_SHARE * cause.size_m) else cause
+        loose(cause.size_m)
+        if _is_step(cause) and left_m > max(enough_m, METHOD_SHARE * cause.size_m)
+        else cause
         for cause in causes
     ]
 
@@ -167,7 +192,10 @@ def _drift_as_step(causes: Sequence[Deviation], evidence: Evidence) -> list[Devi
         if cause is None or not abs(cause.shift or 0.0) < STEP_LIKE * abs(cause.value or 0.0):
             continue
         if slow and drag is not None:
-            return [*(other for other in kept if other not in (drag, cause)), loose(drag.size_m + cause.size_m)]
+            return [
+                *(other for other in kept if other not in (drag, cause)),
+                loose(drag.size_m + cause.size_m),
+            ]
         if not evidence.agrees and evidence.left_m > CLEAN * cause.size_m:
             kept = [other for other in kept if other is not cause]
             if not steps:
@@ -201,7 +229,8 @@ def is_typed(cause: Deviation, agrees: bool = False) -> bool:
     value = cause.value or 0.0
     doubt = cause.uncertainty or 0.0
     scene = value - (cause.shift or 0.0)
-    lenient = agrees and value * scene >= 0  # another size and another sign at once take better evidence
+    # another size and another sign at once take better evidence
+    lenient = agrees and value * scene >= 0
     if has_few_digits(value, doubt, lenient):
         return True
     factor = cause.id == "site.rotation_rate" and scene != 0

@@ -43,7 +43,15 @@ class Phasors:
     centre: complex
 
     @classmethod
-    def of(cls, beta: float, square: float, drag: float, centre: complex, start: complex, speed: complex) -> Phasors:
+    def of(
+        cls,
+        beta: float,
+        square: float,
+        drag: float,
+        centre: complex,
+        start: complex,
+        speed: complex,
+    ) -> Phasors:
         """Return the motion of w'' = -(drag + 2iβ) w' - ω² (w - centre) with w = start, w' = speed at t = 0."""
         half = complex(-beta, drag / 2)
         root = np.sqrt(half * half + square) or DOUBLE_ROOT * (abs(half) or 1.0)
@@ -56,12 +64,17 @@ class Phasors:
         """Return x + iy at the times."""
         (first, second), (a, b) = self.rates, self.amplitudes
         with np.errstate(over="ignore", invalid="ignore"):
-            motion: ComplexArray = a * np.exp(1j * first * times) + b * np.exp(1j * second * times) + self.centre
+            motion: ComplexArray = (
+                a * np.exp(1j * first * times) + b * np.exp(1j * second * times) + self.centre
+            )
         return motion
 
     def later(self, time: float) -> Phasors:
         """Return the same motion with its clock started at a time in s."""
-        turned = tuple(complex(a * np.exp(1j * g * time)) for a, g in zip(self.amplitudes, self.rates, strict=True))
+        turned = tuple(
+            complex(a * np.exp(1j * g * time))
+            for a, g in zip(self.amplitudes, self.rates, strict=True)
+        )
         return Phasors(self.rates, (turned[0], turned[1]), self.centre)
 
     @property
@@ -103,12 +116,16 @@ def fit_phasors(times: Array, rows: ComplexArray, near: float) -> tuple[Phasors,
     best: tuple[Phasors, float] | None = None
     for guess in _guesses(times, rows, near):
         fit = _refined(times, rows, guess)
-        if fit is not None and (best is None or _better(fit, best, near * near, float(np.abs(rows).max()))):
+        if fit is not None and (
+            best is None or _better(fit, best, near * near, float(np.abs(rows).max()))
+        ):
             best = fit
     return best
 
 
-def _better(fit: tuple[Phasors, float], best: tuple[Phasors, float], square: float, size: float) -> bool:
+def _better(
+    fit: tuple[Phasors, float], best: tuple[Phasors, float], square: float, size: float
+) -> bool:
     """Return whether a fit is better; of two aliases that fit as well, the one nearer to the scene's ω²."""
     (phasors, rest), (before, least) = fit, best
     if max(rest, least) < 1e-9 * size or 0.5 < rest / least < 2:
@@ -120,7 +137,9 @@ def as_angles(plane: ComplexArray, length: float) -> ComplexArray:
     """Return x + iy with the distance from the vertical replaced by the angle of the cord times l."""
     radius = np.abs(plane)
     safe = np.where(radius > 0, radius, 1.0)
-    return np.asarray(plane * np.where(radius > 0, length * np.arcsin(np.clip(safe / length, 0, 1)) / safe, 1.0))
+    return np.asarray(
+        plane * np.where(radius > 0, length * np.arcsin(np.clip(safe / length, 0, 1)) / safe, 1.0)
+    )
 
 
 def sinc(angle: Array) -> Array:
@@ -158,19 +177,25 @@ def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[comple
     return guesses
 
 
-def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -> tuple[Phasors, float] | None:
+def _refined(
+    times: Array, rows: ComplexArray, guess: tuple[complex, complex]
+) -> tuple[Phasors, float] | None:
     """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
     rates: ComplexArray = np.array(guess)
     span = times[-1] - times[0]
     result: tuple[Phasors, float] | None = None
-    windows = sorted({max(12, int(np.searchsorted(times, times[0] + span * 4.0**-k)) + 1) for k in range(6)})
+    windows = sorted(
+        {max(12, int(np.searchsorted(times, times[0] + span * 4.0**-k)) + 1) for k in range(6)}
+    )
     for count in windows:
         t, w = times[:count], rows[:count]
         rates, size = gauss_newton(partial(_left, t, w), rates, steps=STEPS, gain=GAIN)
         if not math.isfinite(size):
             return result
         a, b, centre = solved(_basis(t, rates), w)
-        phasors = Phasors((complex(rates[0]), complex(rates[1])), (complex(a), complex(b)), complex(centre))
+        phasors = Phasors(
+            (complex(rates[0]), complex(rates[1])), (complex(a), complex(b)), complex(centre)
+        )
         result = phasors, size / math.sqrt(len(t))
     return result
 
@@ -181,13 +206,17 @@ def _basis(times: Array, rates: ComplexArray) -> ComplexArray:
     return np.column_stack([turning, np.ones_like(times)])
 
 
-def _left(times: Array, rows: ComplexArray, rates: ComplexArray) -> tuple[ComplexArray, Callable[[], ComplexArray]]:
+def _left(
+    times: Array, rows: ComplexArray, rates: ComplexArray
+) -> tuple[ComplexArray, Callable[[], ComplexArray]]:
     """Return what two phasors leave, and its slopes by their rates, then by A, B and C."""
     basis = _basis(times, rates)
     if not np.isfinite(basis).all() or np.abs(basis).max() > OVERFLOW:
         return np.full_like(rows, np.nan), lambda: basis
     linear = solved(basis, rows)
-    return rows - basis @ linear, lambda: np.column_stack([1j * times[:, None] * basis[:, :2] * linear[:2], basis])
+    return rows - basis @ linear, lambda: np.column_stack(
+        [1j * times[:, None] * basis[:, :2] * linear[:2], basis]
+    )
 
 
 @dataclass(frozen=True)
@@ -223,7 +252,9 @@ class FixedStepMethod:
         except (ValueError, ZeroDivisionError, OverflowError, np.linalg.LinAlgError):
             return phasors
 
-    def first_step(self, square: float, square_shown: float, drag: float, drag_shown: float) -> float:
+    def first_step(
+        self, square: float, square_shown: float, drag: float, drag_shown: float
+    ) -> float:
         """Return the step in s that the leading error of an oscillator of ω² asks for; 0 if there is none."""
         if square <= 0:
             return 0.0
@@ -241,7 +272,8 @@ class FixedStepMethod:
             speed = q * start * step / 2 / (1 - d * step / 2)
 
         def stepped(w: complex, v: complex) -> tuple[complex, complex]:
-            if self.kick is None:  # leapfrog: half a kick, a drift, half a kick; its Coriolis force is explicit
+            # leapfrog: half a kick, a drift, half a kick; its Coriolis force is explicit
+            if self.kick is None:
                 v -= step / 2 * (q * w + d * v)
                 w += step * v
                 return w, (v - step / 2 * q * w) / (1 + d * step / 2)
@@ -255,7 +287,9 @@ class FixedStepMethod:
         speeds = (half + root) / b, (half - root) / b  # of w = 1 in each mode
         share = (speed - speeds[1] * start) * b / (2 * root)
         rates = [cmath.log(a + b * v) / (1j * step) for v in speeds]
-        modes = sorted(zip(rates, (share, start - share), strict=True), key=lambda mode: -mode[0].real)
+        modes = sorted(
+            zip(rates, (share, start - share), strict=True), key=lambda mode: -mode[0].real
+        )
         return Phasors((modes[0][0], modes[1][0]), (modes[0][1], modes[1][1]), phasors.centre)
 
 
@@ -265,10 +299,14 @@ def _taylor(order: int) -> tuple[float, ...]:
 
 METHODS = (
     FixedStepMethod("semi_implicit_euler", "semi-implicit (symplectic) Euler", kick=True),
-    FixedStepMethod("semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", kick=False),
+    FixedStepMethod(
+        "semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", kick=False
+    ),
     FixedStepMethod("explicit_euler", "explicit Euler", _taylor(1)),
     FixedStepMethod("leapfrog", "leapfrog (Verlet)"),
-    FixedStepMethod("leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", late=True),
+    FixedStepMethod(
+        "leapfrog_late", "leapfrog (Verlet) from two equal rows, half a step late,", late=True
+    ),
     FixedStepMethod("rk2", "a Runge-Kutta method of order 2 (midpoint, Heun)", _taylor(2)),
     FixedStepMethod("rk3", "a Runge-Kutta method of order 3", _taylor(3)),
     FixedStepMethod("rk4", "a Runge-Kutta method of order 4", _taylor(4)),

@@ -81,9 +81,20 @@ class Program:
     @classmethod
     def of(cls, inputs: Inputs, start: Array) -> Program:
         """Return the right program of a scene; `start` is x, y, z, vx, vy, vz at the release in m and m/s."""
-        same = ("length", "latitude", "flattening", "altitude", "drag", "gravity", "rotation_rate", "equatorial_radius")
+        same = (
+            "length",
+            "latitude",
+            "flattening",
+            "altitude",
+            "drag",
+            "gravity",
+            "rotation_rate",
+            "equatorial_radius",
+        )
         words = {"gravity": "g", "rotation_rate": "rate", "equatorial_radius": "radius"}
-        fields: dict[str, Any] = {words.get(name, name): float(getattr(inputs, name)) for name in same}
+        fields: dict[str, Any] = {
+            words.get(name, name): float(getattr(inputs, name)) for name in same
+        }
         x, y, _, vx, vy, _ = start.tolist()
         fields |= {"x": x, "y": y, "vx": vx, "vy": vy, "nominal_rate": fields["rate"]}
         return cls(gravity_reading=inputs.gravity_is, **fields)
@@ -93,12 +104,16 @@ class Program:
         """R, the distance of the suspension from the axis of rotation, in m."""
         phi = math.radians(self.latitude)
         e2 = self.flattening * (2 - self.flattening)
-        return (self.radius / math.sqrt(1 - e2 * math.sin(phi) ** 2) + self.altitude) * math.cos(phi)
+        return (self.radius / math.sqrt(1 - e2 * math.sin(phi) ** 2) + self.altitude) * math.cos(
+            phi
+        )
 
     @property
     def sensible(self) -> bool:
         """False if an input is outside its domain, so that no program can have it."""
-        inside = self.x * self.x + self.y * self.y < self.length * self.length or self.kind == "linear"
+        inside = (
+            self.x * self.x + self.y * self.y < self.length * self.length or self.kind == "linear"
+        )
         return (
             self.g >= 0 and self.length > 0 and self.drag >= 0 and abs(self.latitude) <= 90 and inside
             and self.radius >= 0 and abs(self.altitude) <= HIGHEST and self.step >= 0 and math.isfinite(self.rate)
@@ -134,7 +149,9 @@ class Program:
         if self.nominal_rate:
             gradient *= (self.rate / self.nominal_rate) ** 2
         # a plane turned by hand takes its own turn with it; else the Earth's, without a factor of the Coriolis force
-        stars = self.released * (up if self.turned_plane else self.rate * math.sin(turned) * self.coriolis[1])
+        stars = self.released * (
+            up if self.turned_plane else self.rate * math.sin(turned) * self.coriolis[1]
+        )
         vx, vy = self.vx + stars * self.y, self.vy - stars * self.x
         if self.turned_plane:
             north = 0.0
@@ -155,7 +172,8 @@ class Program:
 
     def _computed(self, theta: Array) -> Phasors:
         square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
-        if self.kind != "sphere" and theta[12]:  # the mean of x and y: what it does to each is no matter of phasors
+        # the mean of x and y: what it does to each is no matter of phasors
+        if self.kind != "sphere" and theta[12]:
             xx, yy, *_ = self.gradient_square
             square -= (xx + yy) / 2
         start = complex(theta[7], theta[8])
@@ -226,7 +244,11 @@ class SphericalPendulum:
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
-        rate = float(np.abs(theta[0:3]).max()) + abs(theta[6]) + math.sqrt(float(np.abs(theta[3:6]).max()))
+        rate = (
+            float(np.abs(theta[0:3]).max())
+            + abs(theta[6])
+            + math.sqrt(float(np.abs(theta[3:6]).max()))
+        )
         reached = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
         if not reached or not np.isfinite(theta).all() or rate > self.fastest:
             return np.full((len(times), columns), np.nan)
@@ -244,7 +266,13 @@ class SphericalPendulum:
         xx, yy, yz, zz = (gradient * component for component in self.square)
         turn, pull = (tuple(vector.tolist()) for vector in (theta[:3], theta[3:6]))
         centrifugal = xx - pointing, yy - pointing, yz, zz + 2 * pointing
-        return Constants(length=float(length), turn=turn, pull=pull, centrifugal=centrifugal, drag=float(theta[6]))
+        return Constants(
+            length=float(length),
+            turn=turn,
+            pull=pull,
+            centrifugal=centrifugal,
+            drag=float(theta[6]),
+        )
 
     def start(self, theta: Array) -> Array:
         """Return position and velocity of the release over the length, below the suspension and along the sphere.
@@ -255,7 +283,9 @@ class SphericalPendulum:
         z = -np.sqrt(theta[11] ** 2 - x * x - y * y)
         return np.asarray(np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / theta[11])
 
-    def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
+    def slopes(
+        self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array
+    ) -> Array:
         """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""
 
         def rows_of(change: Array) -> Array:

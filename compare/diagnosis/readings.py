@@ -33,7 +33,15 @@ PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error 
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
 GAIN = 0.99  # of what was left: a step that leaves more is not taken
-SMALLEST = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-5, "late": 1.0, "altitude": 100.0}
+SMALLEST = {
+    "g": 1.0,
+    "length": 1.0,
+    "latitude": 10.0,
+    "rate": 7e-5,
+    "drag": 1e-5,
+    "late": 1.0,
+    "altitude": 100.0,
+}
 
 
 @dataclass(frozen=True)
@@ -84,7 +92,8 @@ class Reader:
         best, beam = [nothing], [nothing]
         seen: set[frozenset[int]] = set()
         least, tried = min(nothing.score, most), 0
-        bound = self.scored((), self.right, self.fit.rest).score  # no combination leaves less than the fit
+        # no combination leaves less than the fit
+        bound = self.scored((), self.right, self.fit.rest).score
         for _ in range(MOST):
             longer: list[CauseReading] = []
             for reading in beam:
@@ -97,7 +106,8 @@ class Reader:
                     tried += 1
                     if tried > ENOUGH:
                         break
-                    if cause.stage != "integrator":  # whose first step depends on the program before it
+                    # whose first step depends on the program before it
+                    if cause.stage != "integrator":
                         seen.add(key)
                     extended = None if _clash(reading.causes, cause) else self._with(reading, cause)
                     if extended is not None:
@@ -106,7 +116,10 @@ class Reader:
             longer.sort(key=lambda reading: reading.score)
             best += longer[:BEAM]
             # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
-            beam = [*longer[:BEAM], *sorted(longer[BEAM:], key=lambda reading: reading.rest)[:ASIDE]]
+            beam = [
+                *longer[:BEAM],
+                *sorted(longer[BEAM:], key=lambda reading: reading.rest)[:ASIDE],
+            ]
             if not beam:
                 break
         best.sort(key=lambda reading: reading.score)
@@ -119,8 +132,12 @@ class Reader:
         readings = [reading]
         for cause in reading.causes:
             fewer = self.without(reading, [cause])
-            same_group = [other for other in causes if other.group == cause.group and other is not cause]
-            exchanged = [self._with(fewer, other) for other in same_group if not _clash(fewer.causes, other)]
+            same_group = [
+                other for other in causes if other.group == cause.group and other is not cause
+            ]
+            exchanged = [
+                self._with(fewer, other) for other in same_group if not _clash(fewer.causes, other)
+            ]
             readings += [fewer, *filter(None, exchanged)]
         best = readings[first_least([10**other.score for other in readings])]
         return best if best is reading else self._exchanged(best, causes)
@@ -134,14 +151,18 @@ class Reader:
             if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
                 sign = next(other for other in causes if other.id == "coriolis_sign")
                 together = tuple(sign if other is cause else other for other in reading.causes)
-                return self._judged(together, sign.change(reading.program.changed(rate=self.right.rate)))
+                return self._judged(
+                    together, sign.change(reading.program.changed(rate=self.right.rate))
+                )
             for other in causes:
                 if other.free or other.group != cause.group:
                     continue
                 program = other.change(reading.program)
                 exact = float(getattr(program, cause.free))
                 if exact != value and abs(exact - value) <= SAME * abs(value):
-                    together = tuple(other if before is cause else before for before in reading.causes)
+                    together = tuple(
+                        other if before is cause else before for before in reading.causes
+                    )
                     return self._judged(together, program)
         return reading
 
@@ -159,11 +180,18 @@ class Reader:
             theta = reading.program.theta()
             omega = math.sqrt(abs(theta[5])) or 1.0
             square, drag = self._shown(reading.program)
-            guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
-            tried = [self._judged(together, program.changed(step=step)) for step in guesses if step > 0]
+            guesses = (
+                program.method.first_step(-theta[5], square, theta[6], drag),
+                *(q / omega for q in PHASES),
+            )
+            tried = [
+                self._judged(together, program.changed(step=step)) for step in guesses if step > 0
+            ]
             program = tried[first_least([reading.rest for reading in tried])].program
         goal = np.zeros(len(self._triangle))
-        fitted, _ = adjusted(program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint)
+        fitted, _ = adjusted(
+            program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint
+        )
         return self._judged(together, fitted)
 
     def _shown(self, program: Program) -> tuple[float, float]:
@@ -192,13 +220,17 @@ class Reader:
         """
         value = reading.value(cause)
         nudge = _nudge(reading.program, cause.free)
-        moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(reading.program)
+        moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(
+            reading.program
+        )
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, resolution) / answer if answer else math.inf
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> CauseReading:
         off = float(np.linalg.norm(self._off(program)))
-        return self.scored(together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf)
+        return self.scored(
+            together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf
+        )
 
     def without(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Return a reading without some of its causes, the other fitted numbers as they were."""
@@ -215,8 +247,12 @@ class Reader:
         low = max(1.2 * self.least, 1e-3 * self.floor)
         score = math.inf
         if math.isfinite(rest):
-            score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(max(rest, low) / low)
-        return CauseReading(together, program, rest, score + sum(cause.cost for cause in together), self)
+            score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(
+                max(rest, low) / low
+            )
+        return CauseReading(
+            together, program, rest, score + sum(cause.cost for cause in together), self
+        )
 
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
@@ -231,7 +267,11 @@ class Reader:
 
 
 def adjusted(
-    program: Program, names: Sequence[str], rows_of: Callable[[Program], Array], goal: Array, **options: Any
+    program: Program,
+    names: Sequence[str],
+    rows_of: Callable[[Program], Array],
+    goal: Array,
+    **options: Any,
 ) -> tuple[Program, float]:
     """Return a program, some of its numbers moved to where the rows it makes come nearest to a goal, and the distance.
 

@@ -68,7 +68,11 @@ def _known(document: Document) -> Iterator[Document]:
         if deviation["text"].startswith("your ") and not deviation["id"].startswith(AS_IF):
             yield deviation
     if document["slip"]:
-        yield {"id": "slip", "text": f"your program has a slip ({document['slip'].rstrip('.')})", "size_m": 0.0}
+        yield {
+            "id": "slip",
+            "text": f"your program has a slip ({document['slip'].rstrip('.')})",
+            "size_m": 0.0,
+        }
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,9 @@ class Version:
         return float((self.document["corrected"] or {"max_error_m": self.error_m})["max_error_m"])
 
 
-def explain_change(old: Version, new: Version, most_m: float) -> tuple[tuple[str, ...], float | None]:
+def explain_change(
+    old: Version, new: Version, most_m: float
+) -> tuple[tuple[str, ...], float | None]:
     """Return what came and what went, and what that leaves of both errors, in m; None where nothing is known.
 
     Args:
@@ -105,15 +111,26 @@ def explain_change(old: Version, new: Version, most_m: float) -> tuple[tuple[str
 
 def _unexplained_m(then: Document, now: Document) -> float:
     """Return how far in m numbers that only one of two documents has may move the bob, their cause not known."""
-    here, there = ([cause for cause in document["causes"] if cause["id"].startswith(AS_IF)] for document in (then, now))
+    here, there = (
+        [cause for cause in document["causes"] if cause["id"].startswith(AS_IF)]
+        for document in (then, now)
+    )
     pairs = [(cause, there) for cause in here] + [(cause, here) for cause in there]
-    return float(sum(cause["size_m"] for cause, causes in pairs if not any(_is_same(cause, other) for other in causes)))
+    return float(
+        sum(
+            cause["size_m"]
+            for cause, causes in pairs
+            if not any(_is_same(cause, other) for other in causes)
+        )
+    )
 
 
 def _changes(old: Version, new: Version, most_m: float) -> Iterator[str]:
     """Yield what came and what went; a number that changed has come."""
     before, after = list(_known(old.document)), list(_known(new.document))
-    came = [deviation for deviation in after if not any(_is_same(deviation, other) for other in before)]
+    came = [
+        deviation for deviation in after if not any(_is_same(deviation, other) for other in before)
+    ]
     went = [deviation for deviation in before if _kind(deviation) not in map(_kind, after)]
     for when, deviations, hidden in (("now", came, old.left_m), ("no longer", went, new.left_m)):
         for deviation in deviations:
@@ -123,14 +140,25 @@ def _changes(old: Version, new: Version, most_m: float) -> Iterator[str]:
             if deviation["id"] == "off_the_sphere" and STEP in map(_kind, deviations):
                 continue  # a step takes the bob off the sphere
             text = deviation["text"].partition(" (--set")[0]  # which is advice for a verdict
-            text = text.replace("your program", f"it {when}", 1).replace("your file", f"its file {when}", 1)
-            yield text if _kind(deviation) != STEP else f"the step ({text})" if when == "now" else "the step"
+            text = text.replace("your program", f"it {when}", 1).replace(
+                "your file", f"its file {when}", 1
+            )
+            yield (
+                text
+                if _kind(deviation) != STEP
+                else f"the step ({text})"
+                if when == "now"
+                else "the step"
+            )
 
 
 def _kind(deviation: Document) -> str:
     """Return the word for a thing of which a program has one: a step, a gravity."""
     kinds = {"integrator_": STEP, "gravity_": "site.gravity"}
-    return next((kind for begin, kind in kinds.items() if deviation["id"].startswith(begin)), str(deviation["id"]))
+    return next(
+        (kind for begin, kind in kinds.items() if deviation["id"].startswith(begin)),
+        str(deviation["id"]),
+    )
 
 
 def _is_same(deviation: Document, other: Document) -> bool:

@@ -24,7 +24,8 @@ from .programs import Program
 
 FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
 SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
-COARSE = np.array([-1, 16, -30, 16, -1]) / 12  # of order 4, whose difference from the other tells the error
+# of order 4, whose difference from the other tells the error
+COARSE = np.array([-1, 16, -30, 16, -1]) / 12
 LEAST = 30  # rows that can be differentiated
 USUAL, FARTHEST = 0.15, 0.5  # steps between rows, in radians of the swing
 CLEAR = 10.0  # times their own error: accelerations that are off
@@ -35,7 +36,8 @@ ALIKE = 0.2  # by which two terms that are off alike may differ
 LOW = 0.3  # of the length: farther out, the force is not linear
 TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
 NUDGE = 1e-6
-PARTS, GROWN = 4, 2.0  # of the rows, and how many times as far as in the first a growing motion reaches in the last
+# of the rows, and how many times as far as in the first a growing motion reaches in the last
+PARTS, GROWN = 4, 2.0
 FREELY = 0.5, 2.5  # of g: what a fall's mean acceleration is between, from row 0 to every other
 
 
@@ -62,9 +64,15 @@ def slip(rows: FileRows, scene: Scene) -> str:
     sentences = "; ".join(_sentence(*term) for term in terms)
     power = np.mean(np.sum(off * state[2:], axis=0))
     speed = float(np.sqrt(np.mean(state[2:] ** 2)))
-    work = " The difference does work, as no Coriolis force does." if abs(power) > WORK * 2 * size * speed else ""
+    work = (
+        " The difference does work, as no Coriolis force does."
+        if abs(power) > WORK * 2 * size * speed
+        else ""
+    )
     taken = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
-    return f"Its accelerations differ from the model's{taken} by {size:.2g} m/s²: {sentences}.{work}"
+    return (
+        f"Its accelerations differ from the model's{taken} by {size:.2g} m/s²: {sentences}.{work}"
+    )
 
 
 def _size(rates: Array) -> float:
@@ -82,7 +90,10 @@ def _differentiated(times: Array, plane: Array, rate: float) -> tuple[Array, Arr
         return None
     stride = max(1, min(int(USUAL / (steps[0] * rate)), len(times) // LEAST))
     h, plane = float(steps[0]) * stride, plane[::stride]
-    parts = [np.array([np.convolve(q, stencil[::-1], "valid") for q in plane.T]) for stencil in (FIRST, SECOND, COARSE)]
+    parts = [
+        np.array([np.convolve(q, stencil[::-1], "valid") for q in plane.T])
+        for stencil in (FIRST, SECOND, COARSE)
+    ]
     speeds, rates, coarse = parts[0] / h, parts[1] / h**2, parts[2][:, 1:-1] / h**2
     if h * h * _size(rates) > _size(plane):  # the bob turns back from row to row
         return None
@@ -107,7 +118,11 @@ def _terms(state: Array, off: Array, k: Constants) -> Iterator[tuple[str, str, f
     chosen: list[tuple[int, int]] = []
     whole = float(np.sum(off**2))
     for _ in range(MOST):
-        rest, place = min((_left(basis, off, [*chosen, place])[0], place) for place in places if place not in chosen)
+        rest, place = min(
+            (_left(basis, off, [*chosen, place])[0], place)
+            for place in places
+            if place not in chosen
+        )
         chosen.append(place)
         if rest < EXPLAINED * whole:
             break
@@ -122,7 +137,9 @@ def _terms(state: Array, off: Array, k: Constants) -> Iterator[tuple[str, str, f
         yield "xy"[i], list(TERMS)[j], right + fitted[i, j] / float(scale[j]), right
 
 
-def _left(basis: Array, off: Array, places: list[tuple[int, int]]) -> tuple[float, dict[tuple[int, int], float]]:
+def _left(
+    basis: Array, off: Array, places: list[tuple[int, int]]
+) -> tuple[float, dict[tuple[int, int], float]]:
     """Return the sum of squares that some terms leave, and their coefficients."""
     rest = 0.0
     fitted: dict[tuple[int, int], float] = {}

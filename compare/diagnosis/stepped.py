@@ -37,7 +37,8 @@ FINEST = {  # ωh: the shortest step that is tried
     "semi_implicit_euler": 0.004, "semi_implicit_euler_drift": 0.004, "leapfrog": 0.004, "explicit_euler": 0.001,
     "rk2": 0.004, "heun": 0.004, "rk4": 0.02,
 }  # fmt: skip
-RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {  # places of the stages after the first, weights
+# places of the stages after the first, weights
+RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "explicit_euler": ((), (1.0,)),
     "rk2": ((1 / 2,), (0.0, 1.0)),
     "heun": ((1.0,), (1 / 2, 1 / 2)),
@@ -55,7 +56,8 @@ READINGS = 2  # of that motion
 STEP_LEFT = 1e-3  # of what the steps do that may be left
 ALIKE = 10.0  # times what the likeliest leaves: others that are tried
 NEWTON = 2  # times that they are moved before any are taken
-UNSURE = (2, 3, 4, 5, 6, 7, 8)  # of theta, beside which a step is looked for: turn, pull, drag, place of the release
+# of theta, beside which a step is looked for: turn, pull, drag, place of the release
+UNSURE = (2, 3, 4, 5, 6, 7, 8)
 State = list[Any]
 
 
@@ -79,19 +81,25 @@ class Steps(SphericalPendulum):
         """Return x and y in m, shape (times, 2)."""
         return self._at(times, theta[:, None])[:, :, 0]
 
-    def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
+    def slopes(
+        self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array
+    ) -> Array:
         """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * 2, 14)."""
         moved = self._at(times, np.column_stack([theta, theta[:, None] + np.diag(nudges * scales)]))
         return np.asarray((moved[:, :, 1:] - moved[:, :, :1]) / nudges).reshape(-1, len(theta))
 
     def _at(self, times: Array, thetas: Array) -> Array:
         at = np.round(times / self.spacing).astype(int)
-        return np.asarray(self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at])
+        return np.asarray(
+            self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at]
+        )
 
     def all_rows(self, thetas: Array, every: npt.NDArray[np.int64], count: int) -> Array:
         """Return x and y of row 0, 1, … in m, shape (rows, 2, columns of theta), each in steps of its own."""
         constants = [self.constants(theta) for theta in thetas.T]
-        numbers = np.array([[0.0, *k.pull, *k.turn, *k.centrifugal, k.drag] for k in constants]).T.copy()
+        numbers = np.array(
+            [[0.0, *k.pull, *k.turn, *k.centrifugal, k.drag] for k in constants]
+        ).T.copy()
         numbers[0] = self.spacing / every
         state = np.column_stack([self.start(theta) for theta in thetas.T])
         rows = np.full((count + 1, *state[:2].shape), np.nan)
@@ -124,9 +132,15 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
     hung = case.right.changed(length=case.rows.cord or case.right.length)
     explanations = []
-    for steps in likely_steps(replace(flat, right=hung), None if reading is None else reading.program):
-        within = rows.times <= steps.spacing / steps.every * max(LONGEST, min(FEWEST * steps.every, 2 * LONGEST))
-        explanation = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
+    for steps in likely_steps(
+        replace(flat, right=hung), None if reading is None else reading.program
+    ):
+        within = rows.times <= steps.spacing / steps.every * max(
+            LONGEST, min(FEWEST * steps.every, 2 * LONGEST)
+        )
+        explanation = (
+            _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
+        )
         if explanation is not None:
             explanations.append(explanation)
             if all(cause.stage != AS_IF for cause in explanation.causes):
@@ -161,7 +175,10 @@ def _of_steps(case: FileCase, steps: Steps) -> Explanation | None:
         return None
     cause = step_cause(steps, effect)
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-    explanation, price = explanation_of(seen, best, cause), sum(cause.cost for cause in best.causes) + FITTED
+    explanation, price = (
+        explanation_of(seen, best, cause),
+        sum(cause.cost for cause in best.causes) + FITTED,
+    )
     tested = case.tested(explanation.causes, residuals, price)
     return tested if tested.causes else None
 
@@ -185,7 +202,10 @@ def likely_steps(case: FileCase, near: Program | None) -> list[Steps]:
         return []
     spacing = float(rows.times[1])
     count = max(10, math.ceil(SWING * 2 * math.pi / frequency / spacing))
-    even = np.abs(rows.times / spacing - np.round(rows.times / spacing)).max() < 1e-6 * rows.times[-1] / spacing
+    even = (
+        np.abs(rows.times / spacing - np.round(rows.times / spacing)).max()
+        < 1e-6 * rows.times[-1] / spacing
+    )
     if not even or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
         return []
     swing = case.part(count + 1)
@@ -215,7 +235,9 @@ def likely_steps(case: FileCase, near: Program | None) -> list[Steps]:
 def _nearer(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tuple[Array, Array]:
     """Return theta, its unsure numbers moved to where the pendulum leaves less, and the slopes by these in scales."""
     rows, unsure = swing.rows, list(UNSURE)
-    slopes = pendulum.slopes(theta, rows.times, 2, swing.scales, np.full(len(theta), 1e-6))[:, unsure]
+    slopes = pendulum.slopes(theta, rows.times, 2, swing.scales, np.full(len(theta), 1e-6))[
+        :, unsure
+    ]
     left = (rows.positions - pendulum.rows(theta, rows.times, 2)).ravel()
     if not (np.isfinite(slopes).all() and np.isfinite(left).all()):
         return theta, np.zeros((len(left), 0))
@@ -239,12 +261,16 @@ def _apart(
         made = steps.all_rows(*together, len(rows.times) - 1)
         left = (rows.positions[:, :, None] - made).reshape(-1, made.shape[2])
         sizes = np.linalg.norm(left - shares @ (shares.T @ left), axis=0)
-        which, best = divmod(int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf))), len(every))
+        which, best = divmod(
+            int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf))), len(every)
+        )
         theta, sizes = thetas[:, which], sizes.reshape(-1, len(every))[which]
         near = slice(max(best - 1, 0), best + 2)
         if settled or not np.isfinite(sizes[best]):
             closest = zip(sizes[near].tolist(), every[near].tolist(), strict=True)
-            return [(size, replace(steps, every=count, near=tuple(theta))) for size, count in closest]
+            return [
+                (size, replace(steps, every=count, near=tuple(theta))) for size, count in closest
+            ]
         theta, slopes = _nearer(swing, replace(steps, every=int(every[best])), theta)
         thetas, settled = theta[:, None], high - low < len(every)
         low, high = (low, high) if settled else (int(every[near][0]), int(every[near][-1]))

@@ -27,7 +27,9 @@ from reference.system.imports import Registry
 from .external import LONGEST_NAME, file_name
 from .method import Family, Method
 
-METHODS: Mapping[str, Method] = Registry(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))
+METHODS: Mapping[str, Method] = Registry(
+    __name__, "METHODS", "method", lambda method: [*Family].index(method.family)
+)
 
 
 def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[str, str]:
@@ -41,13 +43,20 @@ def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[s
         InputError: the names are not as many as the commands, not short and printable, or not distinct.
     """
     if names and len(names) != len(commands):
-        raise InputError("--name", ", ".join(names), f"one name for each --run, so {len(commands)}", "Or give none.")
+        raise InputError(
+            "--name",
+            ", ".join(names),
+            f"one name for each --run, so {len(commands)}",
+            "Or give none.",
+        )
     programs: dict[str, str] = {}
     for command, name in zip(commands, names or map(file_name, commands), strict=True):
         if not name.strip() or not name.isprintable() or len(name) > LONGEST_NAME:
             raise InputError("--name", name, f"1 to {LONGEST_NAME} printable characters")
         if name in programs or name in METHODS:
             owner = "another --run" if name in programs else "a method"
-            raise InputError("--name", name, f"a name that {owner} does not have", "Give each --run a --name.")
+            raise InputError(
+                "--name", name, f"a name that {owner} does not have", "Give each --run a --name."
+            )
         programs[name] = command
     return programs

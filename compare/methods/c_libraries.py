@@ -25,7 +25,17 @@ from reference.system.workspace import workspace
 
 from ..candidates.external import run_program
 from .library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
-from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, RunOutcome, Work, adaptive, failed, outcome
+from .method import (
+    HIGH_ORDER,
+    SPACE_FIRST,
+    Family,
+    Method,
+    RunOutcome,
+    Work,
+    adaptive,
+    failed,
+    outcome,
+)
 from .rhs.problem import Problem
 from .rhs.straight_line import StraightLine
 
@@ -73,9 +83,18 @@ def prepare(
             answer = output.read()
         cpu_s, steps, calls, rows = np.frombuffer(answer, count=HEAD).tolist()
         size, offset = len(problem.start), HEAD * numbers.itemsize
-        states = np.frombuffer(answer, count=int(rows) * size, offset=offset).reshape(-1, size).copy()
+        states = (
+            np.frombuffer(answer, count=int(rows) * size, offset=offset).reshape(-1, size).copy()
+        )
         reason = answer[offset + states.nbytes :].decode(errors="replace")
-        return outcome(problem, states, steps=int(steps), rhs_evaluations=int(calls), reason=reason, cpu_s=cpu_s)
+        return outcome(
+            problem,
+            states,
+            steps=int(steps),
+            rhs_evaluations=int(calls),
+            reason=reason,
+            cpu_s=cpu_s,
+        )
 
     return work
 
@@ -84,10 +103,17 @@ def source(problem: Problem, parts: Sequence[str]) -> str:
     """Return the text of the program."""
     folder = Path(__file__).parent / "native"
     system = problem.system
-    functions = [_function("rates", system.program, "    calls++;\n"), _function("slopes", system.jacobian)]
-    sizes = f"#define VARIABLES {len(system.variables)}\n#define PARAMETERS {len(problem.parameters)}\n"
+    functions = [
+        _function("rates", system.program, "    calls++;\n"),
+        _function("slopes", system.jacobian),
+    ]
+    sizes = (
+        f"#define VARIABLES {len(system.variables)}\n#define PARAMETERS {len(problem.parameters)}\n"
+    )
     texts = [(folder / name).read_text(encoding="utf-8") for name in parts]
-    return "\n".join([sizes + (folder / "host.hpp").read_text(encoding="utf-8"), *functions, *texts])
+    return "\n".join(
+        [sizes + (folder / "host.hpp").read_text(encoding="utf-8"), *functions, *texts]
+    )
 
 
 def _function(name: str, program: StraightLine, before: str = "") -> str:
@@ -96,7 +122,9 @@ def _function(name: str, program: StraightLine, before: str = "") -> str:
     lines += [f"{line.name} = {line.expression}" for line in program.lines]
     body = before + "".join(f"    const double {line};\n" for line in lines)
     body += "".join(f"    to[{i}] = {word};\n" for i, word in enumerate(program.outputs))
-    return f"static void {name}(const double *x, double *to) {{\n    using namespace std;\n{body}}}\n"
+    return (
+        f"static void {name}(const double *x, double *to) {{\n    using namespace std;\n{body}}}\n"
+    )
 
 
 def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequence[str]) -> Path:
@@ -104,11 +132,25 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
     call, include = compiler(), library.folder
     if call is None or include is None:
         raise IntegrationError(f"{library.missing}")
-    words = [*call, *FLAGS, *(f"-D{word}" for word in defines), "-I", str(include), "-x", "c++", "-"]
-    folders = (word for folder in library_folders() for word in (f"-L{folder}", f"-Wl,-rpath,{folder}"))
+    words = [
+        *call,
+        *FLAGS,
+        *(f"-D{word}" for word in defines),
+        "-I",
+        str(include),
+        "-x",
+        "c++",
+        "-",
+    ]
+    folders = (
+        word for folder in library_folders() for word in (f"-L{folder}", f"-Wl,-rpath,{folder}")
+    )
     ends = [*folders, *(f"-l{name}" for name in link)]
-    explained = subprocess.run([*words, "-###", "-E"], input="", capture_output=True, text=True, check=False).stderr
-    recipe = "\n".join([text, *words, *ends, explained, str(library.version)])  # explained: version and processor
+    explained = subprocess.run(
+        [*words, "-###", "-E"], input="", capture_output=True, text=True, check=False
+    ).stderr
+    # explained: version and processor
+    recipe = "\n".join([text, *words, *ends, explained, str(library.version)])
     name = hashlib.sha256(recipe.encode()).hexdigest()[:32]
 
     def put(path: Path) -> None:
@@ -117,15 +159,24 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
             command = [*words, "-o", str(made), *ends]
             ran = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
             if ran.returncode:
-                first = next((line for line in ran.stderr.splitlines() if "error" in line), "no message")
-                raise IntegrationError(f"a program for {library.name} does not compile here: {first}")
+                first = next(
+                    (line for line in ran.stderr.splitlines() if "error" in line), "no message"
+                )
+                raise IntegrationError(
+                    f"a program for {library.name} does not compile here: {first}"
+                )
             made.replace(path)
 
     return kept("native", name, put)
 
 
 def _native(
-    library: Library, parts: Sequence[str], *, defines: Sequence[str] = (), link: Sequence[str] = (), **fields: Any
+    library: Library,
+    parts: Sequence[str],
+    *,
+    defines: Sequence[str] = (),
+    link: Sequence[str] = (),
+    **fields: Any,
 ) -> Method:
     """Declare a method; arguments as in `prepare`, then further fields of `Method`."""
     work = partial(prepare, library=library, parts=parts, defines=defines, link=link)
@@ -141,7 +192,10 @@ _sundials = partial(
     licence="BSD-3-Clause", source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
 )  # fmt: skip
 _cvode = partial(
-    _sundials, ("sundials.hpp", "cvode.cpp"), link=("sundials_cvode", *DENSE), ladder=(1e-8, 1e-10, 1e-12, 1e-14)
+    _sundials,
+    ("sundials.hpp", "cvode.cpp"),
+    link=("sundials_cvode", *DENSE),
+    ladder=(1e-8, 1e-10, 1e-12, 1e-14),
 )
 
 METHODS = (
@@ -169,7 +223,11 @@ METHODS = (
         formulations=SPACE_FIRST,
         order=8,
     ),
-    _cvode(id="cvode_c_adams", title="Adams, orders 1 to 12, CVODE in C", defines=("MULTISTEP=CV_ADAMS",)),
+    _cvode(
+        id="cvode_c_adams",
+        title="Adams, orders 1 to 12, CVODE in C",
+        defines=("MULTISTEP=CV_ADAMS",),
+    ),
     _cvode(
         id="cvode_c_bdf",
         title="backward differentiation, orders 1 to 5, CVODE in C",

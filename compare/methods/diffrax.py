@@ -31,7 +31,9 @@ def prepare(problem: Problem, setting: float) -> Work:
     controller = diffrax.PIDController(rtol=setting, atol=setting * float(problem.sizes.min()))
 
     def rhs(_: Any, y: Any, __: Any) -> Any:
-        return jnp.stack([jnp.asarray(part) for part in problem.system.rates(tuple(y), jnp, parameters)])
+        return jnp.stack(
+            [jnp.asarray(part) for part in problem.system.rates(tuple(y), jnp, parameters)]
+        )
 
     def integrate(start: Any, times: Any) -> Any:
         solution = diffrax.diffeqsolve(
@@ -46,7 +48,11 @@ def prepare(problem: Problem, setting: float) -> Work:
             max_steps=None,
             throw=False,
         )
-        return solution.ys, solution.stats["num_steps"], solution.result == diffrax.RESULTS.successful
+        return (
+            solution.ys,
+            solution.stats["num_steps"],
+            solution.result == diffrax.RESULTS.successful,
+        )
 
     start, times = jnp.asarray(problem.start), jnp.asarray(problem.times)
     compiled = jax.jit(integrate).lower(start, times).compile()
@@ -58,7 +64,9 @@ def prepare(problem: Problem, setting: float) -> Work:
         reason = "" if successful else "diffrax stopped before the end"
         if not successful:
             states = states[: leading(np.isfinite(states).all(axis=1))]
-        return outcome(problem, states, steps=steps, rhs_evaluations=steps * stages + 1, reason=reason)
+        return outcome(
+            problem, states, steps=steps, rhs_evaluations=steps * stages + 1, reason=reason
+        )
 
     return work
 

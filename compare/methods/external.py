@@ -19,7 +19,8 @@ from .rhs.problem import Problem
 
 LONGEST_NAME = 24  # characters of a program's name in tables and charts
 SCRIPTS = (".py", ".js", ".mjs", ".ts", ".jl", ".rb", ".r", ".m", ".pl", ".lua", ".sh", ".jar")
-SAME_TIME = 1e-9  # relative difference of times that count as equal, for programs that print few decimals
+# relative difference of times that count as equal, for programs that print few decimals
+SAME_TIME = 1e-9
 
 
 def file_name(command: str) -> str:
@@ -49,7 +50,9 @@ def external(command: str, *, name: str = "external") -> Method:
 
 def _prepare(problem: Problem, value: float, command: str) -> Work:
     times = problem.times.tolist()
-    scene = problem.scene.with_values([f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"])
+    scene = problem.scene.with_values(
+        [f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"]
+    )
     words = arguments(command.replace(SETTING, repr(value)), scene)
 
     def work() -> RunOutcome:
@@ -65,7 +68,9 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
         status, reason = Status.OK, ""
         if len(states) < len(problem.times):
             status, reason = Status.GAVE_UP, "the output lacks a grid time"
-        return RunOutcome(status, float(problem.times[len(states) - 1]), lambda: states, reason, cpu_s=cpu_s)
+        return RunOutcome(
+            status, float(problem.times[len(states) - 1]), lambda: states, reason, cpu_s=cpu_s
+        )
 
     return work
 

@@ -70,12 +70,16 @@ def nystrom(tableau: NystromTableau) -> Step:
         y, rate = state[:half], state[half:]
         forces: list[Sequence[Any]] = []
 
-        def stage(c: Fraction, position: Sequence[Fraction], velocity: Sequence[Fraction]) -> list[Any]:
+        def stage(
+            c: Fraction, position: Sequence[Fraction], velocity: Sequence[Fraction]
+        ) -> list[Any]:
             straight = moved(y, 1, (c,), [[product(h, v) for v in rate]])
             bent = [product(h, h, part) for part in combined(position, forces, half)]
             return [*map(plus, straight, bent), *moved(rate, h, velocity, forces)]
 
-        for c, position, velocity in zip(tableau.c, tableau.position, tableau.velocity, strict=True):
+        for c, position, velocity in zip(
+            tableau.c, tableau.position, tableau.velocity, strict=True
+        ):
             forces.append(derivatives(stage(c, position, velocity))[half:])
         return stage(Fraction(1), tableau.position_weights, tableau.velocity_weights)
 
@@ -85,18 +89,28 @@ def nystrom(tableau: NystromTableau) -> Step:
 def combined(weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]], size: int) -> list[Any]:
     """Return Σ weight slope for each of `size` components; a slope with weight zero is left out."""
     exact = [0 if weight == 0 else weight for weight in weights]
-    return [plus(*(product(w, slope[i]) for w, slope in zip(exact, slopes, strict=True))) for i in range(size)]
+    return [
+        plus(*(product(w, slope[i]) for w, slope in zip(exact, slopes, strict=True)))
+        for i in range(size)
+    ]
 
 
-def moved(state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]]) -> list[Any]:
+def moved(
+    state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]]
+) -> list[Any]:
     """Return state + h Σ weight slope."""
-    return [plus(x, product(h, part)) for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)]
+    return [
+        plus(x, product(h, part))
+        for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)
+    ]
 
 
 def traced_step(problem: Problem, step: Step) -> StraightLine:
     """Trace a step to straight-line code: its inputs are state, parameters and h, its outputs the new state."""
     rates = problem.system.rates
-    return problem.system.traced(lambda state, functions, k, h: step(state, h, lambda at: rates(at, functions, k)), "h")
+    return problem.system.traced(
+        lambda state, functions, k, h: step(state, h, lambda at: rates(at, functions, k)), "h"
+    )
 
 
 def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
@@ -112,7 +126,9 @@ def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
 
     def prepare(problem: Problem, setting: float) -> Work:
         variables = len(problem.start)
-        march = problem.compiled(traced_step(problem, step), _MARCH, out=elements("states", variables, "row")).march
+        march = problem.compiled(
+            traced_step(problem, step), _MARCH, out=elements("states", variables, "row")
+        ).march
         counts = steps_between(problem.times, setting)
 
         def work() -> RunOutcome:

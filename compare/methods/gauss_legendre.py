@@ -22,7 +22,8 @@ from .tableau import TableauError
 
 STAGES = 8
 MOST_ITERATIONS = 60
-CONVERGED = 1e-9  # below this relative change, an iteration that no longer shrinks has converged to rounding
+# below this relative change, an iteration that no longer shrinks has converged to rounding
+CONVERGED = 1e-9
 _BITS = 200  # precision of the coefficients before they are rounded to double
 
 _MARCH = """
@@ -106,7 +107,9 @@ def gauss(stages: int) -> tuple[Array, Array, Array]:
 
     b = weights([ctx.mpf(1) / (power + 1) for power in range(stages)])
     for order in range(1, 2 * stages + 1):
-        residual = abs(sum(w * c ** (order - 1) for w, c in zip(b, nodes, strict=True)) - ctx.mpf(1) / order)
+        residual = abs(
+            sum(w * c ** (order - 1) for w, c in zip(b, nodes, strict=True)) - ctx.mpf(1) / order
+        )
         if residual > ctx.mpf(2) ** (-_BITS // 2):
             raise TableauError(f"Gauss-Legendre with {stages} stages", order, residual)
     a = [weights([node ** (power + 1) / (power + 1) for power in range(stages)]) for node in nodes]
@@ -124,9 +127,19 @@ def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
         states = np.empty((len(problem.times), len(problem.start)))
         states[0] = problem.start
         rows, steps, calls = march(
-            problem.start, problem.parameters, problem.times, counts, states, *coefficients, problem.sizes
+            problem.start,
+            problem.parameters,
+            problem.times,
+            counts,
+            states,
+            *coefficients,
+            problem.sizes,
         )
-        reason = "" if rows == len(states) else "the iteration for the stages does not converge: shorten the step"
+        reason = (
+            ""
+            if rows == len(states)
+            else "the iteration for the stages does not converge: shorten the step"
+        )
         return outcome(problem, states[:rows], steps=steps, rhs_evaluations=calls, reason=reason)
 
     return work

@@ -66,7 +66,9 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
                 return model.doubles(states)
             return model.table(states, number.prec + SPARE_BITS).only(STATE)
 
-        return RunOutcome(Status.OK, float(problem.times[-1]), rows, steps=propagator.steps - before)
+        return RunOutcome(
+            Status.OK, float(problem.times[-1]), rows, steps=propagator.steps - before
+        )
 
     return work
 
@@ -91,7 +93,9 @@ METHODS = (
         title="Taylor series, adaptive step, heyoka in double",
         ladder=(1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 2.0**-52),
         prepare=lambda problem, setting: prepare_in(problem, DOUBLE, setting),
-        stability=tuple((word, 1e-12) for word in ("momentum", "space", "spin", "plane", "angles", "lagrangian")),
+        stability=tuple(
+            (word, 1e-12) for word in ("momentum", "space", "spin", "plane", "angles", "lagrangian")
+        ),
         long_runs=(("momentum", 2.0**-52), ("space", 2.0**-52)),
         precision_runs=lambda bits: [("momentum", 2.0**-52)] if DOUBLE_BITS in bits else [],
     ),
@@ -122,6 +126,8 @@ METHODS = (
         prepare=lambda problem, setting: prepare_in(problem, real(int(setting)), None),
         number="MPFR",
         stability=(("momentum", 100),),
-        precision_runs=lambda bits: [("momentum", float(prec)) for prec in bits if prec > LONG_DOUBLE_BITS],
+        precision_runs=lambda bits: [
+            ("momentum", float(prec)) for prec in bits if prec > LONG_DOUBLE_BITS
+        ],
     ),
 )

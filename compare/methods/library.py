@@ -47,14 +47,18 @@ class Library:
     @property
     def folder(self) -> Path | None:
         """The folder of its headers; None if they are not here."""
-        return next((folder for folder in include_folders() if (folder / self.header).is_file()), None)
+        return next(
+            (folder for folder in include_folders() if (folder / self.header).is_file()), None
+        )
 
     @property
     def missing(self) -> str | None:
         """Return None if programs that use it can be compiled here, otherwise what is missing and what brings it."""
         if compiler() is None:
             return "not installed: a C++ compiler, which the variable CXX may name"
-        return None if self.folder else f"not installed: {self.header} of {self.name} ({self.brings})"
+        return (
+            None if self.folder else f"not installed: {self.header} of {self.name} ({self.brings})"
+        )
 
     @property
     def version(self) -> str | None:
@@ -75,7 +79,10 @@ def compiler() -> list[str] | None:
 def include_folders() -> list[Path]:
     """Return the folders in which headers are looked for."""
     named = [os.environ.get(name, "").split(os.pathsep) for name in ("CPATH", "CPLUS_INCLUDE_PATH")]
-    python = [Path(sys.prefix) / "include", Path(sysconfig.get_path("purelib")) / "libboost_headers" / "include"]
+    python = [
+        Path(sys.prefix) / "include",
+        Path(sysconfig.get_path("purelib")) / "libboost_headers" / "include",
+    ]
     return [*(Path(word) for words in named for word in words if word), *python, *map(Path, SYSTEM)]
 
 

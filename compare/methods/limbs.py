@@ -27,7 +27,9 @@ def prepare(problem: Problem, setting: float) -> Work:
         except IntegrationError as error:
             return failed(problem, error.reason)
 
-        return RunOutcome(Status.OK, float(times[-1]), lambda: run.grid.only(STATE), steps=run.steps)
+        return RunOutcome(
+            Status.OK, float(times[-1]), lambda: run.grid.only(STATE), steps=run.steps
+        )
 
     return work
 

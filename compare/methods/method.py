@@ -25,10 +25,14 @@ from .rhs.problem import Problem
 
 Setting = Literal["step", "tolerance", "precision"]
 
-PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
-TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
-SPACE_FIRST = ("space", "momentum", "spin", "plane", "angles")  # the same, for methods that do best in `space`
-HIGH_ORDER = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14)  # ladder of tolerances of an explicit method of order 8 or so
+# l/g in s² of the pendulum for which ladders of steps are written
+PARIS = Fraction("67") / Fraction("9.80665")
+# formulations that can be traced to straight-line code
+TRACEABLE = ("momentum", "space", "spin", "plane", "angles")
+# the same, for methods that do best in `space`
+SPACE_FIRST = ("space", "momentum", "spin", "plane", "angles")
+# ladder of tolerances of an explicit method of order 8 or so
+HIGH_ORDER = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
 NINE_DIGITS = ((None, 1e-9),)  # the run in `Method.stability` of a method that has a tolerance
 TWO_HUNDRED_STEPS = ((None, 1 / 200),)  # the same of one whose step is fixed: steps in a swing
 
@@ -83,7 +87,11 @@ class RunOutcome:
     def states(self) -> Array:
         """The states as doubles, shape (rows, 6)."""
         computed = self._computed
-        return np.column_stack([computed[name] for name in STATE]) if isinstance(computed, Table) else computed
+        return (
+            np.column_stack([computed[name] for name in STATE])
+            if isinstance(computed, Table)
+            else computed
+        )
 
 
 Work = Callable[[], RunOutcome]
@@ -133,7 +141,9 @@ class Method:
     number: str = "double"
     stability: tuple[tuple[str | None, float], ...] = ()
     long_runs: tuple[tuple[str, float], ...] = ()
-    precision_runs: Callable[[Sequence[int]], list[tuple[str, float]]] = field(default=lambda bits: [], repr=False)
+    precision_runs: Callable[[Sequence[int]], list[tuple[str, float]]] = field(
+        default=lambda bits: [], repr=False
+    )
 
     def __repr__(self) -> str:
         return f"Method({self.id}: {self.title})"
@@ -148,7 +158,10 @@ class Method:
             return self.ladder
         log_ratio = math.log10(float(inputs.length / inputs.gravity / PARIS)) / 2
         power = math.floor(log_ratio)
-        ratio = min((1.0, 2.0, 5.0, 10.0), key=lambda x: abs(math.log10(x) - (log_ratio - power))) * 10.0**power
+        ratio = (
+            min((1.0, 2.0, 5.0, 10.0), key=lambda x: abs(math.log10(x) - (log_ratio - power)))
+            * 10.0**power
+        )
         return tuple(float(f"{step * ratio:.6g}") for step in self.ladder)
 
 
@@ -182,9 +195,15 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any)
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
     status = Status.OK
     if rows < len(states):
-        status, reason = Status.NOT_FINITE, reason or f"the state is not finite after t = {reached_t:g} s"
+        status, reason = (
+            Status.NOT_FINITE,
+            reason or f"the state is not finite after t = {reached_t:g} s",
+        )
     elif rows < len(problem.times):
-        status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
+        status, reason = (
+            Status.GAVE_UP,
+            reason or f"stopped after t = {reached_t:g} s without giving a reason",
+        )
     return RunOutcome(status, reached_t, lambda: problem.cartesian(states[:rows]), reason, **fields)
 
 

@@ -42,7 +42,10 @@ def prepare(problem: Problem, setting: float) -> Work:
         def rows() -> Table:
             bits = prec + SPARE_BITS
             vectors = [model.cartesian(state, k, ctx) for state in states]
-            values = [tuple(int(to_fraction(part * k.length) * 2**bits) for part in (*n, *v)) for n, v in vectors]
+            values = [
+                tuple(int(to_fraction(part * k.length) * 2**bits) for part in (*n, *v))
+                for n, v in vectors
+            ]
             return Table(STATE, bits, values)
 
         return RunOutcome(Status.OK, float(problem.times[-1]), rows, rhs_evaluations=calls)

@@ -43,7 +43,9 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         states, success = np.full((rows, variables), np.nan), np.array(999, np.int32)
         states[0], start = problem.start, problem.start.copy()
         data = np.append(problem.parameters, 0.0)
-        pointers: list[Any] = [array.ctypes.data for array in (start, data, problem.times, states, success)]
+        pointers: list[Any] = [
+            array.ctypes.data for array in (start, data, problem.times, states, success)
+        ]
         with captured() as output:
             integrate(
                 address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
@@ -51,7 +53,8 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             )  # fmt: skip
         reason = quoted(output)
         if success != 1:
-            states = states[: leading(np.isfinite(states).all(axis=1))]  # what it did not reach is NaN
+            # what it did not reach is NaN
+            states = states[: leading(np.isfinite(states).all(axis=1))]
             reason = reason or f"numbalsoda's {code} stopped without a message"
         return outcome(problem, states, rhs_evaluations=int(data[-1]), reason=reason)
 

@@ -49,7 +49,9 @@ def prepare_bs(problem: Problem, setting: float) -> Work:
     import rebound
 
     size = len(problem.start)
-    rates = problem.compiled(problem.system.program, _ODE, ref=rebound.ODE.ref.offset // POINTER).rates
+    rates = problem.compiled(
+        problem.system.program, _ODE, ref=rebound.ODE.ref.offset // POINTER
+    ).rates
 
     def work() -> RunOutcome:
         data = np.append(problem.parameters, 0.0)
@@ -60,7 +62,8 @@ def prepare_bs(problem: Problem, setting: float) -> Work:
         simulation.dt = _first_step(problem)
         ode = simulation.create_ode(length=size, needs_nbody=False)
         ode.ref = data.ctypes.data
-        ode._derivatives = rebound.ode.ODEDER(rates.address)  # the public setter would call it through Python
+        # the public setter would call it through Python
+        ode._derivatives = rebound.ode.ODEDER(rates.address)
 
         def state() -> Array:  # REBOUND swaps the array that it steps from with the one it steps to
             return np.ctypeslib.as_array(ode.y, (size,))
@@ -89,8 +92,15 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
         simulation.extras = data.ctypes.data
         simulation._additional_forces = rebound.simulation.AFF(rates.address)
         simulation.force_is_velocity_dependent = 1
-        simulation.add(**dict(zip(("x", "y", "z", "vx", "vy", "vz"), problem.start.tolist(), strict=True)))
-        return _march(problem, simulation, lambda: [*simulation.particles[0].xyz, *simulation.particles[0].vxyz], data)
+        simulation.add(
+            **dict(zip(("x", "y", "z", "vx", "vy", "vz"), problem.start.tolist(), strict=True))
+        )
+        return _march(
+            problem,
+            simulation,
+            lambda: [*simulation.particles[0].xyz, *simulation.particles[0].vxyz],
+            data,
+        )
 
     return work
 
@@ -111,7 +121,8 @@ def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Ar
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         for span in np.diff(problem.times).tolist():
-            simulation.t = 0.0  # it adds up its steps: at 86400 s their rounding alone would cost 6e-10 m
+            # it adds up its steps: at 86400 s their rounding alone would cost 6e-10 m
+            simulation.t = 0.0
             try:
                 simulation.integrate(span)
             except failures as error:
@@ -123,7 +134,9 @@ def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Ar
                 break
     reason = reason or "; ".join(dict.fromkeys(str(entry.message) for entry in caught))
     steps = int(simulation.steps_done)
-    return outcome(problem, states[:rows], steps=steps, rhs_evaluations=int(data[-1]), reason=reason)
+    return outcome(
+        problem, states[:rows], steps=steps, rhs_evaluations=int(data[-1]), reason=reason
+    )
 
 
 _rebound = partial(

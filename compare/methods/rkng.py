@@ -15,8 +15,12 @@ _TABLES = texts_of(__file__)
 RKNG56 = NystromTableau("RKN-G-5(6)-8", 5, **parts(_TABLES["RKNG56"]))
 RKNG67 = NystromTableau("RKN-G-6(7)-10", 6, **parts(_TABLES["RKNG67"]), tolerance=Fraction("1e-30"))
 
-_SOURCE = "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R "
-_method = partial(fixed_step, formulations=("plane", "space"), family=Family.PAPER, stability=TWO_HUNDRED_STEPS)
+_SOURCE = (
+    "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R "
+)
+_method = partial(
+    fixed_step, formulations=("plane", "space"), family=Family.PAPER, stability=TWO_HUNDRED_STEPS
+)
 
 METHODS = (
     _method(

@@ -19,7 +19,8 @@ from reference.numbers.precision import Array
 from .method import SPACE_FIRST, TRACEABLE, Family, RunOutcome, Work, adaptive, outcome
 from .rhs.problem import Filling, Problem
 
-LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
+# solve_ivp raises a smaller one to this, with a warning
+LEAST_RTOL = 100 * float(np.finfo(float).eps)
 IMPLICIT = ("Radau", "BDF", "LSODA")
 
 
@@ -50,7 +51,9 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             solution = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)
         words = [str(solution.message)] if solution.status < 0 else []
         reason = "; ".join(dict.fromkeys([*words, *(str(entry.message) for entry in caught)]))
-        return outcome(problem, solution.y.T.copy(), rhs_evaluations=int(solution.nfev), reason=reason)
+        return outcome(
+            problem, solution.y.T.copy(), rhs_evaluations=int(solution.nfev), reason=reason
+        )
 
     return work
 

@@ -33,12 +33,18 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         slopes(y, k, matrix)
 
     solver = CVODE(
-        rhs, method=code, rtol=setting, atol=setting * problem.sizes, max_num_steps=MOST_STEPS, jacfn=jacobian
+        rhs,
+        method=code,
+        rtol=setting,
+        atol=setting * problem.sizes,
+        max_num_steps=MOST_STEPS,
+        jacfn=jacobian,
     )
 
     def work() -> RunOutcome:
         times = problem.times
-        output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
+        # two mean every step
+        output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])
         with captured():  # it prints its message as well
             solution = solver.solve(output_times, problem.start)
         states = np.array(solution.y)[np.isin(solution.t, times)]
@@ -59,7 +65,11 @@ _cvode = partial(
 )
 
 METHODS = (
-    _cvode(id="cvode_adams", title="Adams, orders 1 to 12, CVODE", prepare=partial(prepare, code="Adams")),
+    _cvode(
+        id="cvode_adams",
+        title="Adams, orders 1 to 12, CVODE",
+        prepare=partial(prepare, code="Adams"),
+    ),
     _cvode(
         id="cvode_bdf",
         title="backward differentiation, orders 1 to 5, CVODE",

@@ -82,7 +82,9 @@ class NystromTableau:
 
     def __post_init__(self) -> None:
         for node, velocity, position in zip(self.c, self.velocity, self.position, strict=True):
-            residual = max(abs(sum(velocity, EXACT) - node), abs(sum(position, EXACT) - node * node / 2))
+            residual = max(
+                abs(sum(velocity, EXACT) - node), abs(sum(position, EXACT) - node * node / 2)
+            )
             if residual > self.tolerance:
                 raise TableauError(self.name, 2, residual)
         ways = [(self.velocity, self.velocity_weights), (self.position, self.position_weights)]
@@ -102,7 +104,10 @@ def triangle(*rows: str) -> Matrix:
 
 def parts(table: dict[str, str | list[str]]) -> dict[str, Any]:
     """Return the parts of a tableau that a document holds: lines of numbers, and the rows of triangles."""
-    return {name: fractions(part) if isinstance(part, str) else triangle(*part) for name, part in table.items()}
+    return {
+        name: fractions(part) if isinstance(part, str) else triangle(*part)
+        for name, part in table.items()
+    }
 
 
 class Term(NamedTuple):
@@ -135,7 +140,9 @@ def conditions(
             for twice, (rows, weights) in enumerate(ways):
                 exact = tree.exact / (power * (power + 1) ** twice)  # integrated once, or twice
                 residuals[power + twice].append(abs(_dot(weights, tree.stages) - exact))
-                arguments.append(Term(power + twice, exact, tuple(_dot(row, tree.stages) for row in rows)))
+                arguments.append(
+                    Term(power + twice, exact, tuple(_dot(row, tree.stages) for row in rows))
+                )
         yield residuals[power]
 
 
@@ -146,7 +153,11 @@ def _products(arguments: Sequence[Term], order: int, stages: int) -> Iterator[Te
     for i, first in enumerate(arguments):
         if first.order <= order:
             for product in _products(arguments[i:], order - first.order, stages):
-                yield Term(order, first.exact * product.exact, tuple(map(mul, first.stages, product.stages)))
+                yield Term(
+                    order,
+                    first.exact * product.exact,
+                    tuple(map(mul, first.stages, product.stages)),
+                )
 
 
 def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
@@ -154,7 +165,9 @@ def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
     return sum((p * q for p, q in zip(a, b, strict=False) if p and q), EXACT)
 
 
-def check_order(name: str, residuals: Iterable[Sequence[Fraction]], tolerance: Fraction = EXACT) -> None:
+def check_order(
+    name: str, residuals: Iterable[Sequence[Fraction]], tolerance: Fraction = EXACT
+) -> None:
     """Raise TableauError if the conditions of an order, from 1 on, are not met."""
     for order, of_order in enumerate(residuals, 1):
         if max(of_order) > tolerance:

@@ -60,7 +60,10 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
 
     def model(numbers: Numbers) -> tuple[Numbers, Callable[[], Numbers]]:
         base = rows_of(numbers)
-        return rows - base, lambda: np.array([(rows_of(numbers + move) - base) / nudge for move, nudge in moves]).T
+        return (
+            rows - base,
+            lambda: np.array([(rows_of(numbers + move) - base) / nudge for move, nudge in moves]).T,
+        )
 
     return model
 
@@ -94,7 +97,8 @@ def gauss_newton(
         size = float(np.linalg.norm(left))
         if size < gain * least:
             best, least, strayed = numbers, size, False
-            if abs(size - foreseen) < (1 - gain) * size:  # the slopes hold: another step would gain nothing
+            # the slopes hold: another step would gain nothing
+            if abs(size - foreseen) < (1 - gain) * size:
                 break
         elif strayed or not (strays and least < gain * size < math.inf):
             break
@@ -144,9 +148,20 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     exponent, constant = statistics.linear_regression(at, values)
     off = [v - constant - exponent * u for u, v in points]
     spread = len(points) * statistics.pvariance(at)
-    error, within = math.sqrt(sum(residual**2 for residual in off) / (len(points) - 2) / spread), max(map(abs, off))
+    error, within = (
+        math.sqrt(sum(residual**2 for residual in off) / (len(points) - 2) / spread),
+        max(map(abs, off)),
+    )
     low, high = min(at), max(at)
-    return PowerLaw(math.exp(constant), exponent, error, math.exp(within), len(points), math.exp(low), math.exp(high))
+    return PowerLaw(
+        math.exp(constant),
+        exponent,
+        error,
+        math.exp(within),
+        len(points),
+        math.exp(low),
+        math.exp(high),
+    )
 
 
 def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
@@ -168,4 +183,6 @@ def power_of_time(t: Array, error: Array, parts: int) -> float | None:
     The arguments are those of `largest_so_far`; errors are above zero.
     """
     times, largest = largest_so_far(t, error, parts)
-    return power_law(times.tolist(), largest.tolist()).exponent if len(times) >= LEAST_POINTS else None
+    return (
+        power_law(times.tolist(), largest.tolist()).exponent if len(times) >= LEAST_POINTS else None
+    )

@@ -25,8 +25,10 @@ from reference.model.start import Start, scaled
 from reference.numbers.precision import Array
 
 PREC = 200  # bits in which a rest position is computed before it becomes doubles
-_ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction
-PER_SWING = 64  # samples in a period: the interpolation of an apsis between them is accurate to 1e-12
+# an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction
+_ROUND = 1e-6
+# samples in a period: the interpolation of an apsis between them is accurate to 1e-12
+PER_SWING = 64
 _NODES = 12  # samples that the interpolation of an apsis uses
 
 
@@ -55,12 +57,19 @@ class Gauge:
         """
         start = Start.of(scene.exact, PREC)
         hanging = start.rest
-        turn = -start.ctx.mpf(start.k.turn[1]) * hanging[1] - start.ctx.mpf(start.k.turn[2]) * hanging[2]
+        turn = (
+            -start.ctx.mpf(start.k.turn[1]) * hanging[1]
+            - start.ctx.mpf(start.k.turn[2]) * hanging[2]
+        )
         square = tension(hanging, (0, 0, 0), start.k) + turn**2
         if not square > 0:
-            raise UnreachableError("nothing pulls the bob back to its rest position: there is no swing to measure.")
+            raise UnreachableError(
+                "nothing pulls the bob back to its rest position: there is no swing to measure."
+            )
         east, north, up = hanging if rest is None else scaled(rest, start.k.length)
-        return cls((float(east), float(north), float(up)), float(start.ctx.sqrt(square)), float(turn))
+        return cls(
+            (float(east), float(north), float(up)), float(start.ctx.sqrt(square)), float(turn)
+        )
 
     @cached_property
     def period(self) -> float:
@@ -70,7 +79,9 @@ class Gauge:
     def displacement(self, rows: Array) -> tuple[Any, Any]:
         """Return Z in m and Z' in m/s of rows x, y, z, vx, vy, vz."""
         _, y, z = self.rest
-        return rows[:, 0] + 1j * (rows[:, 2] * y - rows[:, 1] * z), rows[:, 3] + 1j * (rows[:, 5] * y - rows[:, 4] * z)
+        return rows[:, 0] + 1j * (rows[:, 2] * y - rows[:, 1] * z), rows[:, 3] + 1j * (
+            rows[:, 5] * y - rows[:, 4] * z
+        )
 
     def swing_plane(self, rows: Array) -> Array:
         """Return ψ in rad, in (-π/2, π/2]; NaN where the ellipse is a circle."""
@@ -111,17 +122,22 @@ def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
 
     place, rate = gauge.displacement(rows)
     height = rows[:, :3] @ np.array(gauge.rest)  # along the plumb line
-    radial = (place.conj() * rate).real if np.min(height) > 0 else -rows[:, 3:] @ np.array(gauge.rest)
+    radial = (
+        (place.conj() * rate).real if np.min(height) > 0 else -rows[:, 3:] @ np.array(gauge.rest)
+    )
     before = np.flatnonzero((radial[:-1] > 0) & (radial[1:] <= 0))
     half = _NODES // 2
     before = before[(before >= half - 1) & (before + half < len(times))]
     nodes = np.arange(1 - half, half + 1)
-    inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))  # the nodes are small: condition 1e7
+    # the nodes are small: condition 1e7
+    inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))
     at = before[:, None] + nodes
     distance = inverse @ radial[at].T
     step = radial[before] / (radial[before] - radial[before + 1])
     for _ in range(4):  # Newton, from a secant: the function is nearly linear between two samples
-        step = step - polyval(step, distance, tensor=False) / polyval(step, polyder(distance), tensor=False)
+        step = step - polyval(step, distance, tensor=False) / polyval(
+            step, polyder(distance), tensor=False
+        )
     azimuth = np.unwrap(2 * np.angle(polyval(step, inverse @ place[at].T, tensor=False))) / 2
     return times[before] + step * (times[1] - times[0]), azimuth
 
@@ -142,7 +158,9 @@ def frequency(scene: Scene, swings: int = 50) -> float:
     gauge = Gauge.of(scene)
     times, _ = _apsides_of(scene, gauge, (swings + 1) * gauge.period)
     if len(times) < 3:
-        raise UnreachableError("the bob does not swing: it has no largest distances from its rest position.")
+        raise UnreachableError(
+            "the bob does not swing: it has no largest distances from its rest position."
+        )
     return float((len(times) - 1) / (2 * (times[-1] - times[0])))
 
 
@@ -161,5 +179,11 @@ def precession_period(scene: Scene, longest: float = 1e6) -> float:
         turned = np.abs(azimuths - azimuths[0])
         if turned[-1] >= np.pi:
             last = int(np.argmax(turned >= np.pi))
-            return float(2 * (np.interp(np.pi, turned[last - 1 : last + 1], times[last - 1 : last + 1]) - times[0]))
+            return float(
+                2
+                * (
+                    np.interp(np.pi, turned[last - 1 : last + 1], times[last - 1 : last + 1])
+                    - times[0]
+                )
+            )
     raise UnreachableError(f"the swing plane does not turn by 180° within {longest:g} s.")

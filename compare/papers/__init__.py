@@ -31,7 +31,11 @@ if TYPE_CHECKING:
 
 MATHAR = ("kinematics", "lagrangian", "rest", "paris", "appendix_a")
 GASTEBOIS = ("rotation", "small", "swings", "lagrangian")
-SECTIONS = (*(f"mathar.{name}" for name in MATHAR), *(f"gastebois.{name}" for name in GASTEBOIS), "three_methods")
+SECTIONS = (
+    *(f"mathar.{name}" for name in MATHAR),
+    *(f"gastebois.{name}" for name in GASTEBOIS),
+    "three_methods",
+)
 Report = Callable[[int, int, str], None]
 
 

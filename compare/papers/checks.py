@@ -81,13 +81,18 @@ class Check(ABC):
 
     def judged(self, recomputed: str, verdict: Verdict, **more: str) -> JudgedRow:
         """Return the row with a verdict and with what belongs to it; the remark is the declared one unless given."""
-        return JudgedRow(self.id, self.place, self.printed, recomputed, verdict, **{"remark": self.remark} | more)
+        return JudgedRow(
+            self.id, self.place, self.printed, recomputed, verdict, **{"remark": self.remark} | more
+        )
 
 
 def section(prefix: str, place: str, *rows: Check) -> list[Check]:
     """Return rows with their whole ids and places, declared with the end of each: "13" at "(13)", or at ""."""
     spaces = ("" if row.place[:1] in ("", ",") else " " for row in rows)
-    return [replace(row, id=prefix + row.id, place=place + s + row.place) for row, s in zip(rows, spaces, strict=True)]
+    return [
+        replace(row, id=prefix + row.id, place=place + s + row.place)
+        for row, s in zip(rows, spaces, strict=True)
+    ]
 
 
 def largest_gap(first: Sequence[Value], second: Sequence[Value]) -> Any:
@@ -102,7 +107,9 @@ def component(function: Callable[[Point], Value], i: int) -> Callable[[Point], A
 
 
 def over(
-    family: Callable[[Any], Point], formula: Callable[[Point], Value], truth: Callable[[Point], Value]
+    family: Callable[[Any], Point],
+    formula: Callable[[Point], Value],
+    truth: Callable[[Point], Value],
 ) -> Callable[[Any], tuple[Value, Value]]:
     """Return the `pair` of an `Approximate` from formulas at points that the small parameter gives."""
     return lambda s: (formula(family(s)), truth(family(s)))
@@ -124,9 +131,14 @@ class Identity(Check):
         gap, recomputed = largest_gap(printed, truth), shown(truth[0])
         if gap < ZERO_BELOW:
             if self.corrected is not None:
-                raise UnexplainedError(f"{self.id}: the print is right, yet a correction is declared")
+                raise UnexplainedError(
+                    f"{self.id}: the print is right, yet a correction is declared"
+                )
             return self.judged(recomputed, "exact")
-        if self.corrected is None or largest_gap([self.corrected(p) for p in sample], truth) >= ZERO_BELOW:
+        if (
+            self.corrected is None
+            or largest_gap([self.corrected(p) for p in sample], truth) >= ZERO_BELOW
+        ):
             raise UnexplainedError(
                 f"{self.id}: the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
             )
@@ -154,10 +166,13 @@ class Approximate(Check):
 
     def row(self) -> JudgedRow:
         """Judge the approximation: its error must have the declared order."""
-        coarse, fine = (self.error(MP.mpf(2) ** -halvings) for halvings in (10, 11))  # where one power dominates
+        # where one power dominates
+        coarse, fine = (self.error(MP.mpf(2) ** -halvings) for halvings in (10, 11))
         slope = MP.log(coarse / fine) / MP.log(2)
         if abs(slope - self.order) >= ORDER_SLACK:
-            raise UnexplainedError(f"{self.id}: the error shrinks with order {shown(slope, 4)}, not {self.order}")
+            raise UnexplainedError(
+                f"{self.id}: the error shrinks with order {shown(slope, 4)}, not {self.order}"
+            )
         error = f"{shown(self.error(1), 3)}{' ' + self.unit if self.unit else ' (relative)'}"
         order = f"order {shown(slope, 3)} in {self.small}"
         return self.judged(shown(self.pair(MP.one)[1]), "approximation", error=f"{error}; {order}")
@@ -207,7 +222,9 @@ class PrintedNumber(Check):
         if not how and self.from_inputs is not None and self.fits(self.from_inputs()):
             note = f"from {self.inputs}: {shown(self.from_inputs(), 8)}"
         if note:
-            return self.judged(recomputed, "reproduced", remark="; ".join(filter(None, (note, self.remark))))
+            return self.judged(
+                recomputed, "reproduced", remark="; ".join(filter(None, (note, self.remark)))
+            )
         off = abs(self.number - value)
         if self.about is not None and off <= mpf(LOOSE) * abs(self.about()):
             error = f"{shown(off, 3)}, {shown(off / abs(value), 2)} (relative)"
@@ -245,10 +262,14 @@ class Statement(Check):
         finding = self.test()
         if finding.holds:
             if self.corrected is not None:
-                raise UnexplainedError(f"{self.id}: the sentence holds, yet a correction is declared")
+                raise UnexplainedError(
+                    f"{self.id}: the sentence holds, yet a correction is declared"
+                )
             if finding.error:
                 return self.judged(finding.recomputed, "approximation", error=finding.error)
             return self.judged(finding.recomputed, "reproduced" if self.by_run else "exact")
         if self.corrected is None or not self.corrected():
-            raise UnexplainedError(f"{self.id}: neither the sentence nor a declared correction holds")
+            raise UnexplainedError(
+                f"{self.id}: neither the sentence nor a declared correction holds"
+            )
         return self.judged(finding.recomputed, "misprint", correction=self.correction)

@@ -41,7 +41,8 @@ FIXED_STEP = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
 DAY: dict[str, Any] = {"xlabel": "t in h", "xlim": (0, 24), "xticks": range(0, 25, 6)}
 LATE: dict[str, Any] = {"xlim": (12000, 12020), "xticks": range(12000, 12021, 10)}
 EAST_WEST: dict[str, Any] = {"xlabel": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
-WIDE = 4.8  # inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
+# inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
+WIDE = 4.8
 FAINT_DOTS = 0.35  # their opacity
 EDGE = 0.5  # inches of a figure's height that no panel has
 
@@ -53,12 +54,17 @@ def _rest_by_latitude() -> list[Panel]:
         p = paris().but(length=mpf(length))
         angles = [abs(degrees(p.but(latitude=mpf(float(d))).case.rest_angle)) for d in latitudes]
         lines.append(line(f"l = {length} m", latitudes, angles, colour, dashes))
-    axes = EAST_WEST | {"ylabel": "deviation from the vertical in °", "xlim": (-90, 90), "ylim": (0, 0.105)}
+    axes = EAST_WEST | {
+        "ylabel": "deviation from the vertical in °",
+        "xlim": (-90, 90),
+        "ylim": (0, 0.105),
+    }
     return [Panel(lines, axes, named=True)]
 
 
 def _triangle() -> list[Panel]:
-    phi, share = float(paris().phi), 0.4  # of gravity: on the Earth RΩ² is 0.23 % of it, which nobody would see
+    # of gravity: on the Earth RΩ² is 0.23 % of it, which nobody would see
+    phi, share = float(paris().phi), 0.4
     pivot, foot = np.zeros(2), np.array([0.0, -1.0])  # north and up
     end = foot + share * np.array([-np.sin(phi), np.cos(phi)])
     sides = (
@@ -72,7 +78,10 @@ def _triangle() -> list[Panel]:
         x, y = np.linspace(begin, stop, 9).T
         lines.append(line("", x, y, colour, dashes, 1.8))
         names.append(dots(name, x[4:5], y[4:5] - 0.05, colour, size=0))
-    angles = [dots("φ", [-0.003], [-0.32], FAINT, size=0), dots("ϕ", [-0.03], [-0.8], FAINT, size=0)]
+    angles = [
+        dots("φ", [-0.003], [-0.32], FAINT, size=0),
+        dots("ϕ", [-0.03], [-0.8], FAINT, size=0),
+    ]
     ends = {"aspect": "equal", "xlim": (-0.8, 0.8), "ylim": (-1.05, 0.4)}
     return [Panel([*lines, *names, *angles], ends, bare=True)]
 
@@ -86,9 +95,19 @@ def _three_windows() -> list[Panel]:
             line("y, north", times - begin, states[:, 1], RED, DASHES[1]),
             _zero(0, 20),
         ]
-        names = {"xlabel": "t in s, counted from there" if begin == WINDOWS[-1] else "", "ylabel": "m"}
-        ends = {"xlim": (0, 20), "ylim": (-0.75, 0.65), "xticks": range(0, 21, 5), "yticks": (-0.5, 0, 0.5)}
-        panels.append(Panel(lines, names | ends | {"title": f"from {begin} s"}, named=not begin, height=1.5))
+        names = {
+            "xlabel": "t in s, counted from there" if begin == WINDOWS[-1] else "",
+            "ylabel": "m",
+        }
+        ends = {
+            "xlim": (0, 20),
+            "ylim": (-0.75, 0.65),
+            "xticks": range(0, 21, 5),
+            "yticks": (-0.5, 0, 0.5),
+        }
+        panels.append(
+            Panel(lines, names | ends | {"title": f"from {begin} s"}, named=not begin, height=1.5)
+        )
     return panels
 
 
@@ -100,8 +119,17 @@ def _from_above_and_south() -> list[Panel]:
         above.append(line(f"from {begin} s", states[:, 0], states[:, 1], colour, dashes))
         south.append(line("", states[:, 0], 1000 * (states[:, 2] + 67), colour, dashes))
     above.append(dots("rest", rest[:1], rest[1:2], BLACK, "P", 6))
-    north = {"title": "From above", "ylabel": "y (north) in m", "xlim": (-0.6, 0.6), "ylim": (-0.72, 0.48)}
-    up = {"title": "From the south, heights stretched", "ylabel": "z + 67 m, in mm", "xlim": (-0.6, 0.6)}
+    north = {
+        "title": "From above",
+        "ylabel": "y (north) in m",
+        "xlim": (-0.6, 0.6),
+        "ylim": (-0.72, 0.48),
+    }
+    up = {
+        "title": "From the south, heights stretched",
+        "ylabel": "z + 67 m, in mm",
+        "xlim": (-0.6, 0.6),
+    }
     return [
         Panel(above, north | {"aspect": "equal"}, named=True, height=3.4),
         Panel(south, up | {"xlabel": "x (east) in m"}, height=2.0),
@@ -111,7 +139,13 @@ def _from_above_and_south() -> list[Panel]:
 def _heights() -> list[Panel]:
     times, states = paris_path()
     release = line("release", (0, 24), states[[0, 0], 2], RED, DASHES[1], 1)
-    return [Panel([dots("", times / 3600, states[:, 2], BLUE), release], DAY | {"ylabel": "z in m"}, named=True)]
+    return [
+        Panel(
+            [dots("", times / 3600, states[:, 2], BLUE), release],
+            DAY | {"ylabel": "z in m"},
+            named=True,
+        )
+    ]
 
 
 def _azimuths() -> list[Panel]:
@@ -123,7 +157,11 @@ def _azimuths() -> list[Panel]:
         if inside.any():
             name = "plane" if turn == 1 else ""
             lines.append(line(name, hours[inside], (turned + 180 * turn)[inside], RED, width=1))
-    axes = {"ylabel": "azimuth in ° (east to north)", "ylim": (-180, 180), "yticks": range(-180, 181, 60)}
+    axes = {
+        "ylabel": "azimuth in ° (east to north)",
+        "ylim": (-180, 180),
+        "yticks": range(-180, 181, 60),
+    }
     return [Panel(lines, DAY | axes, named=True)]
 
 
@@ -131,7 +169,12 @@ def _simplified() -> list[Panel]:
     (times, full), paris_scene = window(12000, 20), load_scene("paris")
     curves = (
         ("full", full, PINK, "-", 2.2),
-        ("Ω = 0", window(12000, 20, load_scene("paris", ["site.rotation_rate=0"]))[1], GREEN, DASHES[3]),
+        (
+            "Ω = 0",
+            window(12000, 20, load_scene("paris", ["site.rotation_rate=0"]))[1],
+            GREEN,
+            DASHES[3],
+        ),
         ("item 2", motions()["mathar_item_2"].trajectory(paris_scene, times), BLUE, DASHES[1]),
         ("item 1", motions()["mathar_item_1"].trajectory(paris_scene, times), RED, DASHES[2]),
     )
@@ -154,13 +197,21 @@ def _frequency_by_latitude() -> list[Panel]:
 def _three_orders() -> list[Panel]:
     (times, truth), (smooth, path) = window(12000, 20, step=0.5), window(12000, 20)
     above, below = [line("", smooth, path[:, 0], FAINT, width=1)], []
-    for (name, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osX", strict=True):
+    for (name, states), colour, mark in zip(
+        orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osX", strict=True
+    ):
         above.append(dots("", times, states[:, 0], colour, mark, 5))
         gap = np.linalg.norm(states.T[:3] - truth.T[:3], axis=0)
         below.append(dots(FIXED_STEP[name], times, gap, colour, mark, 5, "-"))
     return [
         Panel(above, LATE | {"ylabel": "x in m"}, height=1.9),
-        Panel(below, LATE | {"xlabel": "t in s", "ylabel": "error in m"}, named=True, log=True, height=2.2),
+        Panel(
+            below,
+            LATE | {"xlabel": "t in s", "ylabel": "error in m"},
+            named=True,
+            log=True,
+            height=2.2,
+        ),
     ]
 
 
@@ -186,14 +237,20 @@ def check_methods() -> None:
     for name in FIXED_STEP:
         missing = available(METHODS[name])
         if missing is not None:
-            raise InputError("--out", f"no {name}", "the methods of figure 9 (extra `methods`)", f"It is {missing}.")
+            raise InputError(
+                "--out",
+                f"no {name}",
+                "the methods of figure 9 (extra `methods`)",
+                f"It is {missing}.",
+            )
 
 
 FIGURES: dict[int, Callable[[], list[Panel]]] = dict(enumerate((
     _rest_by_latitude, _triangle, _three_windows, _from_above_and_south, _heights, _azimuths, _simplified,
     _frequency_by_latitude, _three_orders,
 ), 1))  # fmt: skip
-CAPTIONS = texts_of(__file__)  # the title that the paper prints, and a remark on the drawing, by number
+# the title that the paper prints, and a remark on the drawing, by number
+CAPTIONS = texts_of(__file__)
 
 
 @dataclass(frozen=True)
@@ -217,13 +274,17 @@ class Panel:
     bare: bool = False
 
 
-def line(name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float = 1.3) -> ChartLine:
+def line(
+    name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float = 1.3
+) -> ChartLine:
     """Return a line without markers."""
     style = {"color": colour, "linestyle": dashes, "linewidth": width}
     return ChartLine(name, list(map(float, x)), list(map(float, y)), style)
 
 
-def dots(name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none") -> ChartLine:
+def dots(
+    name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none"
+) -> ChartLine:
     """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
     joined, faint = line(name, x, y, colour, dashes, 0.7), mark == "."
     style = {"marker": mark, "markersize": size} | ({} if faint else {"markerfacecolor": "none"})
@@ -238,7 +299,9 @@ def svg(number: int) -> str:
     """
     panels = FIGURES[number]()
     with sheet((WIDE, EDGE + sum(panel.height for panel in panels))) as figure:
-        rows = figure.subplots(len(panels), 1, squeeze=False, height_ratios=[panel.height for panel in panels])[:, 0]
+        rows = figure.subplots(
+            len(panels), 1, squeeze=False, height_ratios=[panel.height for panel in panels]
+        )[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _draw(axes, panel)
         return picture(figure).decode()

@@ -79,7 +79,9 @@ def lagrangian(p: Point, coordinates: Coordinates, q: Vector, v: Vector, t: Any 
     return square_speed(p, coordinates, q, v, t) / 2 - p.gravity * coordinates(p, *q)[2]
 
 
-def euler_lagrange(p: Point, coordinates: Coordinates, q: Vector, v: Vector, a: Vector, i: int) -> Any:
+def euler_lagrange(
+    p: Point, coordinates: Coordinates, q: Vector, v: Vector, a: Vector, i: int
+) -> Any:
     """Return d/dt ∂L/∂v_i - ∂L/∂q_i along a path with coordinates q, rates v and accelerations a."""
 
     def shifted(a: Vector, by: Any) -> Vector:
@@ -87,7 +89,9 @@ def euler_lagrange(p: Point, coordinates: Coordinates, q: Vector, v: Vector, a: 
 
     def momentum(s: Any) -> Any:
         position, rates = q + s * v + s * s / 2 * a, v + s * a
-        ahead, behind = (lagrangian(p, coordinates, position, shifted(rates, by), s) for by in (1, -1))
+        ahead, behind = (
+            lagrangian(p, coordinates, position, shifted(rates, by), s) for by in (1, -1)
+        )
         return (ahead - behind) / 2  # exact: L is quadratic in the velocities
 
     return derivative(momentum) - derivative(lambda s: lagrangian(p, coordinates, shifted(q, s), v))
@@ -131,12 +135,18 @@ def rest(p: Point) -> Vector:
 
 def moving_velocity(p: Point) -> Vector:
     """Return the velocity of the bob in local axes, its angles changing at their rates."""
-    return derivative(lambda s: by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s))
+    return derivative(
+        lambda s: by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s)
+    )
 
 
 def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
     """Return the angles, their rates and their accelerations."""
-    return vector(p.cord, p.azimuth), vector(p.cord_rate, p.azimuth_rate), vector(p.cord_second, p.azimuth_second)
+    return (
+        vector(p.cord, p.azimuth),
+        vector(p.cord_rate, p.azimuth_rate),
+        vector(p.cord_second, p.azimuth_second),
+    )
 
 
 def plane_state(p: Point) -> tuple[Vector, Vector, Vector]:
@@ -204,4 +214,8 @@ def motion(p: Point, start: Vector, t: Any) -> Vector:
 def turning_rates(p: Point) -> list[Any]:
     """Return the two α of motions Z = c exp(jαt), smaller first: eigenvalues of the matrix with y = -j x."""
     values, vectors = MP.eig(matrix(p))
-    return sorted(value.imag for i, value in enumerate(values) if abs(vectors[1, i] + j * vectors[0, i]) < mpf("1e-30"))
+    return sorted(
+        value.imag
+        for i, value in enumerate(values)
+        if abs(vectors[1, i] + j * vectors[0, i]) < mpf("1e-30")
+    )

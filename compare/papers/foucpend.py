@@ -124,7 +124,10 @@ def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
                 "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
             )
         index = first + np.arange(count + 1)
-        times, printed = index * np.float64(step), (index % options.skip == 0) & ((index > first) | (index == 0))
+        times, printed = (
+            index * np.float64(step),
+            (index % options.skip == 0) & ((index > first) | (index == 0)),
+        )
         zeros = transits.of(times, states[:, 3])
         yield times[printed], states[printed], zeros
         problem = replace(problem, start=states[-1, [0, 1, 3, 4]] / problem.constants.length)
@@ -135,7 +138,12 @@ def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     """Yield all snapshots and transits at once, from the reference at the level `confirmed`."""
     rows, end = options.steps // options.skip, options.step * options.steps
     if rows > MAX_ROWS:
-        raise InputError("-s", str(options.skip), f"at most {MAX_ROWS} snapshots with --exact", "Take a larger -s.")
+        raise InputError(
+            "-s",
+            str(options.skip),
+            f"at most {MAX_ROWS} snapshots with --exact",
+            "Take a larger -s.",
+        )
     grid = options.step * options.skip if rows else end
     times = {"grid_step": grid, "t_end": end}
     solution = solve(
@@ -145,7 +153,8 @@ def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     )
     states = np.array([getattr(solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
     start = Start.of(options.scene.exact, PREC)
-    states[0] = [float(part) for part in (*start.position, *start.velocity)]  # as given: the solver's has rounding
+    # as given: the solver's has rounding
+    states[0] = [float(part) for part in (*start.position, *start.velocity)]
     zeros = solution.transits["t"].tolist()
     yield solution.t[: rows + 1], states[: rows + 1], zeros
 
@@ -156,8 +165,10 @@ def snapshots_of(scene: Scene, times: Array, states: Array) -> Array:
     k = constants(exact, ctx)
     numbers = (exact.equatorial_radius, exact.flattening, exact.altitude)
     radius, flattening, altitude = (to_mpf(number, ctx) for number in numbers)
-    normal = axis_distance(radius, flattening, 0, k.sin, 1, ctx.sqrt)  # N of (2), the normal down to the axis
-    height = float((normal * (1 - flattening) ** 2 + altitude) * k.sin)  # of the suspension above the equator's plane
+    # N of (2), the normal down to the axis
+    normal = axis_distance(radius, flattening, 0, k.sin, 1, ctx.sqrt)
+    # of the suspension above the equator's plane
+    height = float((normal * (1 - flattening) ** 2 + altitude) * k.sin)
     x, y, z = states[:, :3].T
     distance = float(k.axis_distance * k.length) - float(k.sin) * y + float(k.cos) * z
     turn = float(k.rate) * times
@@ -194,7 +205,8 @@ class Transits:
     """Zeros of xdot, found block by block; a release at rest does not count."""
 
     def __init__(self) -> None:
-        self._rows: tuple[Array, Array] = (np.empty(0), np.empty(0))  # from the one before the last that is not zero on
+        # from the one before the last that is not zero on
+        self._rows: tuple[Array, Array] = (np.empty(0), np.empty(0))
 
     def of(self, times: Array, v: Array) -> list[float]:
         """Return the times of the zeros after the block's first row, up to its last.
@@ -229,4 +241,6 @@ def _problem(options: Options, step: float) -> Problem:
     if not items:
         return problem
     k = truncated(problem.constants, items)
-    return replace(problem, system=FirstOrderSystem.of(VARIABLES, partial(derivatives, items=items), k))
+    return replace(
+        problem, system=FirstOrderSystem.of(VARIABLES, partial(derivatives, items=items), k)
+    )

@@ -78,21 +78,33 @@ class Options:
         if unknown:
             raise InputError(f"-{unknown[0]}", given[unknown[0]], "one of -" + " -".join(DEFAULTS))
         values = DEFAULTS | dict(given)
-        for switch, why in (("R", "uses no Runge-Kutta scheme"), ("a", "knows the full theory only")):
+        for switch, why in (
+            ("R", "uses no Runge-Kutta scheme"),
+            ("a", "knows the full theory only"),
+        ):
             if exact and values[switch] != DEFAULTS[switch]:
                 expected = "no such switch together with --exact"
                 raise InputError(f"-{switch}", values[switch], expected, f"The reference {why}.")
         skip, bits = _whole("s", values["s"], 1), _whole("a", values["a"], 0)
         if values["R"] not in METHOD_OF:
-            raise InputError("-R", values["R"], "4, 5 or 6", "4: Runge-Kutta; 5: RKN-G 5(6); 6: RKN-G 6(7).")
+            raise InputError(
+                "-R", values["R"], "4, 5 or 6", "4: Runge-Kutta; 5: RKN-G 5(6); 6: RKN-G 6(7)."
+            )
         scene = _scene(values)
         inputs = scene.exact
         # a little slack: the double 0.1 is above 1/10, and must still fit three times into 0.3
         steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))
         if not 1 <= steps <= MAX_STEPS:
-            raise InputError("-t", values["t"], f"1 to {MAX_STEPS} steps up to T = {values['T']} s", "Change -t or -T.")
+            raise InputError(
+                "-t",
+                values["t"],
+                f"1 to {MAX_STEPS} steps up to T = {values['T']} s",
+                "Change -t or -T.",
+            )
         shown = values | {"s": skip}
-        printed = " ".join(f"-{letter} {value}" for letter, value in shown.items() if letter not in ("R", "a"))
+        printed = " ".join(
+            f"-{letter} {value}" for letter, value in shown.items() if letter not in ("R", "a")
+        )
         return cls(scene, inputs.grid_step, steps, skip, values["R"], bits, exact, printed)
 
 
@@ -113,7 +125,9 @@ def _scene(values: Mapping[str, str]) -> Scene:
         try:
             RunTable(**{key: run[key]})
         except ValidationError:
-            raise InputError(f"-{_LETTERS[f'run.{key}']}", run[key], "a number above 0, in s") from None
+            raise InputError(
+                f"-{_LETTERS[f'run.{key}']}", run[key], "a number above 0, in s"
+            ) from None
     try:
         scene = parse_scene({"id": "pend", "inputs": "binary64", **document})
     except InputError as error:
@@ -129,5 +143,7 @@ def _renamed(error: InputError, values: Mapping[str, str]) -> InputError:
         return InputError(f"-{switch}", values[switch], error.expected, error.advice)
     if error.field == "release":
         x, y = values["x"], values["y"]
-        return InputError("-x, -y", f"{x}, {y}", f"a point below the suspension: x² + y² < l² = {values['l']}²")
+        return InputError(
+            "-x, -y", f"{x}, {y}", f"a point below the suspension: x² + y² < l² = {values['l']}²"
+        )
     return error

@@ -25,7 +25,9 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
     documents = list(map(asdict, rows))
     return {
         **{f"figure_{number}.svg": svg for number, svg in figures.items()},
-        "rows.csv": PageTable.of_records((field.name for field in fields(JudgedRow)), documents).csv(),
+        "rows.csv": PageTable.of_records(
+            (field.name for field in fields(JudgedRow)), documents
+        ).csv(),
         "rows.json": json_text({"rows": documents}),
         PAGE: page_text(rows, figures),
     }
@@ -33,7 +35,9 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
 
 def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
     """Return the page as HTML."""
-    counts: dict[str, int] = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
+    counts: dict[str, int] = {
+        verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS
+    }
     plates = [plate(figures[n], n, **CAPTIONS[str(n)]) for n in FIGURES]
     return page(
         "The papers' formulas, numbers and figures, recomputed",
@@ -41,7 +45,11 @@ def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
             section("Verdicts", _counted(counts)),
             section("Figures of the first paper, drawn again", *plates),
             section("Not judged", _not_judged()),
-            section("Every line", choices({word: f"{word} ({count})" for word, count in counts.items()}), _lines(rows)),
+            section(
+                "Every line",
+                choices({word: f"{word} ({count})" for word, count in counts.items()}),
+                _lines(rows),
+            ),
         ],
         lead=paragraph(Html(TEXTS["lead"].format(count=len(rows)))),
     )
@@ -49,12 +57,16 @@ def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
 
 def _counted(counts: dict[str, int]) -> Html:
     rows = [(strong(word), count, TEXTS["meaning"][word]) for word, count in counts.items()]
-    return PageTable({"verdict": "", "lines": "number", "meaning": "prose"}, rows, list(counts)).html()
+    return PageTable(
+        {"verdict": "", "lines": "number", "meaning": "prose"}, rows, list(counts)
+    ).html()
 
 
 def _not_judged() -> Html:
     rows = [tuple(line.values()) for line in TEXTS["not_judged"]]
-    return PageTable({"place": "", "printed": "prose", "why there is no verdict": "prose"}, rows).html()
+    return PageTable(
+        {"place": "", "printed": "prose", "why there is no verdict": "prose"}, rows
+    ).html()
 
 
 def _lines(rows: Sequence[JudgedRow]) -> Html:

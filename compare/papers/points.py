@@ -107,7 +107,10 @@ class Point:
         """The model's constants at this point, for `reference.model`; they take nothing else of Paris."""
         names = ("length", "latitude", "altitude", "gravity", "flattening")
         numbers: dict[str, Any] = {name: to_fraction(getattr(self, name)) for name in names}
-        numbers |= {"rotation_rate": to_fraction(self.rate), "equatorial_radius": to_fraction(self.radius)}
+        numbers |= {
+            "rotation_rate": to_fraction(self.rate),
+            "equatorial_radius": to_fraction(self.radius),
+        }
         return constants(replace(load_scene("paris").exact, **numbers), MP)
 
     @cached_property
@@ -142,7 +145,9 @@ class Point:
 def points() -> tuple[Point, ...]:
     """Return random points, the same in every run."""
     draw, kinds = random.Random(SEED), get_type_hints(Point, include_extras=True).values()
-    return tuple(Point(*(MP.mpf(draw.uniform(*kind.__metadata__)) for kind in kinds)) for _ in range(COUNT))
+    return tuple(
+        Point(*(MP.mpf(draw.uniform(*kind.__metadata__)) for kind in kinds)) for _ in range(COUNT)
+    )
 
 
 @cache
@@ -150,7 +155,9 @@ def paris() -> Point:
     """Return the Paris pendulum at its release, Mathar VII: decimals as printed."""
     texts = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",
              "rate": "7.292115e-5", "x": "0.3", "y": "0.4", "mass": "1"}  # fmt: skip
-    return Point(**{name: mpf(text) for name, text in texts.items()}, flattening=1 / mpf("298.257223564"))
+    return Point(
+        **{name: mpf(text) for name, text in texts.items()}, flattening=1 / mpf("298.257223564")
+    )
 
 
 @cache
@@ -174,7 +181,9 @@ def path_in(scene: Scene, times: Array) -> Array:
     return trajectory(scene, times, number=LONG_DOUBLE)
 
 
-def window(begin: float, span: float, scene: Scene | None = None, step: float = 0.05) -> tuple[Array, Array]:
+def window(
+    begin: float, span: float, scene: Scene | None = None, step: float = 0.05
+) -> tuple[Array, Array]:
     """Return the times of an interval and the states of a scene there, shape (times, 6); the default is Paris."""
     times: Array = begin + np.arange(round(span / step) + 1) * np.float64(step)
     return times, path_in(scene or load_scene("paris"), np.union1d(0.0, times))[-len(times) :]
@@ -202,13 +211,17 @@ def frequency(solution: Solution) -> Any:
     return mpf(halves) / 2 / mpf(last)
 
 
-LATITUDES = [*map(str, range(-90, 91, 10)), "48.846111"]  # in degrees, of figure 8: that of Paris is the last
+# in degrees, of figure 8: that of Paris is the last
+LATITUDES = [*map(str, range(-90, 91, 10)), "48.846111"]
 
 
 @cache
 def frequencies() -> dict[float, float]:
     """Return the frequency in Hz by latitude in degrees, from runs of ten minutes."""
-    return {float(text): float(frequency(solved((f"site.latitude={text}",), "600", 12))) for text in LATITUDES}
+    return {
+        float(text): float(frequency(solved((f"site.latitude={text}",), "600", 12)))
+        for text in LATITUDES
+    }
 
 
 def swing_plane(scene: Scene, states: Array) -> Array:
@@ -232,4 +245,6 @@ def paris_passage() -> tuple[Array, Array]:
     passage = paris_path()[0][np.abs(np.cos(paris_swing_plane())).argmin()]
     states = window(passage - 600, 1200, step=0.25)[1]
     near = states[np.hypot(states[:, 0], states[:, 1]) < 0.06]
-    return near, np.abs(near[:, 0] * near[:, 4] - near[:, 1] * near[:, 3]) / np.hypot(near[:, 3], near[:, 4])
+    return near, np.abs(near[:, 0] * near[:, 4] - near[:, 1] * near[:, 3]) / np.hypot(
+        near[:, 3], near[:, 4]
+    )

@@ -72,14 +72,18 @@ def _excess(p: Point, rate: Any) -> Vector:
 
 def unprimed_equation(p: Point, rate: Any) -> Vector:
     """Return the x'', y'' for which x', y' obey the two equations, solved from their second derivatives."""
-    zero, *units = (_excess(p.but(ax=MP.mpf(ax), ay=MP.mpf(ay)), rate) for ax, ay in ((0, 0), (1, 0), (0, 1)))
+    zero, *units = (
+        _excess(p.but(ax=MP.mpf(ax), ay=MP.mpf(ay)), rate) for ax, ay in ((0, 0), (1, 0), (0, 1))
+    )
     columns = MP.matrix([(excess - zero).tolist() for excess in units])
     return vector(*MP.lu_solve(columns.T, MP.matrix((-zero).tolist())))
 
 
 def measured_rate(p: Point) -> Any:
     """Return ω̃ from x'' of a bob at rest at x = 1 in the turning axes."""
-    return sqrt(-unprimed_equation(p.but(x=MP.one, y=MP.zero, vx=MP.zero, vy=MP.zero), axes_rate(p))[0])
+    return sqrt(
+        -unprimed_equation(p.but(x=MP.one, y=MP.zero, vx=MP.zero, vy=MP.zero), axes_rate(p))[0]
+    )
 
 
 def _away_from_axis() -> Answer:
@@ -117,8 +121,14 @@ def _second_long(p: Point) -> Vector:
     """Return x', y' double dot as printed, first form."""
     w, c, s = _any_rate(p), cos(_any_rate(p) * p.t), sin(_any_rate(p) * p.t)
     return vector(
-        (p.ax - p.vy * w) * c - (p.vx - p.y * w) * w * s - (p.vx * w + p.ay) * s - (p.x * w + p.vy) * w * c,
-        (p.ax - p.vy * w) * s + (p.vx - p.y * w) * w * c + (p.vx * w + p.ay) * c - (p.x * w + p.vy) * w * s,
+        (p.ax - p.vy * w) * c
+        - (p.vx - p.y * w) * w * s
+        - (p.vx * w + p.ay) * s
+        - (p.x * w + p.vy) * w * c,
+        (p.ax - p.vy * w) * s
+        + (p.vx - p.y * w) * w * c
+        + (p.vx * w + p.ay) * c
+        - (p.x * w + p.vy) * w * s,
     )
 
 
@@ -170,7 +180,9 @@ def _simple_in_frame() -> Answer:
         return norm(_turned_drive(p) + bent + pushed)
 
     gap = max(map(excess, points()))
-    return Answer(vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
+    return Answer(
+        vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα"
+    )
 
 
 def _spun(p: Point) -> tuple[Any, Any, Any]:
@@ -186,7 +198,11 @@ def _spun(p: Point) -> tuple[Any, Any, Any]:
 def _substituted(p: Point) -> Any:
     w, first, second = _spun(p)
     up = rate_up(p)
-    return (second - 2 * j * up * first - up**2 * w) + 2 * j * up * (first - j * up * w) + p.gravity / p.length * w
+    return (
+        (second - 2 * j * up * first - up**2 * w)
+        + 2 * j * up * (first - j * up * w)
+        + p.gravity / p.length * w
+    )
 
 
 def checks() -> list[Check]:

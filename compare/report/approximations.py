@@ -15,7 +15,19 @@ from ..approximations import APPROXIMATIONS, motions
 from ..studies.approximation_errors import TimeRow, error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, UNITS, SweepRow
 from ..studies.approximation_limits import limits as limits_of
-from .drawing import COLOURS, FAINT, GUIDE, ChartLine, draw, legend, limits, line_style, logarithmic, sheet, svg_text
+from .drawing import (
+    COLOURS,
+    FAINT,
+    GUIDE,
+    ChartLine,
+    draw,
+    legend,
+    limits,
+    line_style,
+    logarithmic,
+    sheet,
+    svg_text,
+)
 from .folder import Report
 from .page import Html, PageTable, figure, page, paragraph, section
 
@@ -31,7 +43,9 @@ _NAMES = {
 }
 
 
-def document_of(scene: Scene, swept: Swept, report: Callable[[int, int], None] | None = None) -> dict[str, Any]:
+def document_of(
+    scene: Scene, swept: Swept, report: Callable[[int, int], None] | None = None
+) -> dict[str, Any]:
     """Return errors up to 20 s, 1 h, 12000 s and the end, ranges good to 1 mm, 1 µm and 1 arcsecond, and quantities.
 
     Args:
@@ -42,7 +56,10 @@ def document_of(scene: Scene, swept: Swept, report: Callable[[int, int], None] |
     t_end, chosen = float(scene.exact.t_end), [*motions().values()]
     within = min(SWEEP_S, t_end)
     tables: list[Callable[[], Iterable[Any]]] = [
-        *(partial(limits_of, scene, chosen, over, t_end if over == "time" else within, swept) for over in OVERS),
+        *(
+            partial(limits_of, scene, chosen, over, t_end if over == "time" else within, swept)
+            for over in OVERS
+        ),
         partial(error_table, scene, chosen, t_end),
         partial(quantity_table, scene),
     ]
@@ -71,7 +88,9 @@ def text_table(report: dict[str, Any]) -> str:
     return "\n\n".join("\n".join([title, *table.lines()]) for title, table in tables.items())
 
 
-def _by_approximation(rows: Iterable[dict[str, Any]], key: str) -> dict[str, dict[Any, dict[str, Any]]]:
+def _by_approximation(
+    rows: Iterable[dict[str, Any]], key: str
+) -> dict[str, dict[Any, dict[str, Any]]]:
     """Return rows by approximation, in order of appearance, and by what they have at a key."""
     groups: dict[str, dict[Any, dict[str, Any]]] = {}
     for row in rows:
@@ -103,7 +122,9 @@ def page_text(scene: Scene, swept: Swept, report: dict[str, Any]) -> str:
                     chart(over_time, "plane_error_arcsec"),
                     "Largest error of the direction of the swing plane up to each time.",
                 ),
-                _errors(report, _MEASURED).html("Largest errors of position and of the swing plane's direction"),
+                _errors(report, _MEASURED).html(
+                    "Largest errors of position and of the swing plane's direction"
+                ),
             ),
             section("Where each is accurate", *sweeps, *ranges),
             section("Single quantities", _quantities(report).html()),
@@ -124,7 +145,9 @@ def _errors(report: dict[str, Any], measured: Mapping[str, str]) -> PageTable:
         values = [errors[t][what] for what in measured for t in times]
         remark = "" if errors[times[0]]["status"] == Status.OK else "does not apply to this scene"
         rows.append((name, *("" if value is None else f"{value:.3g}" for value in values), remark))
-    return PageTable({"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}, rows)
+    return PageTable(
+        {"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}, rows
+    )
 
 
 def _limits(report: dict[str, Any], over: str) -> PageTable:
@@ -142,7 +165,13 @@ def _intervals(row: dict[str, Any]) -> str:
 
 
 def _quantities(report: dict[str, Any]) -> PageTable:
-    columns = {"approximation": "", "value": "number", "reference": "number", "unit": "", "relative error": "number"}
+    columns = {
+        "approximation": "",
+        "value": "number",
+        "reference": "number",
+        "unit": "",
+        "relative error": "number",
+    }
     rows = [
         (
             row["approximation"], row["value"] or row["reason"], row["truth"], row["unit"],
@@ -174,7 +203,9 @@ def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
     if not lines:
         raise InputError("rows", f"{len(rows)} rows", f"some with {what}")
     over = rows[0].over if isinstance(rows[0], SweepRow) else "time"
-    with sheet((9.5, max(4.8, 0.3 * sum(line.name.count("\n") + 1 for line in lines) + 3))) as figure:
+    with sheet(
+        (9.5, max(4.8, 0.3 * sum(line.name.count("\n") + 1 for line in lines) + 3))
+    ) as figure:
         axes = figure.subplots()
         logarithmic(axes, "y", *limits([y for line in lines for y in line.y]), 16)
         ends = min(line.x[0] for line in lines), max(line.x[-1] for line in lines)
@@ -192,11 +223,17 @@ def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
                     0.995, height, name, transform=axes.get_yaxis_transform(), ha="right", va="bottom", color=FAINT,
                     fontsize=8,
                 )  # fmt: skip
-        axes.set_xlabel("time since release, s" if over == "time" else f"{over.replace('_', ' ')}, {UNITS[over]}")
+        axes.set_xlabel(
+            "time since release, s"
+            if over == "time"
+            else f"{over.replace('_', ' ')}, {UNITS[over]}"
+        )
         axes.set_ylabel(_NAMES[what])
         legend(axes, lines)
         names = ", ".join(line.name.replace("\n", ", ") for line in lines)
-        return svg_text(figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}.")
+        return svg_text(
+            figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}."
+        )
 
 
 def _lines(rows: Sequence[TimeRow], what: str) -> list[ChartLine]:
@@ -206,7 +243,11 @@ def _lines(rows: Sequence[TimeRow], what: str) -> list[ChartLine]:
         mine = [row for row in rows if row.approximation == name and getattr(row, what)]
         x = np.array([row.value if isinstance(row, SweepRow) else row.t for row in mine])
         y = np.array([getattr(row, what) for row in mine])
-        same = [names for names, u, v in groups if np.array_equal(u, x) and np.all(np.abs(y / v - 1) < _SAME)]
+        same = [
+            names
+            for names, u, v in groups
+            if np.array_equal(u, x) and np.all(np.abs(y / v - 1) < _SAME)
+        ]
         if same:
             same[0].append(name)
         elif mine:

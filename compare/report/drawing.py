@@ -27,8 +27,15 @@ INKS = {
 INK, FAINT, RULE, BAND, PAPER, BLUE = INKS.values()
 # Okabe and Ito's palette for colour-blind readers; in grey the line styles tell lines apart
 COLOURS = (BLUE, "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", INK)
-GUIDE: dict[str, Any] = {"color": FAINT, "linewidth": 0.8, "linestyle": (0, (1, 2))}  # lines to compare others with
-_DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5)), (0, (3, 3)))
+# lines to compare others with
+GUIDE: dict[str, Any] = {"color": FAINT, "linewidth": 0.8, "linestyle": (0, (1, 2))}
+_DASHES: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1.2, 1.2)),
+    (0, (7, 1.5, 1.2, 1.5)),
+    (0, (3, 3)),
+)
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 
 SUFFIXES = (".svg", ".png", ".pdf")  # of picture files
@@ -40,7 +47,16 @@ _PARAMETERS = {
     "svg.fonttype": "none",
     "font.size": 9,
     "font.family": ["DejaVu Sans", "sans-serif"],
-    **dict.fromkeys(("text.color", "axes.labelcolor", "axes.titlecolor", "xtick.labelcolor", "ytick.labelcolor"), INK),
+    **dict.fromkeys(
+        (
+            "text.color",
+            "axes.labelcolor",
+            "axes.titlecolor",
+            "xtick.labelcolor",
+            "ytick.labelcolor",
+        ),
+        INK,
+    ),
     **dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), FAINT),
     **dict.fromkeys(("axes.spines.top", "axes.spines.right"), False),
     "axes.titlesize": 9,
@@ -145,7 +161,10 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
         text = picture(figure).decode()
     text = text[text.index(">", text.index("<svg")) + 1 :]
     text = re.sub(
-        r"<metadata>.*?</metadata>\s*|<defs>\s*<style.*?</defs>\s*|<!--.*?-->\s*|(?<=\n) +", "", text, flags=re.DOTALL
+        r"<metadata>.*?</metadata>\s*|<defs>\s*<style.*?</defs>\s*|<!--.*?-->\s*|(?<=\n) +",
+        "",
+        text,
+        flags=re.DOTALL,
     )
     targets = set(re.findall(r'#([^")]+)', text))  # other ids would stand in a page more than once
     text = re.sub(r' id="([^"]+)"', lambda match: match[0] if match[1] in targets else "", text)
@@ -208,15 +227,24 @@ def draw(axes: Any, lines: Sequence[ChartLine]) -> None:
     for line in lines:
         axes.plot(line.x, line.y, **{**line.style, "marker": ""}, zorder=3)
         if line.markers:
-            axes.plot(line.x, line.y, **{**line.style, "linestyle": "none"}, alpha=line.markers, zorder=4)
+            axes.plot(
+                line.x, line.y, **{**line.style, "linestyle": "none"}, alpha=line.markers, zorder=4
+            )
 
 
-def legend(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0, inside: bool = False) -> None:
+def legend(
+    axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0, inside: bool = False
+) -> None:
     """Name lines in a legend right of the axes, or inside them where they leave most room."""
     from matplotlib.lines import Line2D
 
     handles = [
-        Line2D([], [], label=line.name, **(line.style if line.markers else {**line.style, "marker": ""}))
+        Line2D(
+            [],
+            [],
+            label=line.name,
+            **(line.style if line.markers else {**line.style, "marker": ""}),
+        )
         for line in lines
     ]
     where = {"loc": "best"} if inside else {"loc": "upper left", "bbox_to_anchor": (1, 1)}

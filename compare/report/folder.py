@@ -57,7 +57,9 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
     """
     with usable("--out", folder):
         existing = next((name for name in names if (folder / name).exists()), None)
-        if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
+        if (existing is not None and not _is_ours(folder / PAGE)) or (
+            folder.exists() and not folder.is_dir()
+        ):
             reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
             expected = "a new folder, or one that an earlier run wrote"
             raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
@@ -87,7 +89,8 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
     files = {name: _encoded(text) for name, text in texts.items()}
     with usable("--out", folder):
         folder.mkdir(parents=True, exist_ok=True)
-        for name in sorted(files, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
+        # a folder with a page of ours may be written again
+        for name in sorted(files, key=lambda name: name != PAGE):
             _replace(folder / name, files[name])
         _replace(folder / SUMS, sums_text(files))
 

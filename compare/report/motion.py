@@ -16,14 +16,17 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Candidate
 from ..observed.swing_plane import Gauge, gauge_of
 
-SWINGS = 9  # that are drawn, spread over the span, where the rows lie too far apart to be a line themselves
+# that are drawn, spread over the span, where the rows lie too far apart to be a line themselves
+SWINGS = 9
 POINTS = 40  # of one swing
 COARSE = 3  # rows farther apart than this many of these points are no line
 WIDE = -0.7  # height over the cord length, above which a swing is shown on its sphere
-AT_REST = 2.0**-128  # of the cord length: what moves less, by the rounding of its release, has no swing
+# of the cord length: what moves less, by the rounding of its release, has no swing
+AT_REST = 2.0**-128
 _WINDOW = 24  # rows of a candidate whose longest axis gives the swing plane's direction
 _BENT = 0.5  # a step differs from the one before by less than this part of it where rows are a line
-_FLAT = 0.5  # where the shorter axis is longer than this part of the longer one, an ellipse has no clear direction
+# where the shorter axis is longer than this part of the longer one, an ellipse has no clear direction
+_FLAT = 0.5
 
 
 @dataclass(frozen=True)
@@ -67,11 +70,16 @@ class PicturedMotion:
         """
         name = golden.manifest.id if isinstance(golden, Golden) else golden.scene.id
         t, transits = golden.t[golden.t <= until], golden.transits
-        states, seen = np.column_stack([golden.grid[column][: len(t)] for column in STATE]), transits["t"] <= until
+        states, seen = (
+            np.column_stack([golden.grid[column][: len(t)] for column in STATE]),
+            transits["t"] <= until,
+        )
         length = float(golden.scene.exact.length)
         gauge = _gauge(golden) if np.ptp(states[:, :3], axis=0).max() > AT_REST * length else None
         line, swings = _line(golden.scene, t, states, gauge)
-        plane = np.full(len(states), np.nan) if gauge is None else np.degrees(gauge.swing_plane(states))
+        plane = (
+            np.full(len(states), np.nan) if gauge is None else np.degrees(gauge.swing_plane(states))
+        )
         swinging = np.isfinite(plane)
         return cls(
             name, length, t, states[:, :3], line, swings, t[swinging], plane[swinging],
@@ -105,7 +113,11 @@ def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[A
         return states[:, :3], 0
     swing = np.linspace(0.0, gauge.period, POINTS + 1)
     end = float(t[-1]) - gauge.period
-    starts = np.linspace(0.0, end, SWINGS) if end > SWINGS * gauge.period else np.arange(0.0, end, gauge.period)
+    starts = (
+        np.linspace(0.0, end, SWINGS)
+        if end > SWINGS * gauge.period
+        else np.arange(0.0, end, gauge.period)
+    )
     times = starts[:, None] + swing
     try:
         points = trajectory(scene, np.unique(times))

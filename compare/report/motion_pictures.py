@@ -20,7 +20,8 @@ DOTS = 360  # of one kind in a panel at most
 LINE = 1200  # points of a path at most
 DOT = 3.0  # diameter of a dot in points
 PANEL = (3.5, 3.0)  # in
-SEEN_FROM, ABOVE = np.radians(-60.0), np.radians(20.0)  # azimuth and height of the eye that sees the sphere
+# azimuth and height of the eye that sees the sphere
+SEEN_FROM, ABOVE = np.radians(-60.0), np.radians(20.0)
 _SMALL = 0.01  # degrees: a swing plane that turns less is drawn on a scale of this
 _ROUNDED = re.compile(r"(\d+\.\d\d)\d+")
 _ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after it
@@ -43,7 +44,12 @@ def path(axes: Any, motion: PicturedMotion) -> None:
         _dots(axes, rows[:, 0], rows[:, 1], BLUE)
     _begin(axes, *rows[0, :2])
     edge = 1.08 * size * scale
-    axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal", title=f"Path from above: {_shown(motion)}")
+    axes.set(
+        xlim=(-edge, edge),
+        ylim=(-edge, edge),
+        aspect="equal",
+        title=f"Path from above: {_shown(motion)}",
+    )
     axes.set(xlabel=f"x in {unit}, east", ylabel=f"y in {unit}, north")
     axes.grid(True)
 
@@ -58,10 +64,21 @@ def sphere(axes: Any, motion: PicturedMotion) -> None:
         ring = np.where((around[2] > 0) == front, 1.0, np.nan)
         axes.plot(around[0] * ring, around[1] * ring, color=FAINT, linewidth=0.6, linestyle=style)
         near = np.where((depth > 0) == front, 1.0, np.nan)
-        axes.plot(right * near, up * near, color=BLUE, linewidth=0.9 if front else 0.5, alpha=1.0 if front else 0.5)
+        axes.plot(
+            right * near,
+            up * near,
+            color=BLUE,
+            linewidth=0.9 if front else 0.5,
+            alpha=1.0 if front else 0.5,
+        )
     _begin(axes, right[0], up[0])
     axes.plot([0], [0], marker="+", color=INK, markersize=6)
-    axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), aspect="equal", title=f"On the sphere: {_shown(motion)}")
+    axes.set(
+        xlim=(-1.08, 1.08),
+        ylim=(-1.08, 1.08),
+        aspect="equal",
+        title=f"On the sphere: {_shown(motion)}",
+    )
     axes.set_axis_off()
 
 
@@ -78,7 +95,11 @@ def plane(axes: Any, motion: PicturedMotion) -> None:
     if not smooth:
         axes.set(ylim=(-90, 90), yticks=(-90, -45, 0, 45, 90))
     axes.ticklabel_format(axis="y", useOffset=False)
-    axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel="degrees, from east to north")
+    axes.set(
+        xlim=(0, motion.t[-1] * seconds),
+        xlabel=f"t in {word}",
+        ylabel="degrees, from east to north",
+    )
     axes.set(title="Azimuth of the swing plane")
     axes.grid(True)
 
@@ -89,7 +110,10 @@ def transits(axes: Any, motion: PicturedMotion) -> None:
     seconds, word = time_unit(float(motion.t[-1]))
     for direction, colour in ((1, COLOURS[1]), (-1, BLUE)):
         mine = motion.directions == direction
-        t, x = _thinned(motion.transit_t[mine], DOTS // 2), _thinned(motion.transit_x[mine], DOTS // 2)
+        t, x = (
+            _thinned(motion.transit_t[mine], DOTS // 2),
+            _thinned(motion.transit_x[mine], DOTS // 2),
+        )
         _dots(axes, t * seconds, x * scale, colour)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
     axes.set(title=f"Where the bob turns in x: {counted(len(motion.transit_t), 'transit')}")
@@ -124,7 +148,12 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
         with sheet(PANEL) as figure:
             axes = figure.subplots()
             draw(axes, motion)
-            text = svg_text(figure, f"{motion.name}-{name}", f"{motion.name}: {axes.get_title('left')}", "lines panel")
+            text = svg_text(
+                figure,
+                f"{motion.name}-{name}",
+                f"{motion.name}: {axes.get_title('left')}",
+                "lines panel",
+            )
         text = _FONTS.sub("font-family: sans-serif", text)
         text = _ELEMENT.sub(lambda element: _ROUNDED.sub(r"\1", element[0]), text)
         elements.append(_MARKERS.sub(_strokes, text))
@@ -138,7 +167,11 @@ def thumbnail(motion: PicturedMotion) -> str:
     size = 1.0 if motion.wide else float(np.nanmax(np.hypot(right, up))) or 1.0
     places = np.column_stack([right, -up]) * (0.46 * THUMB / size) + THUMB / 2
     words = ["M" if np.isnan(x) else f"{x:.0f} {y:.0f}" for x, y in places]
-    ring = f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{0.46 * THUMB:.0f}"/>' if motion.wide else ""
+    ring = (
+        f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{0.46 * THUMB:.0f}"/>'
+        if motion.wide
+        else ""
+    )
     path = f"M{' '.join(words)}".removesuffix(" M")
     release = f'<path class="release" d="M{words[0]}h0"/>'
     return f'<svg viewBox="0 0 {THUMB} {THUMB}" aria-hidden="true">{ring}<path d="{path}"/>{release}</svg>'
@@ -153,7 +186,14 @@ def _strokes(markers: re.Match[str]) -> str:
 
 def length_unit(size: float) -> tuple[float, str]:
     """Return the factor and the word of a unit in which a length in m is a number from 1 to 1000."""
-    for factor, unit in ((1e-3, "km"), (1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm"), (1e12, "pm")):
+    for factor, unit in (
+        (1e-3, "km"),
+        (1.0, "m"),
+        (1e3, "mm"),
+        (1e6, "µm"),
+        (1e9, "nm"),
+        (1e12, "pm"),
+    ):
         if size * factor >= (0.1 if unit == "m" else 1.0):
             return factor, unit
     return 1.0, "m"
@@ -161,7 +201,12 @@ def length_unit(size: float) -> tuple[float, str]:
 
 def time_unit(span: float) -> tuple[float, str]:
     """Return the factor and the word of a unit in which a span in s is a handy number."""
-    for seconds, word, least in ((86_400.0, "d", 3.0), (3600.0, "h", 2.0), (60.0, "min", 10.0), (1.0, "s", 1.0)):
+    for seconds, word, least in (
+        (86_400.0, "d", 3.0),
+        (3600.0, "h", 2.0),
+        (60.0, "min", 10.0),
+        (1.0, "s", 1.0),
+    ):
         if span >= least * seconds:
             return 1 / seconds, word
     return 1e3, "ms"
@@ -192,7 +237,11 @@ def _seen(points: Array) -> tuple[Array, Array, Array]:
     x, y, z = points.T
     to_eye = x * np.cos(SEEN_FROM) + y * np.sin(SEEN_FROM)
     right = y * np.cos(SEEN_FROM) - x * np.sin(SEEN_FROM)
-    return right, z * np.cos(ABOVE) - to_eye * np.sin(ABOVE), z * np.sin(ABOVE) + to_eye * np.cos(ABOVE)
+    return (
+        right,
+        z * np.cos(ABOVE) - to_eye * np.sin(ABOVE),
+        z * np.sin(ABOVE) + to_eye * np.cos(ABOVE),
+    )
 
 
 def _dots(axes: Any, x: Array, y: Array, colour: str) -> None:

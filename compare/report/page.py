@@ -21,12 +21,14 @@ from reference.plain_text import plain_lines
 
 from ..candidates.text import is_number
 
-MARK = '<meta name="generator" content="foucault">'  # in every page; shows that a folder was written by us
+# in every page; shows that a folder was written by us
+MARK = '<meta name="generator" content="foucault">'
 _POLICY = (
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'self' 'unsafe-inline'; worker-src blob:; img-src data:\">"
 )
-_FORMULA = ("=", "+", "-", "@", "\t", "\n")  # may begin a formula in a spreadsheet, as OWASP lists them
+# may begin a formula in a spreadsheet, as OWASP lists them
+_FORMULA = ("=", "+", "-", "@", "\t", "\n")
 
 
 class Html(str):
@@ -68,12 +70,18 @@ def findings(sentences: Iterable[str]) -> Html:
 
 def facts(pairs: Mapping[str, str]) -> Html:
     """Return a list of names and their descriptions."""
-    return Html("<dl>\n" + "\n".join(f"<dt>{text(k)}</dt><dd>{text(v)}</dd>" for k, v in pairs.items()) + "\n</dl>")
+    return Html(
+        "<dl>\n"
+        + "\n".join(f"<dt>{text(k)}</dt><dd>{text(v)}</dd>" for k, v in pairs.items())
+        + "\n</dl>"
+    )
 
 
 def figure(svg: str, caption: str) -> Html:
     """Return a picture (`svg` is one SVG element) with its caption; on a narrow screen it scrolls."""
-    return Html(f'<figure>\n<div class="wide">\n{svg}</div>\n<figcaption>{text(caption)}</figcaption>\n</figure>')
+    return Html(
+        f'<figure>\n<div class="wide">\n{svg}</div>\n<figcaption>{text(caption)}</figcaption>\n</figure>'
+    )
 
 
 def plate(svg: str, number: int, printed: str, remark: str) -> Html:
@@ -97,7 +105,9 @@ def choices(kinds: Mapping[str, str]) -> Html:
 
 def section(heading: str, *parts: str) -> Html:
     """Return a section of the page with a heading that can be linked to."""
-    return Html(f'<section id="{anchor(heading)}">\n<h2>{text(heading)}</h2>\n{join(parts)}\n</section>')
+    return Html(
+        f'<section id="{anchor(heading)}">\n<h2>{text(heading)}</h2>\n{join(parts)}\n</section>'
+    )
 
 
 def anchor(heading: str) -> str:
@@ -105,7 +115,9 @@ def anchor(heading: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", heading.lower()).strip("-")
 
 
-def page(title: str, sections: Sequence[str], *, lead: str = "", script: str = "", styles: str = "") -> str:
+def page(
+    title: str, sections: Sequence[str], *, lead: str = "", script: str = "", styles: str = ""
+) -> str:
     """Return a whole page.
 
     Args:
@@ -116,7 +128,9 @@ def page(title: str, sections: Sequence[str], *, lead: str = "", script: str = "
         styles: further styles.
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))
-    links = "\n".join(f'<a href="#{target}">{heading}</a>' for target, heading in headings if len(headings) > 1)
+    links = "\n".join(
+        f'<a href="#{target}">{heading}</a>' for target, heading in headings if len(headings) > 1
+    )
     return Template(_source("page.html")).substitute(
         mark=MARK, policy=f"{_POLICY}\n" if script else "", title=text(title), styles=_source("page.css") + styles,
         lead=text(lead), links=links, sections=join(sections), script=script,
@@ -156,20 +170,36 @@ class PageTable:
         kinds = list(self.columns.values())
         cards = any(kind in ("prose", "wrapped", "line") for kind in kinds)
         classes = [f' class="{kind}"' if kind else "" for kind in kinds]
-        names = [f' data-name="{text(title)}"' if cards and i else "" for i, title in enumerate(self.columns)]
+        names = [
+            f' data-name="{text(title)}"' if cards and i else ""
+            for i, title in enumerate(self.columns)
+        ]
         head = "".join(
-            f'<th scope="col"{kind}>{text(title)}</th>' for kind, title in zip(classes, self.columns, strict=True)
+            f'<th scope="col"{kind}>{text(title)}</th>'
+            for kind, title in zip(classes, self.columns, strict=True)
         )
         body = []
         for i, row in enumerate(self._texts()):
-            cells = "".join(f"<td{a}{b}>{text(cell)}</td>" for a, b, cell in zip(classes, names, row, strict=True))
+            cells = "".join(
+                f"<td{a}{b}>{text(cell)}</td>"
+                for a, b, cell in zip(classes, names, row, strict=True)
+            )
             kind = f' class="{self.kinds[i]}"' if self.kinds and self.kinds[i] else ""
             anchor = f' id="{text(self.anchors[i])}"' if self.anchors else ""
             body.append(f"<tr{kind}{anchor}>{cells}</tr>")
         title = [f"<figcaption>{text(caption)}</figcaption>"] if caption else []
         inside = [f"<thead><tr>{head}</tr></thead>", "<tbody>", *body, "</tbody>"]
         around = ("whole" if {*kinds} == {"wrapped"} else "wide") + (" cards" if cards else "")
-        lines = ["<figure>", *title, f'<div class="{around}">', "<table>", *inside, "</table>", "</div>", "</figure>"]
+        lines = [
+            "<figure>",
+            *title,
+            f'<div class="{around}">',
+            "<table>",
+            *inside,
+            "</table>",
+            "</div>",
+            "</figure>",
+        ]
         return Html("\n".join(lines))
 
     def lines(self) -> list[str]:
@@ -178,7 +208,10 @@ class PageTable:
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         sides = [">" if kind == "number" else "<" for kind in self.columns.values()]
         return [
-            "  ".join(f"{cell:{side}{width}}" for cell, side, width in zip(row, sides, widths, strict=True)).rstrip()
+            "  ".join(
+                f"{cell:{side}{width}}"
+                for cell, side, width in zip(row, sides, widths, strict=True)
+            ).rstrip()
             for row in rows
         ]
 
@@ -195,7 +228,8 @@ class PageTable:
 
     def _texts(self) -> list[list[str]]:
         return [
-            ["" if cell is None else cell if isinstance(cell, str) else str(cell) for cell in row] for row in self.rows
+            ["" if cell is None else cell if isinstance(cell, str) else str(cell) for cell in row]
+            for row in self.rows
         ]
 
 

@@ -17,7 +17,8 @@ from pydantic import TypeAdapter
 from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
 from ..studies.row import Row, grouped
 
-TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named
+# errors for which costs are tabulated and the cheapest method is named
+TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)
 PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
 SMALL = 1.5e-3  # numbers below this are written with an exponent
 ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
@@ -67,8 +68,12 @@ def curves(rows: Sequence[Row]) -> list[Curve]:
     """Group rows by method and formulation, in order of appearance; a method's first formulation is its usual one."""
     usual = {row.method: row.formulation for row in reversed(rows)}
     result = []
-    for (method, formulation), group in grouped(rows, lambda row: (row.method, row.formulation)).items():
-        ladder = sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)
+    for (method, formulation), group in grouped(
+        rows, lambda row: (row.method, row.formulation)
+    ).items():
+        ladder = sorted(
+            group, key=lambda row: row.setting if row.kind == "precision" else -row.setting
+        )
         result.append(Curve(method, formulation, usual[method] == formulation, tuple(ladder)))
     return result
 
@@ -141,7 +146,10 @@ def sentences(document: dict[str, Any]) -> list[str]:
         prices = [_prices(curve, bound_m, document["t_end"]) for curve in curves(rows)]
     else:
         prices = list(_cheapest(rows, bound_m))
-    laws = (cost_sentence(label, law, document["t_end"]) for label, law in costs_of_digits(rows, bound_m).items())
+    laws = (
+        cost_sentence(label, law, document["t_end"])
+        for label, law in costs_of_digits(rows, bound_m).items()
+    )
     return [sentence for sentence in (*prices, *laws) if sentence]
 
 
@@ -149,7 +157,9 @@ def of_digits(rows: Sequence[Row], bound_m: float) -> bool:
     """Return whether a study says what digits cost, and nothing of large errors: a study of precisions."""
     by_precision = [curve for curve in curves(rows) if curve.kind == "precision" and curve.measured]
     ladders = [curve for curve in curves(rows) if curve.kind != "precision" and len(curve.rows) > 1]
-    coarse = any(error_of(row, bound_m) > TARGETS_M[-1] for curve in ladders for row in _measured(curve.rows))
+    coarse = any(
+        error_of(row, bound_m) > TARGETS_M[-1] for curve in ladders for row in _measured(curve.rows)
+    )
     return bool(by_precision) and not coarse
 
 
@@ -172,14 +182,18 @@ def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
 
 def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
     """Yield the cheapest method at each error that is reached; errors at which it is the same run share a sentence."""
-    reached = [(error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))]
+    reached = [
+        (error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))
+    ]
     for _, group in groupby(reached, key=lambda target: target[1][0]):
         alike = list(group)
         (first_m, costs), (last_m, _) = alike[0], alike[-1]
         if len(alike) > 1 and all(costs_there == costs for _, costs_there in alike):
             yield _sentence(rows, f"From {tidy(first_m)} m to {tidy(last_m)} m", costs, bound_m)
         else:
-            yield from (_sentence(rows, f"At {tidy(error_m)} m", costs, bound_m) for error_m, costs in alike)
+            yield from (
+                _sentence(rows, f"At {tidy(error_m)} m", costs, bound_m) for error_m, costs in alike
+            )
 
 
 def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: float) -> str:
@@ -193,14 +207,23 @@ def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: f
         return f"{head}: {_times(cpu_s / least_s)} the next, {second.label}."
     if paper_s is not None:
         return f"{head}: {_times(paper_s / least_s)} {PAPER_NAME}."
-    best = min((error_of(row, bound_m) for row in _measured(rows) if row.method == PAPER_METHOD), default=None)
-    return head + (f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else ".")
+    best = min(
+        (error_of(row, bound_m) for row in _measured(rows) if row.method == PAPER_METHOD),
+        default=None,
+    )
+    return head + (
+        f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else "."
+    )
 
 
 def _times(ratio: float) -> str:
     if ratio < ALIKE:
         return "as cheap as"
-    return f"{ratio:.2g} times cheaper than" if ratio < 100 else f"{float(f'{ratio:.2g}'):.0f} times cheaper than"
+    return (
+        f"{ratio:.2g} times cheaper than"
+        if ratio < 100
+        else f"{float(f'{ratio:.2g}'):.0f} times cheaper than"
+    )
 
 
 def digits_of(row: Row, bound_m: float) -> float:
@@ -219,9 +242,15 @@ def costs_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> dict[str, Powe
     """
     laws = {}
     for curve in curves(rows):
-        measured = [row for row in _measured(curve.rows) if row.error_m and bound_m < row.error_m < 1 and row.cpu_s]
+        measured = [
+            row
+            for row in _measured(curve.rows)
+            if row.error_m and bound_m < row.error_m < 1 and row.cpu_s
+        ]
         if curve.kind == "precision" and len({row.error_m for row in measured}) >= LEAST_POINTS:
-            laws[curve.label] = power_law([digits_of(row, bound_m) for row in measured], map(cost_of, measured))
+            laws[curve.label] = power_law(
+                [digits_of(row, bound_m) for row in measured], map(cost_of, measured)
+            )
     return laws
 
 
@@ -238,7 +267,13 @@ def seconds(cpu_s: float) -> str:
     """Return a CPU time with its unit, to three digits."""
     if cpu_s < 1e-3:
         return f"{cpu_s * 1e6:.3g} µs"
-    return f"{cpu_s * 1e3:.3g} ms" if cpu_s < 0.1 else f"{cpu_s:.3g} s" if cpu_s < 1000 else f"{cpu_s:.0f} s"
+    return (
+        f"{cpu_s * 1e3:.3g} ms"
+        if cpu_s < 0.1
+        else f"{cpu_s:.3g} s"
+        if cpu_s < 1000
+        else f"{cpu_s:.0f} s"
+    )
 
 
 def tidy(value: float) -> str:
@@ -251,4 +286,6 @@ def tidy(value: float) -> str:
 
 def _measured(rows: Sequence[Row]) -> list[Row]:
     """Return rows with a finite cost and error; a NaN must not reach the front because its comparisons are false."""
-    return [row for row in rows if row.measured and math.isfinite(error_of(row, 0.0) + cost_of(row))]
+    return [
+        row for row in rows if row.measured and math.isfinite(error_of(row, 0.0) + cost_of(row))
+    ]

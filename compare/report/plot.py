@@ -76,9 +76,13 @@ def plot(source: Score | Candidate | Golden | Solution | AnyScene) -> Picture:
         InputError: it is none of these, or matplotlib is not installed.
     """
     if isinstance(source, Score):
-        return Picture(f"errors of {source.candidate.name}", lambda path: error_picture([source], path))
+        return Picture(
+            f"errors of {source.candidate.name}", lambda path: error_picture([source], path)
+        )
     motion = motion_of(source)
-    return Picture(f"motion of {motion.name}", lambda path: motion_picture(motion, list(panels(motion)), path))
+    return Picture(
+        f"motion of {motion.name}", lambda path: motion_picture(motion, list(panels(motion)), path)
+    )
 
 
 def motion_of(
@@ -113,18 +117,28 @@ def error_picture(scores: Sequence[Score], target: Path) -> bytes:
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:
-    bound, tolerance = max(score.errors.bound_m for score in scores), min(score.tolerance_m for score in scores)
+    bound, tolerance = (
+        max(score.errors.bound_m for score in scores),
+        min(score.tolerance_m for score in scores),
+    )
     top = max([10 * bound, *(score.errors.max_m for score in scores)])
     lines = []
     for i, score in enumerate(scores):
         t, error = _thinned(score.errors.t, np.maximum(score.errors.position, bound / 30))
         style = line_style(COLOURS[i % len(COLOURS)], i)
         lines.append(
-            ChartLine(shortened(Path(score.candidate.name).name, LONGEST_NAME), t.tolist(), error.tolist(), style)
+            ChartLine(
+                shortened(Path(score.candidate.name).name, LONGEST_NAME),
+                t.tolist(),
+                error.tolist(),
+                style,
+            )
         )
     end = max(line.x[-1] for line in lines)
     if tolerance < 100 * top:
-        lines.append(ChartLine(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE))
+        lines.append(
+            ChartLine(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE)
+        )
         top = max(top, tolerance)
     logarithmic(axes, "y", bound / 30, 3 * top, 12)
     axes.set(xlim=(0, end or 1), xlabel="t in s", ylabel="position error in m")

@@ -47,7 +47,8 @@ LETTERS = {
 _LOUD = Status.SILENTLY_WRONG  # the status that stands out by its colour
 _LOUD_COLOUR, _QUIET_COLOUR = "#D55E00", "#F2C9A8"
 _STEPS = (3, 6, 9, 12, 15)  # digits at which the colour changes
-_BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # few to many digits, in grey as well
+# few to many digits, in grey as well
+_BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")
 _DARK_FROM = 3  # index of the first blue with white text
 _SQUARE = 0.27  # side of a square of the map in inches
 _MARGINS = (2.3, 1.9)  # width and height for the names, in inches
@@ -57,8 +58,10 @@ _LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # squares that the key needs
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
-_FAN, _BEFORE = 50.0, 5.0  # length of the guide lines, and how far before the line's end they end, as factors of time
-_ABOVE = 0.045  # distance of the fan from the lines, as a power of the span of errors: room for its names
+# length of the guide lines, and how far before the line's end they end, as factors of time
+_FAN, _BEFORE = 50.0, 5.0
+# distance of the fan from the lines, as a power of the span of errors: room for its names
+_ABOVE = 0.045
 _OVER = 20.0  # room above the lines, as a factor of error
 _BELOW = 1e3  # room below the bound of the reference, for its name, as a factor of error
 
@@ -68,14 +71,27 @@ def heat_map(cells: Sequence[Cell]) -> str:
     columns = list(dict.fromkeys(map(_column, cells)))
     scenes = list(dict.fromkeys(cell.scene for cell in cells))
     wide = max(len(columns), _LEAST_COLUMNS)
-    with sheet((_MARGINS[0] + _SQUARE * wide, _MARGINS[1] + _SQUARE * (len(scenes) + _KEY_ROWS))) as figure:
+    with sheet(
+        (_MARGINS[0] + _SQUARE * wide, _MARGINS[1] + _SQUARE * (len(scenes) + _KEY_ROWS))
+    ) as figure:
         axes = figure.subplots()
         axes.set(xlim=(0, wide), ylim=(len(scenes) + _KEY_ROWS, 0), aspect="equal")
         for cell in cells:
-            _square(axes, columns.index(_column(cell)), scenes.index(cell.scene), cell.status, cell.digits)
+            _square(
+                axes,
+                columns.index(_column(cell)),
+                scenes.index(cell.scene),
+                cell.status,
+                cell.digits,
+            )
         _key(axes, len(scenes) + 0.7, wide, {cell.status for cell in cells})
         axes.set_xticks(
-            [i + 0.5 for i in range(len(columns))], columns, rotation=55, rotation_mode="anchor", ha="left", fontsize=8
+            [i + 0.5 for i in range(len(columns))],
+            columns,
+            rotation=55,
+            rotation_mode="anchor",
+            ha="left",
+            fontsize=8,
         )
         names = [shortened(scene, _LONGEST_NAME) for scene in scenes]
         axes.set_yticks([i + 0.5 for i in range(len(scenes))], names, fontsize=8)
@@ -105,14 +121,30 @@ def _square(axes: Any, x: float, y: float, status: Status, digits: float | None 
     mark = LETTERS.get(status) or ("?" if digits is None else f"{int(max(0.0, digits))}")
     axes.fill([x, x + 0.94, x + 0.94, x], [y, y, y + 0.94, y + 0.94], color=colour, linewidth=0)
     weight = "bold" if status == _LOUD else "normal"
-    axes.text(x + 0.47, y + 0.5, mark, ha="center", va="center_baseline", fontsize=7.5, color=ink, weight=weight)
+    axes.text(
+        x + 0.47,
+        y + 0.5,
+        mark,
+        ha="center",
+        va="center_baseline",
+        fontsize=7.5,
+        color=ink,
+        weight=weight,
+    )
 
 
 def _key(axes: Any, y: float, wide: float, present: set[Status]) -> None:
     """Draw the key below the map."""
     for i, digits in enumerate([0.0, *_STEPS]):
         _square(axes, i, y, Status.OK, digits)
-    axes.text(len(_STEPS) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
+    axes.text(
+        len(_STEPS) + 1.3,
+        y + 0.5,
+        "digits kept, at least",
+        fontsize=8,
+        va="center_baseline",
+        color=INK,
+    )
     x = 0.0
     for status in [status for status in LETTERS if status in present]:
         needs = 1.7 + _CHARACTER * len(status.words)
@@ -152,12 +184,19 @@ def _line(run: LongRun, place: int) -> ChartLine:
     positive = (t > 0) & (np.maximum.accumulate(error) > 0)
     t, largest = largest_so_far(t[positive], error[positive], _POINTS)
     name = f"{run.method}, {run.formulation}, t^{run.exponent:.2f}"
-    return ChartLine(name, t.tolist(), largest.tolist(), line_style(COLOURS[place % len(COLOURS)], place))
+    return ChartLine(
+        name, t.tolist(), largest.tolist(), line_style(COLOURS[place % len(COLOURS)], place)
+    )
 
 
 def _guides(lines: Sequence[ChartLine]) -> list[ChartLine]:
     """Return a fan of guide lines above all lines: slopes are the same everywhere."""
     end = max(line.x[-1] for line in lines) / _BEFORE
     highest = max(float(np.interp(end / _FAN, line.x, line.y)) for line in lines)
-    low = highest * max(4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE)
-    return [ChartLine(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]
+    low = highest * max(
+        4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE
+    )
+    return [
+        ChartLine(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE)
+        for slope, name in SLOPES
+    ]

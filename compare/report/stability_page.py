@@ -26,7 +26,9 @@ from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
-_LEAD_OF_PROGRAMS = "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
+_LEAD_OF_PROGRAMS = (
+    "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
+)
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
 
@@ -71,7 +73,11 @@ def headlines(cells: Sequence[Cell]) -> list[str]:
 def _not_tried(cells: Sequence[Cell]) -> str:
     """Return in brackets how many cells have no run, and why; "" if all have one."""
     counts = Counter(cell.status.words for cell in cells if cell.status in NOT_TRIED)
-    return f" ({', '.join(f'{count} more were {words}' for words, count in counts.items())})" if counts else ""
+    return (
+        f" ({', '.join(f'{count} more were {words}' for words, count in counts.items())})"
+        if counts
+        else ""
+    )
 
 
 def _named(cells: Sequence[Cell]) -> Callable[[Cell], str]:
@@ -87,7 +93,11 @@ def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
         breaks = []
         for cell in tried:
             if cell.status != Status.OK:
-                how = cell.status.words if cell.wrong_from_s is None else f"wrong from t = {cell.wrong_from_s:g} s on"
+                how = (
+                    cell.status.words
+                    if cell.wrong_from_s is None
+                    else f"wrong from t = {cell.wrong_from_s:g} s on"
+                )
                 breaks.append(f"{cell.scene} ({how})")
         yield f"{name} breaks on {len(breaks)} of {len(tried)} scenes{': ' if breaks else ''}{', '.join(breaks)}."
 
@@ -95,7 +105,9 @@ def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
 def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each pair a sentence: is the implicit method cheaper on stiff scenes, and more expensive on others?"""
     costs = {(cell.scene, cell.method): cell.cpu_s for cell in cells if cell.cpu_s}
-    stiff = {scene for scene in {cell.scene for cell in cells} if "stiff" in load_scene(scene).flags}
+    stiff = {
+        scene for scene in {cell.scene for cell in cells} if "stiff" in load_scene(scene).flags
+    }
     for implicit, explicit in PAIRS:
         ratios: dict[bool, list[float]] = {True: [], False: []}
         for (scene, method), cpu_s in costs.items():
@@ -131,9 +143,14 @@ def page_text(document: dict[str, Any]) -> str:
         section("Silently wrong", _runs(wrong, reasons=True)),
     ]
     if magnified:
-        parts.append(section("Ill-conditioned: the motion magnifies errors", _runs(magnified, reasons=True)))
+        parts.append(
+            section("Ill-conditioned: the motion magnifies errors", _runs(magnified, reasons=True))
+        )
     parts += [
-        section("Other failures", _runs([cell for cell in failures if cell.status not in COUNTED], reasons=True)),
+        section(
+            "Other failures",
+            _runs([cell for cell in failures if cell.status not in COUNTED], reasons=True),
+        ),
         section("What each run was asked for, and what it kept", _runs(cells)),
         section("What the words mean", words({cell.status for cell in cells})),
         section("Scenes", _scenes(cells)),
@@ -146,7 +163,9 @@ def page_text(document: dict[str, Any]) -> str:
     programs = document["programs"]
     if programs:
         rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
-        parts.append(section("Programs", PageTable({"name": "wrapped", "command": "wrapped"}, rows).html()))
+        parts.append(
+            section("Programs", PageTable({"name": "wrapped", "command": "wrapped"}, rows).html())
+        )
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
     lead = paragraph(
         "Each method was asked for the same number of digits on every scene, and its result was compared with the "
@@ -159,8 +178,15 @@ def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:
     """Return runs, the digits that they were asked for and kept, and on demand why they failed."""
     if not cells:
         return paragraph("None.")
-    texts, numbers = ("scene", "method", "precision", "setting", "status"), ("asked for", "kept", "CPU s")
-    columns = dict.fromkeys(texts, "") | dict.fromkeys(numbers, "number") | ({"reason": "prose"} if reasons else {})
+    texts, numbers = (
+        ("scene", "method", "precision", "setting", "status"),
+        ("asked for", "kept", "CPU s"),
+    )
+    columns = (
+        dict.fromkeys(texts, "")
+        | dict.fromkeys(numbers, "number")
+        | ({"reason": "prose"} if reasons else {})
+    )
     rows = []
     for cell in cells:
         kept = "" if cell.digits is None else f"{cell.digits:.1f}"
@@ -174,9 +200,18 @@ def _scenes(cells: Sequence[Cell]) -> Html:
     for name in dict.fromkeys(cell.scene for cell in cells):
         scene = load_scene(name)
         statuses = [cell.status for cell in cells if cell.scene == name]
-        correct, failed = statuses.count(Status.OK), sum(status not in (Status.OK, *NOT_TRIED) for status in statuses)
+        correct, failed = (
+            statuses.count(Status.OK),
+            sum(status not in (Status.OK, *NOT_TRIED) for status in statuses),
+        )
         rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))
-    columns = {"scene": "", "description": "prose", "flags": "prose", "correct": "number", "failed": "number"}
+    columns = {
+        "scene": "",
+        "description": "prose",
+        "flags": "prose",
+        "correct": "number",
+        "failed": "number",
+    }
     return PageTable(columns, rows).html()
 
 

@@ -38,7 +38,8 @@ from .pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of
 Coordinate = Callable[[Row], float | None]
 
 CPU, ERROR = "CPU seconds", "largest error of position in m"
-FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
+# m: the upper panel shows the methods of fixed precision, but no errors below this
+FINEST_M = 1e-20
 _SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
 _BAND_WITHIN = 1e12  # the bound is shown if the smallest error is less than this many times larger
 _COLUMNS = 3  # panels side by side
@@ -70,7 +71,10 @@ def family_of(method: str) -> Family:
 
 
 def ladders(
-    curves: Iterable[Curve], x_of: Coordinate, y_of: Coordinate, name: Callable[[Curve], str] = attrgetter("label")
+    curves: Iterable[Curve],
+    x_of: Coordinate,
+    y_of: Coordinate,
+    name: Callable[[Curve], str] = attrgetter("label"),
 ) -> list[Ladder]:
     """Return a line for each curve that has points; within a family, markers and dashes differ.
 
@@ -83,7 +87,11 @@ def ladders(
     places: Counter[Family] = Counter()
     lines = []
     for curve in curves:
-        points = [(x, y) for row in curve.measured if (x := x_of(row)) and (y := y_of(row)) and math.isfinite(x + y)]
+        points = [
+            (x, y)
+            for row in curve.measured
+            if (x := x_of(row)) and (y := y_of(row)) and math.isfinite(x + y)
+        ]
         if points:
             family = family_of(curve.method)
             style = line_style(FAMILY_COLOURS[family], places[family])
@@ -100,13 +108,19 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     """
     best = front(rows, bound_m)
     on_front = {row.key for row in best}
-    shown = [curve for curve in curves(rows) if curve.usual or any(row.key in on_front for row in curve.rows)]
+    shown = [
+        curve
+        for curve in curves(rows)
+        if curve.usual or any(row.key in on_front for row in curve.rows)
+    ]
     lines = ladders(shown, cost_of, partial(error_of, bound_m=bound_m))
     if not lines:
         return None
     scales, staircase = _scales(lines, bound_m), _staircase(best, bound_m)
     with sheet((9.5, 8.6 if len(scales) > 1 else 6.6)) as figure:
-        grid = figure.subplots(len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)], squeeze=False)
+        grid = figure.subplots(
+            len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)], squeeze=False
+        )
         x_limits = limits([row.cpu_s for row in rows if row.cpu_s], 0.5, 3.0)
         for axes, scale, labels in zip(grid[:, 0], scales, (18, 8), strict=False):
             logarithmic(axes, "x", *x_limits, 12)
@@ -119,7 +133,9 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
         figure.supylabel(ERROR, fontsize=9)
         legend(grid[0, 0], lines)
         names = ", ".join(line.name for line in lines)
-        return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
+        return svg_text(
+            figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}."
+        )
 
 
 def _scales(lines: Sequence[Ladder], bound_m: float) -> list[tuple[float, float]]:
@@ -139,7 +155,11 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
 
     The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
     """
-    lines = ladders([curve for curve in curves(rows) if curve.usual], cost_of, partial(error_of, bound_m=bound_m))
+    lines = ladders(
+        [curve for curve in curves(rows) if curve.usual],
+        cost_of,
+        partial(error_of, bound_m=bound_m),
+    )
     coarse = [line for line in lines if line.family != Family.MANY_DIGITS] or lines
     families = [family for family in Family if any(line.family == family for line in coarse)]
     if not families:
@@ -148,7 +168,9 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
     y_limits = limits([error for line in coarse for error in line.y], 0.2, 6.0)
     count = -(-len(families) // _COLUMNS)
     with sheet((9.5, 2.9 * count)) as figure:
-        grid = figure.subplots(count, min(_COLUMNS, len(families)), sharex=True, sharey=True, squeeze=False)
+        grid = figure.subplots(
+            count, min(_COLUMNS, len(families)), sharex=True, sharey=True, squeeze=False
+        )
         for panel in grid.flat[len(families) :]:
             panel.set_axis_off()
         for i, (panel, family) in enumerate(zip(grid.flat, families, strict=False)):
@@ -164,13 +186,19 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
             legend(panel, members, size=7, inside=True)
         figure.supxlabel(CPU, fontsize=9)
         figure.supylabel(ERROR, fontsize=9)
-        return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
+        return svg_text(
+            figure,
+            "families",
+            f"Error against CPU seconds in small multiples: {', '.join(families)}.",
+        )
 
 
 def _staircase(best: Sequence[Row], bound_m: float) -> ChartLine:
     """Return the Pareto front as a broad line: across at the error of each row, then down to that of the next."""
     style = {"color": RULE, "linewidth": 7, "solid_joinstyle": "miter", "drawstyle": "steps-post"}
-    return ChartLine("", [cost_of(row) for row in best], [error_of(row, bound_m) for row in best], style)
+    return ChartLine(
+        "", [cost_of(row) for row in best], [error_of(row, bound_m) for row in best], style
+    )
 
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:
@@ -178,7 +206,9 @@ def _failed(axes: Any, rows: Sequence[Row]) -> None:
     strip = {"transform": axes.transAxes, "zorder": 0}
     axes.fill([0, 1, 1, 0], [_STRIP, _STRIP, 1, 1], color=BAND, linewidth=0, **strip)
     middle = (1 + _STRIP) / 2
-    axes.text(0.995, middle, "failed", ha="right", va="center_baseline", color=FAINT, fontsize=8, **strip)
+    axes.text(
+        0.995, middle, "failed", ha="right", va="center_baseline", color=FAINT, fontsize=8, **strip
+    )
     for row in (row for row in rows if row.failed and row.cpu_s):
         axes.plot(
             [row.cpu_s], [middle], marker="x", markersize=5, color=FAMILY_COLOURS[family_of(row.method)],
@@ -217,10 +247,21 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
         draw(axes, lines)
         for law in laws.values():
             ends = [law.low, law.high]
-            axes.plot(ends, [law(digits) for digits in ends], color=FAINT, linewidth=6, alpha=0.3, zorder=1)
+            axes.plot(
+                ends,
+                [law(digits) for digits in ends],
+                color=FAINT,
+                linewidth=6,
+                alpha=0.3,
+                zorder=1,
+            )
         axes.set(xlabel="digits achieved, −log₁₀ of the largest error in m", ylabel=CPU)
         legend(axes, lines, inside=True)
-        return svg_text(figure, "precision", "CPU seconds against digits achieved, log-log, with fitted power laws.")
+        return svg_text(
+            figure,
+            "precision",
+            "CPU seconds against digits achieved, log-log, with fitted power laws.",
+        )
 
 
 def _known(axes: Any, bound_m: float) -> None:
@@ -230,7 +271,15 @@ def _known(axes: Any, bound_m: float) -> None:
     if most < high:
         axes.axvspan(most, high, color=BAND, linewidth=0, zorder=0)
         text = f"beyond the reference ({most:.0f} digits) "
-        axes.text(high, 0.01, text, transform=axes.get_xaxis_transform(), color=FAINT, fontsize=8, ha="right")
+        axes.text(
+            high,
+            0.01,
+            text,
+            transform=axes.get_xaxis_transform(),
+            color=FAINT,
+            fontsize=8,
+            ha="right",
+        )
 
 
 def right_hand_sides(rows: Sequence[Row], bound_m: float) -> str | None:
@@ -245,7 +294,11 @@ def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw the error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
     shown = [curve for curve in curves(rows) if curve.usual and curve.kind == "tolerance"]
     coarse = [curve for curve in shown if family_of(curve.method) != Family.MANY_DIGITS]
-    words = ("tolerance", "relative tolerance asked for", "Error achieved against the tolerance asked for")
+    words = (
+        "tolerance",
+        "relative tolerance asked for",
+        "Error achieved against the tolerance asked for",
+    )
     lines = ladders(coarse, attrgetter("setting"), partial(error_of, bound_m=bound_m))
     return _single(lines, bound_m, words, diagonal="error in m = tolerance")
 
@@ -255,13 +308,17 @@ def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
     every = curves(rows)
     compared = {curve.method for curve in every if not curve.usual}
     curves_compared = [curve for curve in every if curve.method in compared]
-    lines = ladders(curves_compared, cost_of, partial(error_of, bound_m=bound_m), attrgetter("formulation"))
+    lines = ladders(
+        curves_compared, cost_of, partial(error_of, bound_m=bound_m), attrgetter("formulation")
+    )
     words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")
     lines = [replace(line, style=line_style(COLOURS[i % 6], i)) for i, line in enumerate(lines)]
     return _single(lines, bound_m, words)
 
 
-def _single(lines: Sequence[ChartLine], bound_m: float, words: tuple[str, str, str], diagonal: str = "") -> str | None:
+def _single(
+    lines: Sequence[ChartLine], bound_m: float, words: tuple[str, str, str], diagonal: str = ""
+) -> str | None:
     """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description.
 
     A diagonal is a guide line with this name, on which both coordinates are equal.

@@ -22,21 +22,33 @@ def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     conclusions, coarse = sentences(document), not of_digits(rows, bound_m)
-    main = findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m.")
+    main = (
+        findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m.")
+    )
     failed, lost = study_tables.failures(rows), {row.status for row in rows if row.failed}
     limit = f"{document['limit_s']:g} CPU seconds"
-    measured = [words.format(limit=limit, repeat_s=REPEAT_S, repeats=REPEATS) for words in TEXTS["measured"]]
+    measured = [
+        words.format(limit=limit, repeat_s=REPEAT_S, repeats=REPEATS) for words in TEXTS["measured"]
+    ]
     parts = [
         section("Main results", main),
         *([section("Least cost of an error", study_tables.costs(rows, bound_m))] if coarse else []),
         *_pictures(rows, bound_m),
-        *([section("The Pareto front", study_tables.pareto_front(rows, bound_m))] if coarse else []),
+        *(
+            [section("The Pareto front", study_tables.pareto_front(rows, bound_m))]
+            if coarse
+            else []
+        ),
         section("Every row", study_tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed, study_tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, measured)),
         section("The methods", study_tables.methods(rows, bound_m, document["programs"])),
     ]
-    return page(f"Error against run time: {document['title'] or document['scene']}", parts, lead=_lead(document))
+    return page(
+        f"Error against run time: {document['title'] or document['scene']}",
+        parts,
+        lead=_lead(document),
+    )
 
 
 def _lead(document: dict[str, Any]) -> Html:
@@ -47,7 +59,9 @@ def _lead(document: dict[str, Any]) -> Html:
         "reference": f"level {reference['level']}, bound {float(reference['bound_m']):.1e} m",
         "load": study_tables.busy(rows_of(document)),
         "machine": f"{machine['processor']}, {machine['system']}",
-        "versions": ", ".join(f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")),
+        "versions": ", ".join(
+            f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")
+        ),
     }
     return join([paragraph(TEXTS["lead"]), facts(details)])
 
@@ -61,7 +75,9 @@ def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
     for chart, words in TEXTS["pictures"].items():
         if not of_digits(rows, bound_m) or chart == study_charts.precision_ladder.__name__:
             svg = getattr(study_charts, chart)(rows, bound_m)
-            caption = words["caption"] + (_hidden(rows) if chart == study_charts.overview.__name__ else "")
+            caption = words["caption"] + (
+                _hidden(rows) if chart == study_charts.overview.__name__ else ""
+            )
             pictures += [section(words["heading"], figure(svg, caption))] if svg is not None else []
     return pictures
 

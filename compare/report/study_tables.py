@@ -26,8 +26,10 @@ from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, senten
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
-BUSY = 1.0  # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
-SPREAD = 0.2  # difference of repeated costs over their median; with more, ratios of costs are doubtful
+# processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
+BUSY = 1.0
+# difference of repeated costs over their median; with more, ratios of costs are doubtful
+SPREAD = 0.2
 
 TEXTS = texts_of(__file__)  # above the tables
 
@@ -35,7 +37,10 @@ TEXTS = texts_of(__file__)  # above the tables
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
     """Return the cost of each error with each method, sorted by the cost at the smallest error that is reached."""
     placed = []
-    least = [next((cpu_s for _, cpu_s in costs_at(rows, error_m, bound_m)), None) for error_m in TARGETS_M]
+    least = [
+        next((cpu_s for _, cpu_s in costs_at(rows, error_m, bound_m)), None)
+        for error_m in TARGETS_M
+    ]
     for curve in curves(rows):
         reached = [cost_at(curve, error_m, bound_m) for error_m in TARGETS_M]
         if any(reached):
@@ -46,14 +51,17 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
             ]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return PageTable(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(TEXTS["costs"])
+    return PageTable(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(
+        TEXTS["costs"]
+    )
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
     """Return the rows of the Pareto front, cheapest first."""
     labels = {row.key: curve.label for curve in curves(rows) for row in curve.rows}
     cells = [
-        (labels[row.key], setting(row), number(row.error_m), cost(row), row.reason) for row in front(rows, bound_m)
+        (labels[row.key], setting(row), number(row.error_m), cost(row), row.reason)
+        for row in front(rows, bound_m)
     ]
     columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
     return PageTable(columns, cells).html(TEXTS["front"])
@@ -71,7 +79,11 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
     cells, kinds = [], []
     for curve in curves(rows):
         for i, row in enumerate(curve.rows):
-            kinds.append(" ".join(["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * row.failed))
+            kinds.append(
+                " ".join(
+                    ["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * row.failed
+                )
+            )
             cells.append((
                 FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
                 row.status.words, number(row.error_m), number(row.end_error_m), transit_error(row),
@@ -100,19 +112,28 @@ def failures(rows: Sequence[Row]) -> Html | None:
 def words(statuses: Collection[Status]) -> Html:
     """Return the meaning of the words that stand for these statuses, and what to do about each."""
     columns = {"word": "", "meaning": "prose", "what to do": "prose"}
-    rows = [(status.words, status.meaning, status.advice) for status in Status if status in statuses]
+    rows = [
+        (status.words, status.meaning, status.advice) for status in Status if status in statuses
+    ]
     return PageTable(columns, rows).html()
 
 
 def advice(statuses: Collection[Status]) -> list[str]:
     """Return what to do about each of these statuses, as lines of text."""
-    return [f"{status.words}: {status.advice}" for status in Status if status in statuses and status.advice]
+    return [
+        f"{status.words}: {status.advice}"
+        for status in Status
+        if status in statuses and status.advice
+    ]
 
 
 def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
-    listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
-    of_method = {order.method: order for order in reversed(orders(rows, bound_m))}  # in its usual formulation
+    listed = [
+        METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS
+    ]
+    # in its usual formulation
+    of_method = {order.method: order for order in reversed(orders(rows, bound_m))}
     body = [
         (
             method.id, method.title, method.order or ABSENT, observed(of_method.get(method.id)),
@@ -121,11 +142,27 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
         for method in listed
     ]  # fmt: skip
     yours = [
-        (name, shortened(command, LONGEST_COMMAND), "", observed(of_method.get(name)), "--run", "", "")
+        (
+            name,
+            shortened(command, LONGEST_COMMAND),
+            "",
+            observed(of_method.get(name)),
+            "--run",
+            "",
+            "",
+        )
         for name, command in programs.items()
     ]
     yours += [(row.method, "", "", "", "--candidates", "", "") for row in rows if row.kind == FILE]
-    columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
+    columns = {
+        "method": "",
+        "": "prose",
+        "order": "",
+        "observed": "",
+        "source": "prose",
+        "licence": "",
+        "extra": "",
+    }
     return PageTable(columns, [*body, *yours]).html(TEXTS["orders"])
 
 
@@ -158,7 +195,16 @@ def text_table(document: dict[str, Any]) -> str:
             if not row.failed:
                 mark = "*" if row.key in best else ""
                 errors = number(row.error_m), transit_error(row), number(row.h_drift)
-                measured.append((mark, curve.label, setting(row), *errors, cost(row), count(row.rhs_evaluations)))
+                measured.append(
+                    (
+                        mark,
+                        curve.label,
+                        setting(row),
+                        *errors,
+                        cost(row),
+                        count(row.rhs_evaluations),
+                    )
+                )
             else:
                 failed.append(("", curve.label, setting(row), row.status.words, row.reason))
     columns = {"": "", "method": ""} | dict.fromkeys(
@@ -174,7 +220,9 @@ def text_table(document: dict[str, Any]) -> str:
     ]
     lost = {row.status for row in rows if row.failed}
     if failed:
-        reasons = PageTable({"": "", "method": "", "setting": "number", "status": "", "reason": ""}, failed).lines()
+        reasons = PageTable(
+            {"": "", "method": "", "setting": "number", "status": "", "reason": ""}, failed
+        ).lines()
         lines += ["", "Failed:", *reasons, "", *advice(lost)]
     return "\n".join([*lines, *_orders_as_text(rows, bound_m), "", *sentences(document)]) + "\n"
 
@@ -222,10 +270,14 @@ def busy(rows: Sequence[Row | Cell]) -> str:
     Rows that were measured earlier, and taken from a journal, count with the load of their time.
     """
     loads = [row.load for row in rows if row.load is not None]
-    spreads = [row.cpu_spread for row in rows if isinstance(row, Row) and row.cpu_spread is not None]
+    spreads = [
+        row.cpu_spread for row in rows if isinstance(row, Row) and row.cpu_spread is not None
+    ]
     parts = []
     if loads:
-        parts.append(f"{median(loads):.1f} processes for each core (median), {max(loads):.1f} at most")
+        parts.append(
+            f"{median(loads):.1f} processes for each core (median), {max(loads):.1f} at most"
+        )
     if spreads:
         usual, most = (f"{100 * spread:.0f} %" for spread in (median(spreads), max(spreads)))
         parts.append(f"repeats of a run differ by {usual} (median), {most} at most")

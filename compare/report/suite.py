@@ -26,7 +26,8 @@ from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files
 from .page import Html, PageTable, findings, page, paragraph, section, text
 
 JSON, BADGE = "suite.json", "badge.svg"
-KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")  # of rows.csv
+# of rows.csv
+KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")
 SUMMARY = "GITHUB_STEP_SUMMARY"
 SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}  # from best to worst
 LABEL = "Foucault pendulum"
@@ -56,7 +57,11 @@ def _agreeing(outcomes: Sequence[Outcome]) -> int:
 
 def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
     """Return the least digits of the scenes that agree, rounded down to a tenth; None if none does."""
-    digits = [outcome.score.errors.digits for outcome in outcomes if outcome.score is not None and outcome.score.agrees]
+    digits = [
+        outcome.score.errors.digits
+        for outcome in outcomes
+        if outcome.score is not None and outcome.score.agrees
+    ]
     return math.floor(10 * min(digits)) / 10 if digits else None
 
 
@@ -69,12 +74,17 @@ def write(outcomes: Sequence[Outcome], out: Path) -> None:
     """Write page, badge, JSON and CSV into a folder."""
     document = suite_document(outcomes)
     rows = PageTable.of_records(KEYS, document["rows"]).csv()
-    write_files(out, {CSV: rows, JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)})
+    write_files(
+        out,
+        {CSV: rows, JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)},
+    )
 
 
 def message(outcomes: Sequence[Outcome]) -> str:
     """Return what the badge says."""
-    scenes = f"{_agreeing(outcomes)} of {len(outcomes)} {'scene' if len(outcomes) == 1 else 'scenes'}"
+    scenes = (
+        f"{_agreeing(outcomes)} of {len(outcomes)} {'scene' if len(outcomes) == 1 else 'scenes'}"
+    )
     digits = _fewest_digits(outcomes)
     middle = "" if digits is None else f" · {digits:.1f} digits"
     return f"{scenes}{middle} · data {DATA_VERSION}"
@@ -99,7 +109,13 @@ def badge(outcomes: Sequence[Outcome]) -> str:
 def page_text(outcomes: Sequence[Outcome]) -> str:
     """Return the page as HTML."""
     numbers = ("covered", "largest error", "tolerance", "digits")
-    columns = {"scene": "", "verdict": "", **dict.fromkeys(numbers, "number"), "transits": "", "candidate": "prose"}
+    columns = {
+        "scene": "",
+        "verdict": "",
+        **dict.fromkeys(numbers, "number"),
+        "transits": "",
+        "candidate": "prose",
+    }
     kinds = ["" if outcome.verdict == "agrees" else "failed" for outcome in outcomes]
     table = PageTable(columns, list(map(_cells, outcomes)), kinds)
     parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
@@ -131,7 +147,12 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
     matched = ""
     if transits is not None:
         matched = f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra"
-    numbers = percent(score.covered), f"{errors.max_m:.2g} m", f"{score.tolerance_m:.2g} m", f"{errors.digits:.1f}"
+    numbers = (
+        percent(score.covered),
+        f"{errors.max_m:.2g} m",
+        f"{score.tolerance_m:.2g} m",
+        f"{errors.digits:.1f}",
+    )
     return outcome.scene, outcome.verdict, *numbers, matched, outcome.name
 
 
@@ -155,7 +176,10 @@ def _property(text: str) -> str:
 
 def summary(outcomes: Sequence[Outcome]) -> str:
     """Return the table of the outcomes as Markdown, and the reasons of those that do not agree."""
-    rows = ["| | scene | candidate | verdict | largest error | digits |", "|---|---|---|---|---|---|"]
+    rows = [
+        "| | scene | candidate | verdict | largest error | digits |",
+        "|---|---|---|---|---|---|",
+    ]
     details = []
     for outcome in outcomes:
         errors = None if outcome.score is None else outcome.score.errors
@@ -165,7 +189,9 @@ def summary(outcomes: Sequence[Outcome]) -> str:
         rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         if outcome.verdict != "agrees" or outcome.since is not None:
             fence = "\n".join(line.replace("```", "'''") for line in outcome.lines)
-            details.append(f"\n<details><summary>{escape(outcome.scene)}</summary>\n\n```\n{fence}\n```\n</details>")
+            details.append(
+                f"\n<details><summary>{escape(outcome.scene)}</summary>\n\n```\n{fence}\n```\n</details>"
+            )
     return "\n".join(["### Foucault pendulum", "", *rows, *details, ""])
 
 
@@ -191,19 +217,27 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
     """
     failed = [outcome.exit_status for outcome in outcomes if outcome.exit_status]
     failures = failed.count(DISAGREES)
-    counts = {"tests": str(len(outcomes)), "failures": str(failures), "errors": str(len(failed) - failures)}
+    counts = {
+        "tests": str(len(outcomes)),
+        "failures": str(failures),
+        "errors": str(len(failed) - failures),
+    }
     root = ElementTree.Element("testsuites", counts)
     suite = ElementTree.SubElement(root, "testsuite", {"name": "foucault", **counts})
     for outcome in outcomes:
         timing = None if outcome.score is None else outcome.score.timing
         fields = {"classname": f"foucault.{outcome.scene}", "name": outcome.name}
-        case = ElementTree.SubElement(suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {}))
+        case = ElementTree.SubElement(
+            suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {})
+        )
         lines = [plain_lines(line) for line in outcome.lines]
         if outcome.exit_status == 0:
             result = ElementTree.SubElement(case, "system-out")
         else:
             word = "failure" if outcome.exit_status == DISAGREES else "error"
-            result = ElementTree.SubElement(case, word, {"message": lines[0 if outcome.since is None else 1]})
+            result = ElementTree.SubElement(
+                case, word, {"message": lines[0 if outcome.since is None else 1]}
+            )
         result.text = "\n".join(lines)
     ElementTree.indent(root)
     document = f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'

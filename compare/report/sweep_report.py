@@ -39,7 +39,9 @@ LABELS = {
 _MARKED = 40  # values up to which a curve's points are marked
 
 
-def document(swept: Swept, out: Path | None, workers: int | None, cluster: str | None) -> dict[str, Any]:
+def document(
+    swept: Swept, out: Path | None, workers: int | None, cluster: str | None
+) -> dict[str, Any]:
     """Return the JSON document of a sweep.
 
     Args:
@@ -74,16 +76,25 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         "solver_s": tally.promoted_s,
         "wall_s": swept.wall_s,
         "rows_per_core_s": sum(tally.counts.values()) / tally.cpu_s if tally.cpu_s else None,
-        "rows": [_row(request, number, row) for number, row in enumerate(swept.rows())] if printed else None,
+        "rows": [_row(request, number, row) for number, row in enumerate(swept.rows())]
+        if printed
+        else None,
     }
 
 
 def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
     texts = request.table.texts(number)
-    state = [row.pop(name) for name in ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s") if name in row]
+    state = [
+        row.pop(name) for name in ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s") if name in row
+    ]
     value = {"value": next(iter(texts.values()))} if len(texts) == 1 else {}
     rest = {name: entry for name, entry in row.items() if name not in texts and name != "row"}
-    return {**value, "values": texts, **rest, "state": state if state and state[0] is not None else None}
+    return {
+        **value,
+        "values": texts,
+        **rest,
+        "state": state if state and state[0] is not None else None,
+    }
 
 
 def text(swept: Swept, out: Path | None) -> str:
@@ -99,7 +110,11 @@ def text(swept: Swept, out: Path | None) -> str:
     if out is None:
         columns = {column.name: column for column in swept.request.columns}
         sections = swept.request.sections
-        heads = SHOWN | {f"{word}: {name}": f"{word}: {head}" for word in sections for name, head in OF_SECTION.items()}
+        heads = SHOWN | {
+            f"{word}: {name}": f"{word}: {head}"
+            for word in sections
+            for name, head in OF_SECTION.items()
+        }
         if swept.request.level == "enclosed":
             heads["position_error_m"] = "bound (m)"
         shown = [columns[name] for name in heads if name in columns]
@@ -108,15 +123,25 @@ def text(swept: Swept, out: Path | None) -> str:
         for number, row in enumerate(swept.rows()):
             texts = swept.request.table.texts(number)
             ok = row["status"] == Status.OK.value
-            results = [_cell(row[column.name], row.get(column.error)) if ok else "" for column in shown]
-            rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
+            results = [
+                _cell(row[column.name], row.get(column.error)) if ok else "" for column in shown
+            ]
+            rows.append(
+                (
+                    *(texts[key] for key in keys),
+                    *results,
+                    "" if ok else f"{row['status']}: {row['reason']}",
+                )
+            )
         named = (*keys, *(heads[column.name] for column in shown))
         lines += PageTable({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {counted(swept.request.parts, 'part')} in Parquet")
     if swept.audit is not None:
         audit = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
-        audit += f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
+        audit += (
+            f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
+        )
         lines.append(
             f"{counted(swept.audit.rows, 'row')} solved again in 28 digits: {audit}, CPU {swept.audit_s:.2f} s"
         )
@@ -178,16 +203,22 @@ def _label(key: str) -> str:
     return f"{name} in {unit}" if unit else name
 
 
-def _curve(_: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array) -> None:
+def _curve(
+    _: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array
+) -> None:
     ((_, x),) = axes
     order = np.argsort(x)
-    panel.plot(x[order], values[order], color=BLUE, marker="o" if len(x) <= _MARKED else None, markersize=3)
+    panel.plot(
+        x[order], values[order], color=BLUE, marker="o" if len(x) <= _MARKED else None, markersize=3
+    )
     panel.grid(color=RULE)
     panel.ticklabel_format(axis="y", useOffset=False)
     panel.set_ylabel(label)
 
 
-def _map(figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array) -> None:
+def _map(
+    figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array
+) -> None:
     (key, y), (_, x) = axes
     grid = values.reshape(len(y), len(x))[np.ix_(np.argsort(y), np.argsort(x))]
     low, high = np.nanmin(grid, initial=np.inf), np.nanmax(grid, initial=-np.inf)

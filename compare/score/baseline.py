@@ -46,7 +46,9 @@ def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> 
             return None
         changed = _since(new, score, baseline, explains)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError("baseline", f"{type(error).__name__} {error}", EXPECTED, "Make it anew.") from None
+        raise InputError(
+            "baseline", f"{type(error).__name__} {error}", EXPECTED, "Make it anew."
+        ) from None
     # both versions of a program have one name, and so have their files in a suite
     return replace(changed, name=old[FILE]) if isinstance(old, Mapping) and FILE in old else changed
 
@@ -60,7 +62,9 @@ def document_of(path: Path) -> dict[str, Any]:
     try:
         return json_document(path, "baseline") | {FILE: str(path)}
     except FileNotFoundError:
-        raise InputError("baseline", str(path), "a file", "`foucault score … --json > FILE` writes one.") from None
+        raise InputError(
+            "baseline", str(path), "a file", "`foucault score … --json > FILE` writes one."
+        ) from None
 
 
 def rows_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
@@ -69,7 +73,9 @@ def rows_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
     Raises:
         InputError: it is none of `foucault score`.
     """
-    rows: Sequence[Mapping[str, Any]] = document["rows"] if isinstance(document.get("rows"), list) else [document]
+    rows: Sequence[Mapping[str, Any]] = (
+        document["rows"] if isinstance(document.get("rows"), list) else [document]
+    )
     if not all(isinstance(row, dict) and row.keys() >= NEEDED for row in rows):
         raise InputError("baseline", "another document", EXPECTED, "Make it anew.")
     return rows
@@ -78,22 +84,36 @@ def rows_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 def _row(old: Mapping[str, Any], new: Score) -> Mapping[str, Any] | None:
     """Return the document by the candidate's problem, of several the one of its name; None if there is none of them."""
     rows, problem = rows_of(old), new.problem
-    fitting = [row for row in rows if row["scene"] == new.scene.id and row.get("problem", problem) == problem]
+    fitting = [
+        row
+        for row in rows
+        if row["scene"] == new.scene.id and row.get("problem", problem) == problem
+    ]
     if not fitting and "problem" in old:
-        got, expected = f"a score by {old['scene']} with {old['problem']}", f"one by {new.scene.id} with {problem}"
+        got, expected = (
+            f"a score by {old['scene']} with {old['problem']}",
+            f"one by {new.scene.id} with {problem}",
+        )
         raise InputError("baseline", got, expected, "Judge both by the same inputs.")
     return max(fitting, key=lambda row: bool(row["candidate"] == new.candidate.name), default=None)
 
 
 def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains: bool) -> Since:
     """Return what changed since the document of a baseline, and since its rows if its score is there."""
-    end = min(float(baseline["covered_s"][1]), float(new.errors.t[-1])) * (1 + WHOLE)  # of the span that both have
+    # of the span that both have
+    end = min(float(baseline["covered_s"][1]), float(new.errors.t[-1])) * (1 + WHOLE)
     before, after = float(baseline["max_error_m"]), _until(new, end)
     apart, level = abs(after - before), min(before, float(baseline["tolerance_m"]))
     if old is not None:
         before, apart, level = _until(old, end), _apart(new, old), 0.0
-    differences = [*_differences(new, baseline, after - before), *_of_transits(new, old, baseline["transits"], end)]
-    worse, gains = (tuple(text for is_worse, text in differences if is_worse is which) for which in (True, False))
+    differences = [
+        *_differences(new, baseline, after - before),
+        *_of_transits(new, old, baseline["transits"], end),
+    ]
+    worse, gains = (
+        tuple(text for is_worse, text in differences if is_worse is which)
+        for which in (True, False)
+    )
     changed = apart > max(new.errors.bound_m, ROUNDED * new.input_floor_m)
     texts, left_m = tuple[str, ...](), None
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
@@ -102,7 +122,9 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
         then = Version(baseline if old is None else _explained(old, allowed), before)
         texts, left_m = explain_change(then, now, math.inf if old is None else WOBBLE * apart)
     name, complete = str(baseline["candidate"]), left_m is not None and left_m <= allowed
-    return Since(name, before, after, apart if changed else 0.0, worse, gains, texts, left_m, complete)
+    return Since(
+        name, before, after, apart if changed else 0.0, worse, gains, texts, left_m, complete
+    )
 
 
 def _explained(score: Score, allowed_m: float) -> dict[str, Any]:
@@ -117,15 +139,23 @@ def _until(score: Score, end: float) -> float:
 
 def _apart(new: Score, old: Score) -> float:
     """Return the largest distance in m between the rows of two candidates at the times that both have."""
-    _, here, there = np.intersect1d(new.errors.t.round(9), old.errors.t.round(9), return_indices=True)
+    _, here, there = np.intersect1d(
+        new.errors.t.round(9), old.errors.t.round(9), return_indices=True
+    )
     if len(here) < 2 or not (new.candidate.positions and old.candidate.positions):
         return abs(new.errors.max_m - old.errors.max_m)
-    names = [name for name in "xyz" if name in new.candidate.columns and name in old.candidate.columns]
-    gaps = [new.candidate.columns[name][here] - old.candidate.columns[name][there] for name in names]
+    names = [
+        name for name in "xyz" if name in new.candidate.columns and name in old.candidate.columns
+    ]
+    gaps = [
+        new.candidate.columns[name][here] - old.candidate.columns[name][there] for name in names
+    ]
     return float(np.linalg.norm(gaps, axis=0).max())
 
 
-def _differences(new: Score, baseline: Mapping[str, Any], more: float) -> Iterator[tuple[bool, str]]:
+def _differences(
+    new: Score, baseline: Mapping[str, Any], more: float
+) -> Iterator[tuple[bool, str]]:
     """Yield what changed by more than the tolerance: whether it became worse, and a text."""
     if abs(more) > new.allowed_m:
         size = f"{abs(more):.3g} m {'more' if more > 0 else 'less'}"
@@ -147,9 +177,15 @@ def _of_transits(
     now = new.transits.until(end).document(0.0)
     if old is not None and old.transits is not None:
         before = old.transits.until(end).document(0.0)
-    count, was = (sum(t <= end for key in ("missed_at", "extra_at") for t in each[key]) for each in (now, before))
+    count, was = (
+        sum(t <= end for key in ("missed_at", "extra_at") for t in each[key])
+        for each in (now, before)
+    )
     if count != was:
         yield count > was, f"of transits {count} are missed or extra, and {was} were"
     off, was_off = (float(each["max_conditioned_error_m"]) for each in (now, before))
     if abs(off - was_off) > new.allowed_m and new.candidate.positions:
-        yield off > was_off, f"transits are off by {off:.3g} m, weighted by |ax|, and were by {was_off:.3g} m"
+        yield (
+            off > was_off,
+            f"transits are off by {off:.3g} m, weighted by |ax|, and were by {was_off:.3g} m",
+        )

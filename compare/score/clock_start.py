@@ -101,7 +101,11 @@ def starts_in_words(starts: Iterable[Ends]) -> str:
 
 def _outward(low: Fraction, high: Fraction) -> str:
     """Return the ends of an interval with two digits of its width, each rounded away from it."""
-    places = MOST_PLACES if high == low else min(MOST_PLACES, max(0, 1 - math.floor(math.log10(high - low))))
+    places = (
+        MOST_PLACES
+        if high == low
+        else min(MOST_PLACES, max(0, 1 - math.floor(math.log10(high - low))))
+    )
     unit = Fraction(1, 10**places)
     return f"{float(math.floor(low / unit) * unit):.{places}f} to {float(math.ceil(high / unit) * unit):.{places}f}"
 

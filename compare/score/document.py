@@ -13,14 +13,21 @@ def of_outcome(outcome: Outcome) -> dict[str, Any]:
     """Return an outcome as a JSON document, or as a row of one of several."""
     if outcome.score is not None:
         return document(outcome.score)
-    return {"scene": outcome.scene, "candidate": outcome.name, "verdict": REFUSED, "error": str(outcome.error)}
+    return {
+        "scene": outcome.scene,
+        "candidate": outcome.name,
+        "verdict": REFUSED,
+        "error": str(outcome.error),
+    }
 
 
 def document(score: Score) -> dict[str, Any]:
     """Return a score as a JSON document."""
     errors, transits = score.errors, score.transits
     turn = score.swing.largest_turn
-    readings = [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions]
+    readings = [
+        {"id": convention.id, "text": convention.text} for convention in score.candidate.conventions
+    ]
     fields: dict[str, Any] = {
         "scene": score.scene.id,
         "candidate": score.candidate.name,

@@ -32,12 +32,15 @@ from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.least_squares import gauss_newton, power_of_time
 
 BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
-FEWEST = 3  # rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit
+# rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit
+FEWEST = 3
 ROWS = 12  # rows of a part at least
 MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
-TURNS = 4  # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
+# Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
+TURNS = 4
 EPSILON = 2.0**-52  # of a double: twice the largest rounding
-ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
+# parts of the run; the largest error up to the end of each is a point of the fitted power of time
+ENVELOPES = 40
 
 
 class Worst(NamedTuple):
@@ -174,7 +177,9 @@ class TrajectoryErrors:
         return swing_errors(self.truth.states, error, rest)
 
 
-def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solution) -> TrajectoryErrors:
+def trajectory_errors(
+    candidate: Candidate, truth: Dense, golden: Golden | Solution
+) -> TrajectoryErrors:
     """Subtract the truth, evaluated at the candidate's times, from the candidate.
 
     Args:
@@ -196,14 +201,20 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solut
             # the difference of doubles that agree so far is exact
             components[name] = candidate.columns[name] - truth.states[:, i] + low
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
-    amplitude = max(float(distances.max()) for distances in amplitudes) or float(golden.scene.exact.length)
+    amplitude = max(float(distances.max()) for distances in amplitudes) or float(
+        golden.scene.exact.length
+    )
     velocities = (golden.vx, golden.vy, golden.vz), truth.states.T[3:]
     speed = max(float(np.linalg.norm(velocity, axis=0).max()) for velocity in velocities)
     if candidate.positions:
-        position = np.linalg.norm([components[name] for name in "xyz" if name in components], axis=0)
+        position = np.linalg.norm(
+            [components[name] for name in "xyz" if name in components], axis=0
+        )
     else:
         position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed) or math.inf)
-    return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m + left_out, amplitude, speed)
+    return TrajectoryErrors(
+        candidate.t, components, position, truth, truth.bound_m + left_out, amplitude, speed
+    )
 
 
 def swing_rate(scene: Scene, speed_m_s: float) -> float:
@@ -250,10 +261,15 @@ def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, 
 
     def left(numbers: Array) -> tuple[Array, Callable[[], Array]]:
         turn, delay = numbers.tolist()
-        sin, cos_minus_1 = np.sin(turn), -2 * np.sin(turn / 2) ** 2  # written so that nothing cancels
-        change = np.column_stack([cos_minus_1 * u[:, 0] - sin * u[:, 1], sin * u[:, 0] + cos_minus_1 * u[:, 1]])
+        # written so that nothing cancels
+        sin, cos_minus_1 = np.sin(turn), -2 * np.sin(turn / 2) ** 2
+        change = np.column_stack(
+            [cos_minus_1 * u[:, 0] - sin * u[:, 1], sin * u[:, 0] + cos_minus_1 * u[:, 1]]
+        )
         turned = u + change
-        slopes = np.stack([np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1)
+        slopes = np.stack(
+            [np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1
+        )
         return (error - change + delay * rate).ravel(), lambda: slopes
 
     (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)

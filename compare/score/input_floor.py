@@ -14,8 +14,10 @@ from reference.system.cache import arrays
 
 from ..truth import by_function, shipping, with_function
 
-TIMES = 577  # in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
-_FORMAT = "floor 3"  # changes with the content of the cached entries, so that older ones are computed again
+# in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
+TIMES = 577
+# changes with the content of the cached entries, so that older ones are computed again
+_FORMAT = "floor 3"
 STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
 
 
@@ -33,7 +35,11 @@ def input_floor(scene: Scene, until: float) -> float:
     decimal = scene.with_values(["inputs=decimal"])
     document = decimal.model_dump(mode="json")
     parts = [document[key] for key in ("pendulum", "site", "release")]
-    times = np.linspace(0.0, _span(float(scene.exact.t_end), until), TIMES) if until > 0 else np.zeros(1)
+    times = (
+        np.linspace(0.0, _span(float(scene.exact.t_end), until), TIMES)
+        if until > 0
+        else np.zeros(1)
+    )
     recipe = json.dumps([_FORMAT, parts, float(times[-1])], sort_keys=True).encode()
 
     def make() -> dict[str, Array]:
@@ -50,7 +56,9 @@ def floor_of_what_ships(scene: Scene, until: float) -> float | None:
     It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the latter's x and
     y; z follows from the sphere. None where they do not ship.
     """
-    decimal, binary64 = (scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64"))
+    decimal, binary64 = (
+        scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64")
+    )
     golden, rounded = shipping(decimal), with_function(binary64)
     if golden is None or rounded is None:
         return None

@@ -36,14 +36,24 @@ from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import named, read
 from ..diagnosis import diagnose
 from ..observed.swing_plane import rest_in_metres
-from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
+from ..truth import (
+    DIGITS,
+    FINE,
+    Report,
+    by_function,
+    golden_of,
+    roughly_solved,
+    truth_at,
+    with_function,
+)
 from .baseline import document_of, since
 from .clock_start import SUBTRACT, TOLERANCE, counted_from_release
 from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
-READINGS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
+# readings of the scene's numbers; auto: by the candidate's precision
+READINGS = ("auto", "decimal", "binary64")
 FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
 BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
 ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
@@ -98,20 +108,30 @@ def judge(
     if not (isinstance(covers, Real) and 0 <= covers <= 1):
         raise InputError("covers", covers, "a share of the scene's span, from 0 to 1")
     if inputs not in READINGS:
-        raise InputError("inputs", inputs, in_words(READINGS), did_you_mean(str(inputs), READINGS, ""))
+        raise InputError(
+            "inputs", inputs, in_words(READINGS), did_you_mean(str(inputs), READINGS, "")
+        )
     if not isinstance(baseline, Score | Candidate | Mapping | str | Path | None):
-        raise InputError("baseline", baseline, "a score, a trajectory, the path of a file, or a score's JSON document")
+        raise InputError(
+            "baseline",
+            baseline,
+            "a score, a trajectory, the path of a file, or a score's JSON document",
+        )
     tolerance, t_end = (None if number is None else float(number) for number in (tolerance, t_end))
     if isinstance(scene, Mapping) and "t" in scene:
         got = f"columns {', '.join(map(str, scene))}"
         raise InputError("scene", got, "a scene", "The rows stand before the scene.")
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
-    times = None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
+    times = (
+        None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
+    )
     if candidate is None and times is not None:
         _check_transits(times, scene)
         candidate = Candidate.of_transits("transits", times[times <= float(scene.exact.t_end)])
     elif not isinstance(candidate, Candidate):
-        candidate = read(candidate) if isinstance(candidate, str | Path) else candidate_from(candidate)
+        candidate = (
+            read(candidate) if isinstance(candidate, str | Path) else candidate_from(candidate)
+        )
     times = candidate.transits if times is None else times
     if candidate.positions:
         candidate, times = counted_from_release(candidate, times, scene, tolerance)
@@ -138,16 +158,24 @@ def judge(
             tolerance_m=allowed,
             swing=errors.swing(_rest(scene)),
             drifts=drifts(candidate, problem),
-            transits=None if times is None or unjudged else judged_transits(times, golden, errors, allowed, until),
+            transits=None
+            if times is None or unjudged
+            else judged_transits(times, golden, errors, allowed, until),
             notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
             covers=covers,
             as_model=as_model,
         )
-        if not in_doubt(result) and (isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed):
+        if not in_doubt(result) and (
+            isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed
+        ):
             break
     result = replace(result, notes=result.notes + _as_good_as_none(result))
-    if candidate.positions and (scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])):
-        result = replace(result, candidate=replace(candidate, conventions=(*candidate.conventions, scale)))
+    if candidate.positions and (
+        scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])
+    ):
+        result = replace(
+            result, candidate=replace(candidate, conventions=(*candidate.conventions, scale))
+        )
     if explain and result.off_path and candidate.positions and result.covered:
         result = replace(result, explanation=diagnose(candidate, problem, result.allowed_m))
     if baseline is None:
@@ -157,7 +185,12 @@ def judge(
         with named("baseline"):
             baseline = document_of(path) if path.suffix == ".json" else read(path)
     if isinstance(baseline, Candidate):
-        same: dict[str, Any] = {"tolerance": tolerance, "inputs": inputs, "t_end": t_end, "as_model": as_model}
+        same: dict[str, Any] = {
+            "tolerance": tolerance,
+            "inputs": inputs,
+            "t_end": t_end,
+            "as_model": as_model,
+        }
         baseline = judge(baseline, scene, **same, explain=explain and as_model)
     changed = since(result, baseline, explain)
     alone = () if changed else ("the baseline has no score of it: this verdict stands alone",)
@@ -207,17 +240,31 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     if kept.all():
         return candidate
     if not kept.any():
-        raise InputError("t_end", f"{end:g}", f"a time from the first row on, which is at t = {candidate.t[0]:g} s")
-    columns, low = ({name: column[kept] for name, column in of.items()} for of in (candidate.columns, candidate.low))
+        raise InputError(
+            "t_end",
+            f"{end:g}",
+            f"a time from the first row on, which is at t = {candidate.t[0]:g} s",
+        )
+    columns, low = (
+        {name: column[kept] for name, column in of.items()}
+        for of in (candidate.columns, candidate.low)
+    )
     note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored, the last at {candidate.t[-1]:g} s"
-    return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
+    return replace(
+        candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note)
+    )
 
 
 def _check_transits(times: Array, scene: Scene) -> None:
     """Refuse transits that are all beyond the scene's end."""
     end = float(scene.exact.t_end)
     if len(times) and times[0] > end:
-        raise InputError("transits: t", f"{times[0]:.10g} s first", f"times from 0 to {scene.run.t_end} s", SUBTRACT)
+        raise InputError(
+            "transits: t",
+            f"{times[0]:.10g} s first",
+            f"times from 0 to {scene.run.t_end} s",
+            SUBTRACT,
+        )
 
 
 def _end_of_run(candidate: Candidate, transits: Array, scene: Scene) -> float:
@@ -235,7 +282,8 @@ def _check_times(candidate: Candidate, scene: Scene) -> None:
         InputError: the last time is more than a grid step beyond the scene's end.
     """
     last, end = float(candidate.t[-1]), float(scene.exact.t_end)
-    first = float(candidate.t[0]) if len(candidate.t) > 1 else 0.0  # one row alone says nothing of a clock's start
+    # one row alone says nothing of a clock's start
+    first = float(candidate.t[0]) if len(candidate.t) > 1 else 0.0
     if last <= end + float(scene.exact.grid_step):
         return
     span = last - first
@@ -243,7 +291,11 @@ def _check_times(candidate: Candidate, scene: Scene) -> None:
     longer = f"--t-end {scene.run.t_end} leaves out later rows, --set run.t_end={last:.10g} makes the scene longer."
     if unit is not None and span > FAR * end:
         seconds, start = last * float(TIMES[unit]), first * float(TIMES[unit])
-        what = f"and they end at {seconds:.10g} s" if seconds <= end * (1 + SAME) else f"from {shown(start)} on"
+        what = (
+            f"and they end at {seconds:.10g} s"
+            if seconds <= end * (1 + SAME)
+            else f"from {shown(start)} on"
+        )
         longer = f"They look like {LONG_NAMES[unit]}: --units {unit} reads them so, {what}."
     elif first > 0 and span <= end:
         longer = f"{longer} Did the clock start before the release? {SUBTRACT}"
@@ -265,14 +317,28 @@ def _beyond_the_cord(candidate: Candidate, scene: Scene, truth: Array) -> Deviat
     ratio = complex(x[0], y[0]) / release if release and candidate.t[0] == 0 else 0j
     scale = abs(ratio)
     if not abs(ratio - scale) < SAME * scale:  # it does not begin at the release, in its direction
-        return Deviation("beyond_the_cord", f"{far}: pixels, another unit, or another pendulum? Metres are wanted")
-    unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
+        return Deviation(
+            "beyond_the_cord",
+            f"{far}: pixels, another unit, or another pendulum? Metres are wanted",
+        )
+    unit = next(
+        (
+            word
+            for word, size in LENGTHS.items()
+            if size != 1 and abs(scale * float(size) - 1) < SAME
+        ),
+        None,
+    )
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
         question = f"is it another pendulum, or are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
         return Deviation("scale", f"{far}: {times}; {question}")
     follows = np.linalg.norm(np.column_stack([x, y]) / scale - truth) < np.linalg.norm(truth)
-    what = f", so they are {LONG_NAMES[unit]};" if follows else f"; is it another pendulum, or {LONG_NAMES[unit]}?"
+    what = (
+        f", so they are {LONG_NAMES[unit]};"
+        if follows
+        else f"; is it another pendulum, or {LONG_NAMES[unit]}?"
+    )
     return Deviation("scale", f"{far}: {times}{what} --units {unit} reads them so")
 
 
@@ -305,13 +371,18 @@ def _as_good_as_none(score: Score) -> tuple[str, ...]:
     if not (score.agrees and score.candidate.positions and score.transits is None):
         return ()
     places = {
-        "where it is released": np.array([float(q) for q in Start.of(score.scene.exact, PLACEHOLDER_BITS).position])
+        "where it is released": np.array(
+            [float(q) for q in Start.of(score.scene.exact, PLACEHOLDER_BITS).position]
+        )
     }
     with suppress(UnreachableError):
         places["at its rest position"] = rest_in_metres(score.scene)
     given = [i for i, name in enumerate(POSITION) if name in score.candidate.columns]
     truth = score.errors.truth.states[:, given]
-    farthest = {word: float(np.linalg.norm(truth - place[given], axis=1).max()) for word, place in places.items()}
+    farthest = {
+        word: float(np.linalg.norm(truth - place[given], axis=1).max())
+        for word, place in places.items()
+    }
     word = min(farthest, key=lambda word: farthest[word])
     if farthest[word] > score.allowed_m:
         return ()
@@ -323,8 +394,13 @@ def _as_good_as_none(score: Score) -> tuple[str, ...]:
 def _flung_off(scene: Scene) -> tuple[str, ...]:
     """Return a warning where the centrifugal force at the suspension is larger than gravity."""
     k = constants_in_double(scene.exact)
-    outward, gravity = float(k.rate) ** 2 * float(k.axis_distance) * k.length, float(k.gravity) * k.length
+    outward, gravity = (
+        float(k.rate) ** 2 * float(k.axis_distance) * k.length,
+        float(k.gravity) * k.length,
+    )
     if outward <= gravity:
         return ()
     advice = "with site.gravity_is=effective g contains that force"
-    return (f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",)
+    return (
+        f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",
+    )

@@ -16,14 +16,17 @@ from ..candidates.candidate import Candidate
 from ..candidates.clock import shown
 from .clock_start import SUBTRACT, clock_starts, starts_in_words
 
-LISTED = 5  # of the numbers outside, those in the lines for people: the farthest of each column first
-ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing
+# of the numbers outside, those in the lines for people: the farthest of each column first
+LISTED = 5
+# of a column's largest number: what doubles cannot hold says nothing
+ROUNDING = Fraction(1, 1 << 48)
 SWING = 7.0  # times sqrt(l/g): a period, and some
 TRANSIT = "transit"
 APART, INSIDE = "disagrees", "cannot be told apart"
 
 
-Intervals = list[tuple[tuple[Fraction, Fraction], bool]]  # the ends of each, and whether it holds just one zero
+# the ends of each, and whether it holds just one zero
+Intervals = list[tuple[tuple[Fraction, Fraction], bool]]
 
 
 class Outside(NamedTuple):
@@ -73,14 +76,22 @@ class Measured:
         zero, section = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
         parts += [] if self.transits is None else [f"{counted(self.transits, zero)}{section}"]
         scene, what = self.ranges.scene.id, " and ".join(parts)
-        clock = f" by a clock that showed {starts_in_words(self.starts)} at the release" if self.starts else ""
+        clock = (
+            f" by a clock that showed {starts_in_words(self.starts)} at the release"
+            if self.starts
+            else ""
+        )
         if not self.outside:
             yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved{clock}"
         else:
             numbers = counted(len(self.outside), "number")
             yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
         for column, t, got, low, high, by in self.outside[:LISTED]:
-            at, unit = (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m") if column in STATE else ("", "s")
+            at, unit = (
+                (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m")
+                if column in STATE
+                else ("", "s")
+            )
             yield f"  {column}{at}: {got:.10g}, proved {low:.10g} to {high:.10g} {unit} ({by:.2g} outside)"
         for note in self.notes:
             yield f"Note: {note}."
@@ -127,15 +138,24 @@ def measured(
         UnreachableError: the box is too wide.
     """
     end, sections = ranges.scene.exact.t_end, ranges.scene.run.sections or ()
-    times = [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
+    times = (
+        [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
+    )
     zeros = [] if transits is None else sorted(_decimal(t) for t in transits)
     kept, seen = [t for t in times if t <= end], [t for t in zeros if 0 < t <= end]
     name = name if candidate is None else candidate.name
     if candidate is not None and (candidate.clock_s is not None or (not kept and _fit(times, end))):
-        raise InputError(f"{name}: t", f"{_clock_of(candidate)} in the first row", "times since the release", SUBTRACT)
+        raise InputError(
+            f"{name}: t",
+            f"{_clock_of(candidate)} in the first row",
+            "times since the release",
+            SUBTRACT,
+        )
     other_clock = candidate is None and _fit(zeros, end)
     if not kept and not seen and not other_clock:
-        raise InputError(name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end.")
+        raise InputError(
+            name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end."
+        )
     wanted = bool(seen or not kept)  # transits or passages
     if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or not wanted)):
         last = max([*kept, *seen]) if kept or seen else zeros[-1] - zeros[0]
@@ -150,7 +170,8 @@ def measured(
     starts: list[tuple[Fraction, Fraction]] = []
     if other_clock and (off or not seen):
         starts = _starts(zeros, _intervals(ranges, section))
-    measured_by_gate = bool(starts and section)  # a program prints transits, by a clock of its own from the release on
+    # a program prints transits, by a clock of its own from the release on
+    measured_by_gate = bool(starts and section)
     if measured_by_gate:
         off, seen, decided = [], zeros, zeros
     if not seen and not kept:
@@ -158,32 +179,57 @@ def measured(
         raise InputError(f"{name}: t", f"{float(zeros[0]):.10g} s first", span, SUBTRACT)
     if seen and not decided and not kept:
         free = _intervals(ranges, section)
-        (low, high) = next(ends for ends, single in free if not single and ends[0] <= seen[0] <= ends[1])
+        (low, high) = next(
+            ends for ends, single in free if not single and ends[0] <= seen[0] <= ends[1]
+        )
         advice = f"The proof leaves {float(low):g} to {float(high):g} s open. Take smaller widths, or another section."
-        raise InputError(f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice)
+        raise InputError(
+            f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice
+        )
     farthest = {number.column: number.by for number in sorted(off, key=lambda number: number.by)}
     notes = list(candidate.notes if candidate else ())
     if starts and not measured_by_gate:
-        notes.append(f"all transits are inside by a clock that showed {starts_in_words(starts)} at the release")
+        notes.append(
+            f"all transits are inside by a clock that showed {starts_in_words(starts)} at the release"
+        )
     late = 0 if measured_by_gate else sum(t > end for t in [*times, *zeros])
     if late:
         notes.append(f"after {float(end):g} s {counted(late, 'time')} left out")
     if open_ := len(seen) - len(decided):
-        notes.append(f"{counted(open_, 'time')} left out, at which the proof does not decide {word}")
+        notes.append(
+            f"{counted(open_, 'time')} left out, at which the proof does not decide {word}"
+        )
     if TRANSIT in farthest and sections:
         notes.append(f"for passages of {sections[0]} write --section '{sections[0]}'")
-    off.sort(key=lambda number: (number.by < farthest[number.column], number.column not in STATE, -number.by))
+    off.sort(
+        key=lambda number: (
+            number.by < farthest[number.column],
+            number.column not in STATE,
+            -number.by,
+        )
+    )
     count = len(decided) if transits is not None else None
-    return Measured(name, ranges, len(kept), count, tuple(off), tuple(notes), section, tuple(starts))
+    return Measured(
+        name, ranges, len(kept), count, tuple(off), tuple(notes), section, tuple(starts)
+    )
 
 
 def _proved(
-    ranges: Ranges, kept: Sequence[Fraction], last: Fraction, section: str | None, wanted: bool, report: Any
+    ranges: Ranges,
+    kept: Sequence[Fraction],
+    last: Fraction,
+    section: str | None,
+    wanted: bool,
+    report: Any,
 ) -> Ranges:
     """Return a proof at the times of rows, and if they are wanted of transits or passages, a swing beyond the last."""
     end, inputs = ranges.scene.exact.t_end, ranges.scene.exact
     # a swing beyond the last one, so that a transit is not cut off
-    swing = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else last
+    swing = (
+        Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5)
+        if inputs.gravity
+        else last
+    )
     grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if wanted or not last else [])})
     sought = {"run.transits": str(wanted and not section).lower(), "run.sections": section or ""}
     box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
@@ -207,12 +253,16 @@ def _starts(times: Sequence[Fraction], intervals: Intervals) -> list[tuple[Fract
     return [start for start, fit in zip(possible, fits, strict=True) if fit]
 
 
-def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float) -> Iterator[Outside]:
+def _rows(
+    candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float
+) -> Iterator[Outside]:
     """Yield the numbers of rows that lie outside."""
     place = {t: k for k, t in enumerate(ranges.times)}
     for name in (name for name in STATE if name in candidate.columns):
         intervals = ranges.grid.exact(name)
-        allowed = max(Fraction(tolerance), ROUNDING * max(max(-low, high) for low, high in intervals))
+        allowed = max(
+            Fraction(tolerance), ROUNDING * max(max(-low, high) for low, high in intervals)
+        )
         for k, t in enumerate(times):
             (low, high), got = intervals[place[t]], _exact(candidate, name, k)
             by = max(low - got, got - high)
@@ -225,7 +275,9 @@ def _intervals(ranges: Ranges, section: str | None) -> Intervals:
     passages = ranges.sections.get(section) if section else None
     if section and not passages:
         return []
-    table, possible = (passages.table, passages.possible) if passages else (ranges.transits, ranges.possible)
+    table, possible = (
+        (passages.table, passages.possible) if passages else (ranges.transits, ranges.possible)
+    )
     single = [(ends, True) for ends in table.exact("t")] if len(table) else []
     return [*single, *(((low, high), False) for low, high, _ in possible)]
 
@@ -255,7 +307,11 @@ def _exact(candidate: Candidate, name: str, k: int) -> Fraction:
     """Return a number of a row exactly: the shortest decimal of a double, and what the file has beyond it."""
     column = candidate.t if name == "t" else candidate.columns[name]
     low = candidate.low.get(name)
-    return _decimal(column[k]) if low is None or not low[k] else Fraction(float(column[k])) + Fraction(float(low[k]))
+    return (
+        _decimal(column[k])
+        if low is None or not low[k]
+        else Fraction(float(column[k])) + Fraction(float(low[k]))
+    )
 
 
 def _decimal(x: float) -> Fraction:

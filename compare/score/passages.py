@@ -122,23 +122,38 @@ def score_passages(
     speed = float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
     away = _distances(section, scene, swing_rate(scene, speed))
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
-    allowed = TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
+    allowed = (
+        TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
+    )
     if not len(judged):
         starts = [*_starts(times, truth, away, allowed)]
-        advice = f"By the passages the clock showed {starts_in_words(starts)} at the release. " if starts else ""
+        advice = (
+            f"By the passages the clock showed {starts_in_words(starts)} at the release. "
+            if starts
+            else ""
+        )
         span = f"times above 0, up to {scene.run.t_end} s"
-        raise InputError(f"{name}: t", "no time in the scene's span", span, f"{advice}{SUBTRACT if len(times) else ''}")
+        raise InputError(
+            f"{name}: t",
+            "no time in the scene's span",
+            span,
+            f"{advice}{SUBTRACT if len(times) else ''}",
+        )
 
     def distances(at: Array) -> Array:
         return away(truth_at(golden, at).states)[0]
 
-    errors = transit_errors(judged, truth["t"], slopes, float(judged[-1]), tolerance_m=allowed, away=distances)
+    errors = transit_errors(
+        judged, truth["t"], slopes, float(judged[-1]), tolerance_m=allowed, away=distances
+    )
     bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
     score = PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
     if score.verdict == "agrees":
         return score
     golden = golden_of(scene, DIGITS, announce, report, min(end, until + _swing_s(scene)))
-    return replace(score, starts=tuple(_starts(times, golden.sections[section], away, score.allowed_m)))
+    return replace(
+        score, starts=tuple(_starts(times, golden.sections[section], away, score.allowed_m))
+    )
 
 
 def _swing_s(scene: Scene) -> float:
@@ -147,7 +162,9 @@ def _swing_s(scene: Scene) -> float:
     return SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5 if inputs.gravity else 0.0
 
 
-def _starts(times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float) -> Iterator[Ends]:
+def _starts(
+    times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float
+) -> Iterator[Ends]:
     """Yield what the clock may have shown at the release, in s, if every passage agrees by it."""
     _, slopes = away(np.column_stack([truth[column] for column in STATE]))
     intervals = []
@@ -166,7 +183,10 @@ def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tu
     A velocity is `omega` times a distance. Where a passage of the other direction is near, it is infinitely far.
     """
     form = form_of(section, Start.of(scene.exact, DOUBLE_BITS))
-    k, (a, b) = constants_in_double(scene.exact), (np.array([*map(float, part)]) for part in (form.a, form.b))
+    k, (a, b) = (
+        constants_in_double(scene.exact),
+        (np.array([*map(float, part)]) for part in (form.a, form.b)),
+    )
 
     def away(states: Array) -> tuple[Array, Array]:
         position, velocity = states[:, :3], states[:, 3:]
@@ -175,9 +195,12 @@ def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tu
             size = np.linalg.norm(a)
             return (position @ a - float(form.d) * float(k.length)) / size, velocity @ a / size
         size = omega * np.linalg.norm(b)
-        if form.direction:  # only what is along the sphere counts, and where that points changes with the place
+        # only what is along the sphere counts, and where that points changes with the place
+        if form.direction:
             aside, down = np.linalg.norm(np.cross(b, position), axis=1), np.abs(position @ b)
-            size = (omega * aside + np.linalg.norm(velocity, axis=1) * down / float(k.length)) / float(k.length)
+            size = (
+                omega * aside + np.linalg.norm(velocity, axis=1) * down / float(k.length)
+            ) / float(k.length)
         far, rate = velocity @ b / size, force @ b / size
         return np.where(rate * form.direction < 0, np.inf, far), rate
 

@@ -25,7 +25,8 @@ from ..truth import by_function, roughly_solved, truth_at
 from .errors import TrajectoryErrors, entry, swing_rate
 
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
-MOST_EXTRA = 1000  # extra transits at which the truth is evaluated; if there are more, none is excused
+# extra transits at which the truth is evaluated; if there are more, none is excused
+MOST_EXTRA = 1000
 
 
 @dataclass(frozen=True, repr=False)
@@ -70,7 +71,9 @@ class TransitErrors:
         """Return those up to a time in s."""
         kept = self.at <= end
         missed, extra = ([t for t in times if t <= end] for times in (self.missed, self.extra))
-        return TransitErrors(self.errors_s[kept], self.conditioned_m[kept], missed, extra, self.at[kept])
+        return TransitErrors(
+            self.errors_s[kept], self.conditioned_m[kept], missed, extra, self.at[kept]
+        )
 
     def shifted(self, tolerance_m: float) -> list[tuple[float, float]]:
         """Return times and errors in s of the transits whose weighted error is above a tolerance."""
@@ -81,14 +84,22 @@ class TransitErrors:
         """Return whether nothing is missed, extra, or off by more than a tolerance."""
         return not (self.missed or self.extra or self.max_conditioned_m > tolerance_m)
 
-    def lines(self, tolerance_m: float, name: str = "transits", weighted: str = "weighted by |ax|") -> Iterator[str]:
+    def lines(
+        self, tolerance_m: float, name: str = "transits", weighted: str = "weighted by |ax|"
+    ) -> Iterator[str]:
         """Yield the lines for people."""
-        worst = f"largest error {self.max_error_s:.3g} s, {weighted}: {self.max_conditioned_m:.3g} m"
+        worst = (
+            f"largest error {self.max_error_s:.3g} s, {weighted}: {self.max_conditioned_m:.3g} m"
+        )
         shifted = self.shifted(tolerance_m)
         matched = f"{self.matched} matched{f' ({len(shifted)} shifted)' if shifted else ''}"
         yield entry(name, f"{matched}, {len(self.missed)} missed, {len(self.extra)} extra", worst)
         may = "a motion within the tolerance may or may not have them"
-        kinds = ("missed", self.missed, ""), ("extra", self.extra, ""), ("undecided", self.undecided, may)
+        kinds = (
+            ("missed", self.missed, ""),
+            ("extra", self.extra, ""),
+            ("undecided", self.undecided, may),
+        )
         for word, times, remark in kinds:
             if times:
                 yield entry(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s", remark)
@@ -145,12 +156,15 @@ def transit_errors(
     excused = _vanishing(missed, truth, weight, until, tolerance_m)
     spurious = np.zeros(len(extra), dtype=bool)
     if away is not None and 0 < len(extra) <= MOST_EXTRA:
-        doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])  # no motion has a transit twice
+        # no motion has a transit twice
+        doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])
         once, back = np.unique(times[extra], return_inverse=True)
         spurious = (np.abs(away(once)[back]) <= tolerance_m) & ~doubled
     lacking, too_many = truth[missed[~excused]].tolist(), times[extra[~spurious]].tolist()
     undecided = sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()])
-    return TransitErrors(errors, errors * weight[matched], lacking, too_many, truth[matched], undecided)
+    return TransitErrors(
+        errors, errors * weight[matched], lacking, too_many, truth[matched], undecided
+    )
 
 
 def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:
@@ -177,7 +191,8 @@ def _vanishing(
     excused = (until - truth[missed]) * weight[missed] <= tolerance_m
     pairs = np.flatnonzero(np.diff(missed) == 1)
     first = missed[pairs]
-    depth = weight[first] * (truth[first + 1] - truth[first]) / 4  # of the parabola between the two zeros
+    # of the parabola between the two zeros
+    depth = weight[first] * (truth[first + 1] - truth[first]) / 4
     shallow = pairs[depth <= tolerance_m]
     excused[shallow] = excused[shallow + 1] = True
     return excused
@@ -193,7 +208,11 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
         transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
-    return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
+    return (
+        f"{transits}: the candidate's transits were not judged"
+        if transits == "xdot is identically zero"
+        else None
+    )
 
 
 def _truth(golden: Golden | Solution, times: Array) -> Dense:

@@ -25,7 +25,8 @@ from .input_floor import input_floor
 from .transit_matching import TransitErrors
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
-WHOLE = 1e-6  # a last row within this part of t_end counts as complete: a program that adds up its steps rounds
+# a last row within this part of t_end counts as complete: a program that adds up its steps rounds
+WHOLE = 1e-6
 
 
 @dataclass(frozen=True, repr=False)
@@ -91,12 +92,20 @@ class Score:
     @property
     def worst_of_each(self) -> dict[str, Worst]:
         """The largest error of each column."""
-        return {name: self._at(int(np.abs(off).argmax()), name) for name, off in self.errors.components.items()}
+        return {
+            name: self._at(int(np.abs(off).argmax()), name)
+            for name, off in self.errors.components.items()
+        }
 
     def _at(self, row: int, name: str) -> Worst:
-        expected, got = self.errors.truth.states[row, COLUMNS.index(name)], self.candidate.columns[name][row]
+        expected, got = (
+            self.errors.truth.states[row, COLUMNS.index(name)],
+            self.candidate.columns[name][row],
+        )
         difference = self.errors.components[name][row]
-        return Worst(float(self.errors.t[row]), name, float(expected), float(got), float(difference))
+        return Worst(
+            float(self.errors.t[row]), name, float(expected), float(got), float(difference)
+        )
 
     @cached_property
     def covered(self) -> float:
@@ -138,13 +147,17 @@ class Score:
     def grade(self) -> str:
         """'agrees', 'agrees as the model …' where it is exact within a named simplification, or 'disagrees'."""
         model = None if self.explanation is None else self.explanation.model
-        return self.verdict if self.agrees or model is None else f"agrees as the model: {model.text}"
+        return (
+            self.verdict if self.agrees or model is None else f"agrees as the model: {model.text}"
+        )
 
     @property
     def passes(self) -> bool:
         """True if it agrees, or agrees as a named model and `as_model` says that this is enough."""
         modelled = self.explanation is not None and self.explanation.model is not None
-        return self.agrees or (self.as_model and modelled and not self.falls_short and self.transits is None)
+        return self.agrees or (
+            self.as_model and modelled and not self.falls_short and self.transits is None
+        )
 
     @property
     def accepted(self) -> bool:
@@ -169,33 +182,54 @@ def lines(score: Score) -> Iterator[str]:
     if score.since is not None:
         yield f"{score.since.text}."
     if not score.covered:
-        yield entry("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
+        yield entry(
+            "covers nothing", "no row after t = 0", "the release alone says nothing of the motion"
+        )
     elif score.falls_short:
-        yield entry("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
+        yield entry(
+            "covers too little", percent(score.covered), f"{percent(score.covers)} demanded"
+        )
     yield entry("largest error", f"{errors.max_m:.3g} m", _largest(score))
     growth = "" if errors.growth_exponent is None else f"grows like t^{errors.growth_exponent:.2f}"
     yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", growth)
-    size, least = ("the reference's bound", "at least ") if score.at_bound else ("largest error", "")
+    size, least = (
+        ("the reference's bound", "at least ") if score.at_bound else ("largest error", "")
+    )
     over = f"{size} over the amplitude {errors.amplitude_m:.4g} m"
     yield entry("digits", f"{least}{_one_decimal(errors.digits)}", over)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
-    yield entry("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
+    yield entry(
+        "scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed
+    )
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
     yield entry("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
     of_each = score.worst_of_each.items()
-    each = (f"{name} {abs(row.difference):.2g} m{'/s' if name.startswith('v') else ''}" for name, row in of_each)
+    each = (
+        f"{name} {abs(row.difference):.2g} m{'/s' if name.startswith('v') else ''}"
+        for name, row in of_each
+    )
     yield entry("worst of each", ", ".join(each))
     limit = score.allowed_m * errors.speed_m_s / errors.amplitude_m
-    fast = [name for name, row in score.worst_of_each.items() if name in VELOCITY and abs(row.difference) > limit]
+    fast = [
+        name
+        for name, row in score.worst_of_each.items()
+        if name in VELOCITY and abs(row.difference) > limit
+    ]
     if fast and score.agrees:
-        yield entry("velocities", "not judged", f"{', '.join(fast)} off by more than {limit:.2g} m/s")
+        yield entry(
+            "velocities", "not judged", f"{', '.join(fast)} off by more than {limit:.2g} m/s"
+        )
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
-        yield entry("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
+        yield entry(
+            "swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted"
+        )
     if score.drifts:
         words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
-        yield entry("drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items()))
+        yield entry(
+            "drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items())
+        )
     if score.transits is not None:
         yield from score.transits.lines(score.allowed_m)
     if score.timing is not None:
@@ -207,7 +241,9 @@ def lines(score: Score) -> Iterator[str]:
     if score.experiments is not None:
         yield from score.experiments.lines()
     explanation = score.explanation
-    if explanation is not None and (score.experiments is None or explanation.causes or explanation.conventions):
+    if explanation is not None and (
+        score.experiments is None or explanation.causes or explanation.conventions
+    ):
         yield from explanation.lines()
     for convention in score.candidate.conventions:
         yield f"Reading: {convention.text}."
@@ -227,7 +263,9 @@ def _verdict(score: Score) -> str:
 def percent(share: float) -> str:
     """Return a share to three digits, rounded down: 100 % is all of it."""
     percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
-    return f"{float(Context(prec=3, rounding=ROUND_DOWN).create_decimal_from_float(percents)):.6g} %"
+    return (
+        f"{float(Context(prec=3, rounding=ROUND_DOWN).create_decimal_from_float(percents)):.6g} %"
+    )
 
 
 def _one_decimal(digits: float | None) -> str:
@@ -245,7 +283,8 @@ def _largest(score: Score) -> str:
     if score.at_bound:
         return "at or below the reference's bound"
     allowed = f"tolerance {score.tolerance_m:.3g} m"
-    if isinstance(score.golden, Solution):  # the floor takes longer than the verdict: the document has it
+    # the floor takes longer than the verdict: the document has it
+    if isinstance(score.golden, Solution):
         return allowed
     if not score.input_floor_m:
         return f"{allowed}; the inputs are doubles as they stand"
@@ -279,7 +318,13 @@ class Outcome:
     @property
     def exit_status(self) -> int:
         """0: agrees, or no worse than its baseline; 1: disagrees, or worse; 2 or 3: could not be judged."""
-        return int(not self.score.accepted) if self.score is not None else self.error.exit_status if self.error else 0
+        return (
+            int(not self.score.accepted)
+            if self.score is not None
+            else self.error.exit_status
+            if self.error
+            else 0
+        )
 
     @property
     def since(self) -> Since | None:

@@ -21,7 +21,8 @@ from ..approximations import Motion, quantities
 from ..observed.swing_plane import Gauge, gauge_of
 from .row import failure
 
-TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
+# s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
+TIMES = (20.0, 3600.0, 12000.0, 86400.0)
 _PER_SWING = 16  # samples in a period
 _SWINGS = 100  # where nothing swings, the span is sampled as if it held this many periods
 _MOST = 500_000  # samples at most; a motion of very many swings gets fewer than _PER_SWING in each
@@ -66,7 +67,9 @@ class ReferenceMotion:
         self.scene, self.gauge = scene, gauge_of(scene)
         period = t_end / _SWINGS if self.gauge is None else min(self.gauge.period, t_end)
         fine = np.arange(0.0, t_end, max(period / _PER_SWING, t_end / _MOST))
-        self.times: Array = np.unique(np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end])))
+        self.times: Array = np.unique(
+            np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end]))
+        )
         self.rows = trajectory(scene, self.times)
         self.plane = self._plane(self.gauge, self.rows)
 
@@ -83,7 +86,10 @@ class ReferenceMotion:
         position = np.linalg.norm(rows.T[:3] - self.rows.T[:3], axis=0)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
-        return {"error_m": np.maximum.accumulate(position), "plane_error_arcsec": np.fmax.accumulate(plane)}
+        return {
+            "error_m": np.maximum.accumulate(position),
+            "plane_error_arcsec": np.fmax.accumulate(plane),
+        }
 
     def largest(self, motion: Motion, marks: Sequence[float]) -> list[TimeRow]:
         """Return the largest errors of an approximation up to each of some times in s."""
@@ -93,13 +99,18 @@ class ReferenceMotion:
             return [TimeRow(motion.id, t, None, None, *failure(error)) for t in marks]
         places = np.searchsorted(self.times, np.array(marks) * (1 + 1e-12), side="right") - 1
         rows = zip(marks, *(error[places].tolist() for error in errors.values()), strict=True)
-        return [TimeRow(motion.id, t, position, None if np.isnan(plane) else plane) for t, position, plane in rows]
+        return [
+            TimeRow(motion.id, t, position, None if np.isnan(plane) else plane)
+            for t, position, plane in rows
+        ]
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
 
 
-def error_table(scene: Scene, chosen: Iterable[Motion], t_end: float, times: Sequence[float] = TIMES) -> list[TimeRow]:
+def error_table(
+    scene: Scene, chosen: Iterable[Motion], t_end: float, times: Sequence[float] = TIMES
+) -> list[TimeRow]:
     """Return the errors of approximations of the motion up to each of `times` before t_end, and up to t_end.
 
     Args:
@@ -122,10 +133,16 @@ def quantity_table(scene: Scene) -> list[QuantityRow]:
             if approximation.truth not in truths:
                 truths[approximation.truth] = approximation.truth(scene)
         except FoucaultError as error:
-            rows.append(QuantityRow(approximation.id, None, None, approximation.unit, None, *failure(error)))
+            rows.append(
+                QuantityRow(approximation.id, None, None, approximation.unit, None, *failure(error))
+            )
         else:
             truth = value.context.mpf(truths[approximation.truth])
             relative = float(abs(value / truth - 1)) if truth else None
-            printed, printed_truth = (str(value.context.nstr(number, 15)) for number in (value, truth))
-            rows.append(QuantityRow(approximation.id, printed, printed_truth, approximation.unit, relative))
+            printed, printed_truth = (
+                str(value.context.nstr(number, 15)) for number in (value, truth)
+            )
+            rows.append(
+                QuantityRow(approximation.id, printed, printed_truth, approximation.unit, relative)
+            )
     return rows

@@ -16,7 +16,11 @@ from ..approximations.case import PaperCase
 from .approximation_errors import ReferenceMotion, TimeRow
 from .row import failure
 
-LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
+LIMITS = (
+    ("1 mm", "error_m", 1e-3),
+    ("1 µm", "error_m", 1e-6),
+    ("1 arcsec", "plane_error_arcsec", 1.0),
+)
 SWEEP_S = 3600.0
 LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
 UNITS: dict[str, str] = {"time": "s", "amplitude": "m", "latitude": "degrees", "length": "m"}
@@ -68,7 +72,11 @@ def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[S
 
 
 def limits(
-    scene: Scene, chosen: Sequence[Motion], over: str, t_end: float, swept: dict[str, list[SweepRow]] | None = None
+    scene: Scene,
+    chosen: Sequence[Motion],
+    over: str,
+    t_end: float,
+    swept: dict[str, list[SweepRow]] | None = None,
 ) -> list[LimitRow]:
     """Find where each approximation is good to 1 mm, 1 µm and 1 arcsecond of swing plane.
 
@@ -102,11 +110,22 @@ def _time_limits(scene: Scene, chosen: Iterable[Motion], t_end: float) -> list[L
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
-            rows += [LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS]
+            rows += [
+                LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS
+            ]
             continue
         for name, quantity, limit in LIMITS:
-            last = int(np.logical_and.accumulate(errors[quantity] <= limit).sum()) - 1  # before the first above it
-            rows.append(LimitRow(motion.id, "time", "s", name, ((0.0, float(truth.times[last])),) if last > 0 else ()))
+            # before the first above it
+            last = int(np.logical_and.accumulate(errors[quantity] <= limit).sum()) - 1
+            rows.append(
+                LimitRow(
+                    motion.id,
+                    "time",
+                    "s",
+                    name,
+                    ((0.0, float(truth.times[last])),) if last > 0 else (),
+                )
+            )
     return rows
 
 
@@ -165,6 +184,13 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
             got = f"x = {scene.release.x}, y = {scene.release.y}"
             raise InputError("release", got, "a release away from the rest position")
         ratio = target / amplitude
-    release = {"x": x * ratio, "y": centre_y + (y - centre_y) * ratio, "vx": vx * ratio, "vy": vy * ratio}
-    document["release"] = {name: str(case.ctx.nstr(number, _DIGITS)) for name, number in release.items()}
+    release = {
+        "x": x * ratio,
+        "y": centre_y + (y - centre_y) * ratio,
+        "vx": vx * ratio,
+        "vy": vy * ratio,
+    }
+    document["release"] = {
+        name: str(case.ctx.nstr(number, _DIGITS)) for name, number in release.items()
+    }
     return parse_scene(document)

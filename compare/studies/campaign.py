@@ -32,12 +32,17 @@ from reference.system.workers import Emit, Worker
 from ..methods import METHODS, library
 from .row import grouped
 
-JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
-STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
-LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}  # that are always there, besides those that methods require
+# changes when equal runs are measured or judged otherwise, so that old results are not used again
+JUDGED = 3
+# wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
+STARTING_S = 180.0
+# that are always there, besides those that methods require
+LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}
 DISTRIBUTIONS = {"sksundae": "scikit-sundae"}  # of modules that are called otherwise
 ONE_THREAD = {
-    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"),
+    **dict.fromkeys(
+        ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+    ),
     "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
 }
 
@@ -104,7 +109,10 @@ def campaign(
                 if report is not None:
                     report(len(results), len(items), str(item[0]))
                 results[item] = next(answers)
-                _store(journal_path, {"recipe": marks[item], "item": item, "result": asdict(results[item])})
+                _store(
+                    journal_path,
+                    {"recipe": marks[item], "item": item, "result": asdict(results[item])},
+                )
     return [results[item] for item in items]
 
 
@@ -119,7 +127,9 @@ def _mark(recipe: Any) -> str:
     return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Any]]:
+def _stored(
+    path: Path | None, kind: type[Any]
+) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Any]]:
     """Yield marks with items, and results, in order; a line that is no result of this kind, or damaged, is skipped."""
     if path is None or not path.exists():
         return
@@ -139,16 +149,23 @@ def _store(path: Path | None, record: dict[str, Any]) -> None:
         with path.open("ab+") as stream:
             end = stream.seek(0, os.SEEK_END)
             stream.seek(max(0, end - 1))
-            separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"  # the line before was cut short
+            # the line before was cut short
+            separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"
             line = json.dumps(sealed_line(finite(record)), allow_nan=False)
             stream.write(separator + line.encode() + b"\n")
 
 
-def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> Generator[Result, None, None]:
+def _isolated(
+    measurement: Measurement[Item, Result], items: Sequence[Item]
+) -> Generator[Result, None, None]:
     """Yield the result of each item; after a hang or a crash a new process goes on with the next one."""
     remaining = list(items)
     while remaining:
-        env = {name: value for name, value in ONE_THREAD.items() if name != "XLA_FLAGS" or not os.environ.get(name)}
+        env = {
+            name: value
+            for name, value in ONE_THREAD.items()
+            if name != "XLA_FLAGS" or not os.environ.get(name)
+        }
         worker = Worker(measured, measurement, remaining, env=env)
         starting_s, patience_s = STARTING_S, measurement.patience_s
         try:
@@ -160,9 +177,13 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
                 yield result
                 remaining.pop(0)
         except TimeoutError:
-            yield measurement.failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {patience_s:.3g} s")
+            yield measurement.failed(
+                remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {patience_s:.3g} s"
+            )
         except IntegrationError as error:
-            yield measurement.failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
+            yield measurement.failed(
+                remaining.pop(0), Status.CRASHED, f"its process ended: {error}"
+            )
         finally:
             worker.kill()
             worker.stop()
@@ -178,7 +199,9 @@ def machine() -> dict[str, str]:
             description[name] = version(name)
         except PackageNotFoundError:
             description[name] = "not installed"
-    for native in {method.native.name: method.native for method in METHODS.values() if method.native}.values():
+    for native in {
+        method.native.name: method.native for method in METHODS.values() if method.native
+    }.values():
         description[native.name] = native.version or "not installed"
     return description
 
@@ -199,4 +222,7 @@ def _processor() -> str:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
         return platform.processor() or "unknown"
-    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "unknown")
+    return next(
+        (line.partition(":")[2].strip() for line in lines if line.startswith("model name")),
+        "unknown",
+    )

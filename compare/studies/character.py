@@ -22,7 +22,8 @@ from reference.status import Status
 
 from .row import Row
 
-EXPLICIT_REACH = 3.3  # rate times step up to which an explicit method of order 5 to 8 is stable, about
+# rate times step up to which an explicit method of order 5 to 8 is stable, about
+EXPLICIT_REACH = 3.3
 SAMPLES = 64  # states of the trajectory at which rates are measured
 IN_DOUBLE = 1e6  # what is magnified no more than this is followed in double
 _NUDGE = 1e-6  # relative displacement of the central differences
@@ -99,7 +100,10 @@ def _tangent_jacobian(state: Array, k: Constants) -> Array:
     n, v = state[:3], state[3:]
     size = np.array([1.0] * 3 + [max(1.0, float(np.abs(v).max()))] * 3)
     nudges = np.diag(_NUDGE * size)  # a column for each displacement
-    ahead, behind = (np.array(model.derivatives(tuple(state[:, None] + moved), k, math)) for moved in (nudges, -nudges))
+    ahead, behind = (
+        np.array(model.derivatives(tuple(state[:, None] + moved), k, math))
+        for moved in (nudges, -nudges)
+    )
     jacobian = (ahead - behind) / (2 * _NUDGE * size)
     normals = np.array([np.concatenate([n, np.zeros(3)]), np.concatenate([v, n])])
     _, _, basis = np.linalg.svd(normals * size)  # positions and rates in comparable units
@@ -114,7 +118,12 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     from neighbouring releases are compared in as many bits as that takes, and a relative change counts.
     """
     response, factors = Sensitivity(scene, times), [1.0]
-    for name in scene.exact.by_name.keys() & {"release.x", "release.y", "release.angle", "release.azimuth"}:
+    for name in scene.exact.by_name.keys() & {
+        "release.x",
+        "release.y",
+        "release.angle",
+        "release.azimuth",
+    }:
         displacement = response.derivative(name)[:, :3]
         sizes = np.linalg.norm(displacement, axis=1)
         at_release = 1.0 if name in ("release.x", "release.y") else float(sizes[0])
@@ -123,13 +132,20 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     if max(factors) <= IN_DOUBLE:
         return max(factors)
     try:
-        return max(*factors, 10 ** digits_lost(scene.exact, tuple(scene.exact.grid), constants=False))
+        return max(
+            *factors, 10 ** digits_lost(scene.exact, tuple(scene.exact.grid), constants=False)
+        )
     except UnreachableError:
         return math.inf
 
 
 def reason_of(
-    row: Row, status: Status, traits: Character, digits: float | None, requested: float, limit_s: float
+    row: Row,
+    status: Status,
+    traits: Character,
+    digits: float | None,
+    requested: float,
+    limit_s: float,
 ) -> str:
     """Return the causes that the numbers point to, the strongest first; empty if the run is right."""
     if status == Status.OK:
@@ -137,13 +153,26 @@ def reason_of(
     if status in (Status.NOT_INSTALLED, Status.REFUSED):
         return row.reason
     causes = list(_causes(row, status, traits))
-    reported = f" It reported: {row.reason.rstrip('.')}." if row.reason and status != Status.OUT_OF_TIME else ""
+    reported = (
+        f" It reported: {row.reason.rstrip('.')}."
+        if row.reason and status != Status.OUT_OF_TIME
+        else ""
+    )
     if status == Status.OUT_OF_TIME:
-        cost = f"the whole span would take about {row.cpu_s:.2g} s; the limit is {limit_s:g} s" if row.cpu_s else ""
+        cost = (
+            f"the whole span would take about {row.cpu_s:.2g} s; the limit is {limit_s:g} s"
+            if row.cpu_s
+            else ""
+        )
         return _sentence([cost or row.reason, *causes])
     if status == Status.ILL_CONDITIONED and digits is not None:
         magnified = f"the flow magnifies an error at the release {traits.magnified:.1g} times"
-        return _sentence([magnified, f"the result is off by {10 ** (requested - digits):.1g} times what was asked for"])
+        return _sentence(
+            [
+                magnified,
+                f"the result is off by {10 ** (requested - digits):.1g} times what was asked for",
+            ]
+        )
     if status == Status.SILENTLY_WRONG and digits is not None:
         head = f"success was reported with {digits:.1f} digits where {requested:.1f} were asked for"
         return _sentence([head, *(causes or [_accumulated(row)])])

@@ -99,7 +99,11 @@ def long_runs(
     scene = scene or load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
     days = float(scene.exact.t_end) / DAY_S
     golden = golden_of(
-        scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL, grid=True
+        scene,
+        TRUTH_DIGITS,
+        report=solving and (lambda t: solving(t / DAY_S, days)),
+        level=TRUTH_LEVEL,
+        grid=True,
     )
     recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
     runs = _LongRuns(recipe, PATIENCE_S, {}, scene, golden.path)
@@ -119,7 +123,9 @@ class _LongRuns(OnScene[Item, LongRun]):
         if missing is not None:
             return run(Status.NOT_INSTALLED, missing)
         try:
-            outcome, cpu_s = timed(method.prepare(Problem.of(self.scene, formulation, truth.times), setting))
+            outcome, cpu_s = timed(
+                method.prepare(Problem.of(self.scene, formulation, truth.times), setting)
+            )
         except FAILURES as error:
             return run(*failure(error))
         errors = truth.position_errors(outcome)

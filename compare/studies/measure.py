@@ -34,7 +34,8 @@ PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cos
 LEAST_ROWS = 4  # grid rows in any span
 REPEAT_S = 1.0  # a run is repeated while the CPU time spent on its setting stays below this,
 REPEATS = 5  # and at most this often
-TRANSIT_S = 3.0  # transit times need a second, untimed run, which is made only if the first took at most this long
+# transit times need a second, untimed run, which is made only if the first took at most this long
+TRANSIT_S = 3.0
 MISSED = 0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
 
 
@@ -62,7 +63,9 @@ class Bench:
         The formulation may be None: the first of the method's that can describe the motion.
         """
         inputs, load = self.scene.inputs, load_per_core()
-        base = Row(method.id, formulation or "", setting, method.setting, inputs, Status.OK, load=load)
+        base = Row(
+            method.id, formulation or "", setting, method.setting, inputs, Status.OK, load=load
+        )
         missing = available(method)
         if missing is not None:
             return replace(base, status=Status.NOT_INSTALLED, reason=missing)
@@ -77,13 +80,17 @@ class Bench:
         times = self.truth.times
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
-        base, outcome, costs_s = self._run(base, method, probe_times, repeats=2, budget_s=2 * self.limit_s / PROBE)
+        base, outcome, costs_s = self._run(
+            base, method, probe_times, repeats=2, budget_s=2 * self.limit_s / PROBE
+        )
         probe_s = min(costs_s)  # the first run warms up
         expected_s, rows = probe_s * float(times[-1] / probe_times[-1]), min(len(times), longest)
         if outcome.status != Status.OK or rows <= len(probe_times) or probe_s > self.limit_s:
             return self._finished(base, method, outcome, [probe_s], probe_times, expected_s)
         if expected_s > self.limit_s:
-            part = times[: max(2 * len(probe_times), int(self.limit_s / 4 / expected_s * len(times)))]
+            part = times[
+                : max(2 * len(probe_times), int(self.limit_s / 4 / expected_s * len(times)))
+            ]
             if len(part) < rows:
                 base, outcome, costs_s = self._run(base, method, part, repeats=1)
                 left = float((times[-1] - part[-1]) / (part[-1] - probe_times[-1]))
@@ -92,7 +99,9 @@ class Bench:
                     return self._finished(base, method, outcome, costs_s, part, expected_s)
         base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
         share = float(times[-1] / times[rows - 1])
-        return self._finished(base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share)
+        return self._finished(
+            base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share
+        )
 
     def _run(
         self, base: Row, method: Method, times: Array, repeats: int, budget_s: float = REPEAT_S
@@ -106,7 +115,11 @@ class Bench:
         base = replace(base, compile_s=(base.compile_s or 0.0) + _spent_s() - started)
         outcome, cpu_s = timed(work)
         costs_s = [cpu_s]
-        while outcome.status == Status.OK and len(costs_s) < repeats and sum(costs_s) + cpu_s < budget_s:
+        while (
+            outcome.status == Status.OK
+            and len(costs_s) < repeats
+            and sum(costs_s) + cpu_s < budget_s
+        ):
             costs_s.append(timed(work)[1])
         return base, outcome, costs_s
 
@@ -123,7 +136,13 @@ class Bench:
         )
 
     def _finished(
-        self, base: Row, method: Method, outcome: RunOutcome, costs_s: Sequence[float], times: Array, whole_s: float
+        self,
+        base: Row,
+        method: Method,
+        outcome: RunOutcome,
+        costs_s: Sequence[float],
+        times: Array,
+        whole_s: float,
     ) -> Row:
         """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span.
 
@@ -134,7 +153,11 @@ class Bench:
         whole = len(times) == len(self.truth.times)
         errors = self.truth.position_errors(outcome)
         cpu_s = statistics.median(costs_s)
-        reason = "" if whole else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
+        reason = (
+            ""
+            if whole
+            else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
+        )
         row = replace(
             self._row_of(base, outcome, cpu_s if whole else whole_s),
             status=Status.OK if whole else Status.EXTRAPOLATED,
@@ -142,9 +165,15 @@ class Bench:
             error_m=float(errors.max()) if whole else None,
             end_error_m=float(errors[-1]),
             h_drift=h_drift(self.scene, outcome),
-            cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s if cpu_s and len(costs_s) > 1 else None,
+            cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s
+            if cpu_s and len(costs_s) > 1
+            else None,
         )
-        return self._with_transits(row, method) if self.transits and whole and cpu_s <= TRANSIT_S else row
+        return (
+            self._with_transits(row, method)
+            if self.transits and whole and cpu_s <= TRANSIT_S
+            else row
+        )
 
     def _with_transits(self, row: Row, method: Method) -> Row:
         """Return the row with the largest error of a transit's time, or as failed if a transit is missed."""
@@ -163,7 +192,9 @@ class Bench:
             text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
             return replace(row, status=Status.MISSED_TRANSITS, reason=text)
         largest = float(errors_s.max())
-        return replace(row, transit_error_s=largest if largest > floor_s else None, transit_floor_s=floor_s)
+        return replace(
+            row, transit_error_s=largest if largest > floor_s else None, transit_floor_s=floor_s
+        )
 
 
 @dataclass(frozen=True)

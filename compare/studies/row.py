@@ -136,7 +136,10 @@ class GridTruth:
     def position_errors(self, outcome: RunOutcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         columns = [_column(outcome, name) for name in "xyz"]
-        off = [difference(column, true[: len(column)]) for column, true in zip(columns, self.exact, strict=True)]
+        off = [
+            difference(column, true[: len(column)])
+            for column, true in zip(columns, self.exact, strict=True)
+        ]
         return np.asarray(np.linalg.norm(off, axis=0))
 
     def transit_errors(self, scene: Scene, outcome: RunOutcome) -> tuple[Array, float]:
@@ -149,17 +152,26 @@ class GridTruth:
             scene: its inputs read as the method read them.
             outcome: of a run with output at t = 0 and at `transits`.
         """
-        states, vx = outcome.states[1:], np.array([float(part) for part in _column(outcome, "vx")[1:]])
+        states, vx = (
+            outcome.states[1:],
+            np.array([float(part) for part in _column(outcome, "vx")[1:]]),
+        )
         k = constants_in_double(scene.exact)
         n, v = (states[:, parts] / k.length for parts in (slice(0, 3), slice(3, 6)))
         a = np.array(np.broadcast_arrays(*acceleration(tuple(n.T), tuple(v.T), k))).T
         nudge = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())  # s, in which little changes
-        ahead, behind = (acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0] for dt in (nudge, -nudge))
-        away = difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])  # of the doubles, in s
+        ahead, behind = (
+            acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]
+            for dt in (nudge, -nudge)
+        )
+        # of the doubles, in s
+        away = difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])
         with np.errstate(divide="ignore", invalid="ignore"):
             errors_s = np.abs(away - vx / (a[:, 0] * k.length))
             curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))
-        floors = _ROUNDINGS * np.finfo(float).eps * np.abs(away) + np.where(np.isfinite(curved), curved, 0.0)
+        floors = _ROUNDINGS * np.finfo(float).eps * np.abs(away) + np.where(
+            np.isfinite(curved), curved, 0.0
+        )
         return np.where(np.isfinite(errors_s), errors_s, np.inf), float(floors.max())
 
 
@@ -174,7 +186,10 @@ def h_drift(scene: Scene, outcome: RunOutcome) -> float | None:
     values, kinetic = [], ctx.mpf(0)
     for i in np.unique(np.linspace(0, len(columns[0]) - 1, H_ROWS).astype(int)):
         state = [column[i] for column in columns]
-        numbers = [(to_mpf(x, ctx) if isinstance(x, Fraction) else ctx.mpf(float(x))) / k.length for x in state]
+        numbers = [
+            (to_mpf(x, ctx) if isinstance(x, Fraction) else ctx.mpf(float(x))) / k.length
+            for x in state
+        ]
         n, v = tuple(numbers[:3]), tuple(numbers[3:])
         values.append(invariant(n, v, k))
         kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
@@ -198,4 +213,8 @@ def difference(a: Column, b: Column) -> Array:
 
 def _column(outcome: RunOutcome, name: str) -> Column:
     """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
-    return outcome.states[:, COLUMNS.index(name)] if outcome.exact is None else outcome.exact.exact(name)
+    return (
+        outcome.states[:, COLUMNS.index(name)]
+        if outcome.exact is None
+        else outcome.exact.exact(name)
+    )

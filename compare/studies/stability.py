@@ -40,7 +40,8 @@ TRUTH_DIGITS = 34  # six more than are asked of the finest method
 
 # method or program, formulation and setting as the method declares them, and the scene
 Item = tuple[str, str | None, float, str]
-Problems = dict[str, tuple[Scene, Path, Character]]  # each scene, the folder of its golden dataset, its difficulty
+# each scene, the folder of its golden dataset, its difficulty
+Problems = dict[str, tuple[Scene, Path, Character]]
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,11 @@ def cut(scene: Scene) -> Scene:
     scene = on_doubles(scene.with_values(["inputs=binary64", "run.transits=false"]))
     step, whole = scene.exact.grid_step, int(scene.exact.t_end / scene.exact.grid_step)
     rows = max(2, min(whole, int(SWINGS * swing / float(step)))) if strength else whole
-    return scene.with_values([f"run.t_end={Decimal(scene.run.grid_step) * rows}"]) if rows < whole else scene
+    return (
+        scene.with_values([f"run.t_end={Decimal(scene.run.grid_step) * rows}"])
+        if rows < whole
+        else scene
+    )
 
 
 def stability(
@@ -117,7 +122,9 @@ def stability(
     """
     commands = dict(programs or {})
     runs = [*declared(methods, "stability"), *((name, None, 1 / STEPS) for name in commands)]
-    cuts = {name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)}
+    cuts = {
+        name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)
+    }
     problems: Problems = {}
     unsolved: dict[str, str] = {}
     for count, (name, scene) in enumerate(cuts.items()):
@@ -138,10 +145,15 @@ def stability(
     cells = _Cells(recipe, PATIENCE * limit_s, commands, problems, limit_s)
     measured = campaign(cells, solved, journal_path=journal_path, report=report)
     finished = dict(zip(solved, measured, strict=True))
-    return [finished.get(item) or cells.failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
+    return [
+        finished.get(item) or cells.failed(item, Status.UNREACHABLE, unsolved[item[-1]])
+        for item in items
+    ]
 
 
-def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float) -> None:
+def _moved(
+    solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float
+) -> None:
     """Report how many scenes are solved, and the time in s that the next one has reached."""
     solving(solved + t / t_end, scenes)
 
@@ -164,15 +176,23 @@ class _Cells(Measurement[Item, Cell]):
         step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
         if name in self.commands:
             wrong_m = WRONG * 10**-users_program.DIGITS * amplitude
-            row, since = users_program.measured(name, self.commands[name], step, scene, golden, self.limit_s, wrong_m)
+            row, since = users_program.measured(
+                name, self.commands[name], step, scene, golden, self.limit_s, wrong_m
+            )
             cell = self._judged(item, row, traits, amplitude)
             if cell.status != Status.SILENTLY_WRONG or since is None:
                 return cell
-            return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)
+            return replace(
+                cell,
+                reason=f"From t = {since:g} s on it is wrong. {cell.reason}",
+                wrong_from_s=since,
+            )
         method = METHODS[name]
         used = step if method.setting == "step" else setting
         truth = GridTruth(golden, float(scene.exact.t_end))
-        row = Bench(scene, truth, self.limit_s, repeats=1, transits=False).row(method, formulation, used)
+        row = Bench(scene, truth, self.limit_s, repeats=1, transits=False).row(
+            method, formulation, used
+        )
         return self._judged(item, row, traits, amplitude)
 
     def failed(self, item: Item, status: Status, reason: str) -> Cell:
@@ -183,19 +203,38 @@ class _Cells(Measurement[Item, Cell]):
         precision = f"{number}, {formulation}" if formulation else number
         used = None if kind == "step" else setting  # a step depends on the scene's rates
         requested = digits_requested(method, setting)
-        return Cell(scene, method, precision, status, None, requested, None, reason, setting=used, kind=kind)
+        return Cell(
+            scene, method, precision, status, None, requested, None, reason, setting=used, kind=kind
+        )
 
     def _judged(self, item: Item, row: Row, traits: Character, amplitude: float) -> Cell:
         """Return the cell of a run, whose error in m is judged as a part of the amplitude in m."""
         requested = digits_requested(item[0], item[2])
-        digits = None if row.error_m is None else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
+        digits = (
+            None
+            if row.error_m is None
+            else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
+        )
         status = row.status
         if status == Status.EXTRAPOLATED:
             status, digits = Status.OUT_OF_TIME, None
         elif status == Status.OK and digits is not None and digits < requested - math.log10(WRONG):
-            status = Status.ILL_CONDITIONED if digits >= requested - traits.digits_lost else Status.SILENTLY_WRONG
-        cell = self.failed(item, status, reason_of(row, status, traits, digits, requested, self.limit_s))
-        return replace(cell, digits=digits, cpu_s=row.cpu_s, steps=row.steps, setting=row.setting, load=row.load)
+            status = (
+                Status.ILL_CONDITIONED
+                if digits >= requested - traits.digits_lost
+                else Status.SILENTLY_WRONG
+            )
+        cell = self.failed(
+            item, status, reason_of(row, status, traits, digits, requested, self.limit_s)
+        )
+        return replace(
+            cell,
+            digits=digits,
+            cpu_s=row.cpu_s,
+            steps=row.steps,
+            setting=row.setting,
+            load=row.load,
+        )
 
 
 def digits_requested(method: str, setting: float) -> float:
@@ -205,4 +244,8 @@ def digits_requested(method: str, setting: float) -> float:
     kind, order = METHODS[method].setting, METHODS[method].order
     if kind == "precision":
         return (setting - LOST_BITS) * math.log10(2)
-    return -math.log10(setting) if order is None or kind == "tolerance" else -order * math.log10(2 * math.pi * setting)
+    return (
+        -math.log10(setting)
+        if order is None or kind == "tolerance"
+        else -order * math.log10(2 * math.pi * setting)
+    )

@@ -29,9 +29,12 @@ from .users_program import FILE, file_row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
 PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
-DISTINGUISHED = 0.25  # standard error up to which an order is told from its neighbours: twice that is half an order
-ABOVE_LEAST = 10.0  # errors within this factor of a method's least are taken for rounding, or for the reference's bound
-Files = Mapping[str, tuple[Candidate, float | None]]  # by name: what a file holds, and the CPU seconds that are stated
+# standard error up to which an order is told from its neighbours: twice that is half an order
+DISTINGUISHED = 0.25
+# errors within this factor of a method's least are taken for rounding, or for the reference's bound
+ABOVE_LEAST = 10.0
+# by name: what a file holds, and the CPU seconds that are stated
+Files = Mapping[str, tuple[Candidate, float | None]]
 
 
 @dataclass(frozen=True)
@@ -76,7 +79,10 @@ class Study:
             "machine": self.machine,
             "programs": dict(self.programs),
             "candidates": [row.method for row in self.rows if row.kind == FILE],
-            "orders": [asdict(order) for order in orders(self.rows, float(self.golden.manifest.bounds.position_m))],
+            "orders": [
+                asdict(order)
+                for order in orders(self.rows, float(self.golden.manifest.bounds.position_m))
+            ],
             "rows": [asdict(row) for row in self.rows],
         }
 
@@ -91,7 +97,9 @@ class _MethodRuns(OnScene[Item, Row]):
 
     def measure(self, item: Item) -> Row:
         name, formulation, setting = item
-        method = external(self.commands[name], name=name) if name in self.commands else METHODS[name]
+        method = (
+            external(self.commands[name], name=name) if name in self.commands else METHODS[name]
+        )
         return Bench(self.scene, self.truth, self.limit_s).row(method, formulation, setting)
 
     def failed(self, item: Item, status: Status, reason: str) -> Row:
@@ -137,7 +145,10 @@ def study(
         InputError: an unknown scene or method.
         UnreachableError: the truth cannot be solved for.
     """
-    requested, methods = as_scene(scene), methods.split(",") if isinstance(methods, str) else methods
+    requested, methods = (
+        as_scene(scene),
+        methods.split(",") if isinstance(methods, str) else methods,
+    )
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)

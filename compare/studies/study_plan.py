@@ -27,7 +27,9 @@ T = TypeVar("T")
 Item = tuple[str, str, float]  # method, formulation, setting
 
 
-def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool = True) -> list[Item]:
+def plan(
+    scene: Scene, methods: Sequence[str] | None = None, formulations: bool = True
+) -> list[Item]:
     """List the runs: each method over its settings in the formulation that suits it, and one method in all of them.
 
     Args:
@@ -43,11 +45,16 @@ def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool 
     items: list[Item] = []
     for name in methods or METHODS:
         method = METHODS[name]
-        items += [(name, suited(scene, method.formulations), setting) for setting in method.settings(scene)]
+        items += [
+            (name, suited(scene, method.formulations), setting)
+            for setting in method.settings(scene)
+        ]
     if formulations and (methods is None or FORMULATIONS_OF in methods):
         method = METHODS[FORMULATIONS_OF]
         words = [word for word in FORMULATIONS if word in method.formulations]
-        items += [(FORMULATIONS_OF, word, setting) for word in words for setting in method.settings(scene)]
+        items += [
+            (FORMULATIONS_OF, word, setting) for word in words for setting in method.settings(scene)
+        ]
     return list(dict.fromkeys(items))
 
 
@@ -83,7 +90,11 @@ def precision_items(bits: Sequence[int], methods: Sequence[str] | None = None) -
 
 
 def _runs(
-    methods: Sequence[str] | None, runs_of: Callable[[Method], Sequence[Any]], field: str, expected: str, these: str
+    methods: Sequence[str] | None,
+    runs_of: Callable[[Method], Sequence[Any]],
+    field: str,
+    expected: str,
+    these: str,
 ) -> dict[str, Sequence[Any]]:
     """Return what each method declares; refuse one that declares nothing, and name those that do."""
     check_usable(methods)
@@ -103,8 +114,13 @@ def check_usable(methods: Sequence[str] | None) -> None:
     """
     reasons = {name: available(METHODS[name]) for name in (METHODS if methods is None else methods)}
     if all(reasons.values()):
-        why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items()) or "None stands for all"
-        raise InputError("methods", ", ".join(reasons) or "no id", "a method that can run here", f"{why}.")
+        why = (
+            "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
+            or "None stands for all"
+        )
+        raise InputError(
+            "methods", ", ".join(reasons) or "no id", "a method that can run here", f"{why}."
+        )
 
 
 def bits_of(text: str) -> list[int]:

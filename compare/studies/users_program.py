@@ -27,16 +27,27 @@ from .campaign import load_per_core
 from .row import Row
 from .study_plan import parsed
 
-DIGITS = 6.0  # that a program is asked for: the millionth of the amplitude that `foucault score` allows
+# that a program is asked for: the millionth of the amplitude that `foucault score` allows
+DIGITS = 6.0
 PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
 NUMBER = "program"  # what stands for a program's number type
 FILE = "file"  # kind of the row of a file, which has no setting; in place of its formulation
-STATUSES = {OutOfTimeError: Status.OUT_OF_TIME, NotFiniteError: Status.NOT_FINITE, CrashedError: Status.CRASHED}
+STATUSES = {
+    OutOfTimeError: Status.OUT_OF_TIME,
+    NotFiniteError: Status.NOT_FINITE,
+    CrashedError: Status.CRASHED,
+}
 STATED = "the CPU seconds are those that were stated"
 
 
 def measured(
-    name: str, command: str, setting: float, scene: Scene, golden: Golden, limit_s: float, wrong_m: float
+    name: str,
+    command: str,
+    setting: float,
+    scene: Scene,
+    golden: Golden,
+    limit_s: float,
+    wrong_m: float,
 ) -> tuple[Row, float | None]:
     """Run a program on a scene; return its row, and the first time in s at which it is wrong, None if it never is.
 
@@ -78,21 +89,31 @@ def files_of(
     """
     words = ["-"] * len(paths) if cpu is None else cpu.split(",")
     seconds = parsed(words, lambda word: None if word.strip() == "-" else float(word))
-    if len(seconds) != len(paths) or not all(value is None or 0 < value < math.inf for value in seconds):
-        raise InputError("--cpu", cpu, f"{len(paths)} positive numbers of seconds, or - where nobody knows")
+    if len(seconds) != len(paths) or not all(
+        value is None or 0 < value < math.inf for value in seconds
+    ):
+        raise InputError(
+            "--cpu", cpu, f"{len(paths)} positive numbers of seconds, or - where nobody knows"
+        )
     files: dict[str, tuple[Candidate, float | None]] = {}
     for path, cpu_s in zip(paths, seconds, strict=True):
         name = shortened(plain(Path(path).name), LONGEST_NAME)
         if name in files or name in taken or name in METHODS:
-            raise InputError("--candidates", path, "a file whose name no other row has", "Rename the file.")
+            raise InputError(
+                "--candidates", path, "a file whose name no other row has", "Rename the file."
+            )
         candidate = read(path)
         if not candidate.positions:
-            raise InputError("--candidates", path, "a file with positions", "It has times of transits alone.")
+            raise InputError(
+                "--candidates", path, "a file with positions", "It has times of transits alone."
+            )
         files[name] = candidate, cpu_s
     return files
 
 
-def file_row(name: str, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden) -> Row:
+def file_row(
+    name: str, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden
+) -> Row:
     """Return the row of a file: its error against the truth at its own times.
 
     Args:
@@ -111,7 +132,12 @@ def file_row(name: str, candidate: Candidate, cpu_s: float | None, scene: Scene,
 
 
 def _against(
-    base: Row, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden, wrong_m: float
+    base: Row,
+    candidate: Candidate,
+    cpu_s: float | None,
+    scene: Scene,
+    golden: Golden,
+    wrong_m: float,
 ) -> tuple[Row, float | None]:
     """Return the row of somebody's output, and the first time in s at which its error exceeds `wrong_m`."""
     end, step = float(scene.exact.t_end), float(scene.exact.grid_step)
@@ -121,7 +147,9 @@ def _against(
         raise InputError("its output", "no row after t = 0", f"rows to t = {end:g} s")
     truth = truth_at(golden, t)
     places = [i for i, name in enumerate("xyz") if name in candidate.columns]
-    errors = np.linalg.norm([candidate.columns["xyz"[i]][kept] - truth.states[:, i] for i in places], axis=0)
+    errors = np.linalg.norm(
+        [candidate.columns["xyz"[i]][kept] - truth.states[:, i] for i in places], axis=0
+    )
     short = t[-1] < end - step
     row = replace(
         base,

@@ -41,7 +41,11 @@ ENGINES = (AUTO, *engine_names())
 
 
 SCENE = scene_argument(value="[SCENE]")
-OUT = option("--out", "Write to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).", "DIR")
+OUT = option(
+    "--out",
+    "Write to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
+    "DIR",
+)
 DIGITS = option("--digits", "Digits of the largest number in a column (default: the scene's).", "D")
 LEVEL = option(
     "--level",
@@ -56,7 +60,9 @@ ENGINE = option(
     completion(lambda: ENGINES),
 )
 NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
-AUDIT = option("--audit/--no-audit", "Prove it again by FLINT alone: the same digits (default: --audit).")
+AUDIT = option(
+    "--audit/--no-audit", "Prove it again by FLINT alone: the same digits (default: --audit)."
+)
 CONFIRM = option(
     "--confirm",
     f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
@@ -107,13 +113,26 @@ def command(
         "--no-transits": ("run.transits", "false" if no_transits else None),
         "--section": ("run.sections", ",".join(section) if section else None),
     }
-    proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
-    proving |= {"--no-confirm": no_confirm, "--function": function, "--no-function": function is False}
+    proving: dict[str, object] = {
+        "--audit": audit,
+        "--no-audit": audit is False,
+        "--confirm": confirm,
+    }
+    proving |= {
+        "--no-confirm": no_confirm,
+        "--function": function,
+        "--no-function": function is False,
+    }
     proving["--no-tables"] = no_tables
     named_engine = None if engine == AUTO else engine
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {"--set": set_, "--section": section, "--uncertain": uncertain, "--engine": named_engine}
+        unused |= {
+            "--set": set_,
+            "--section": section,
+            "--uncertain": uncertain,
+            "--engine": named_engine,
+        }
         refuse(unused, "with --all")
         from .generate_all import generate_all
 
@@ -127,7 +146,12 @@ def command(
     if widths := widths_by_name(uncertain, scene):
         refuse({"--digits": digits, **proving}, BESIDE_RANGES)
         if level not in (None, "enclosed"):
-            raise InputError("--level", level, "enclosed, together with uncertain inputs", "Ranges are always proved.")
+            raise InputError(
+                "--level",
+                level,
+                "enclosed, together with uncertain inputs",
+                "Ranges are always proved.",
+            )
         _generate_ranges(scene, widths, engine, out, as_json)
         return
     from ..dataset.making import making_of
@@ -147,7 +171,12 @@ def command(
     if confirm is not None:
         chosen("--confirm", confirm, CONFIRMATIONS)
     confirm = "none" if no_confirm else confirm
-    choices: dict[str, Any] = {"engine": named_engine, "audit": audit, "confirm": confirm, "function": function}
+    choices: dict[str, Any] = {
+        "engine": named_engine,
+        "audit": audit,
+        "confirm": confirm,
+        "function": function,
+    }
     choices = {name: value for name, value in choices.items() if value is not None}
     making = replace(usual, **choices, tables=usual.tables and not no_tables)
     if not (making.tables or making.function):
@@ -165,19 +194,30 @@ def command(
         emit(measured)
         return
     confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
-    rows = f"{counted(len(solution.times), 'grid time')}, {counted(measured['transits'], 'transit')}"
+    rows = (
+        f"{counted(len(solution.times), 'grid time')}, {counted(measured['transits'], 'transit')}"
+    )
     rows += f", {measured['possible']} undecided" if measured["possible"] else ""
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}{confirmed}")
     if solution.not_checked:
         unseen = "The proof finds all transits; no run with event detection confirms them"
         typer.echo(f"{unseen}: {solution.not_checked}", err=True)
-    typer.echo(f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps")
-    parts = {"run": run.cpu_s, "checks": solution.check_s, "pilot": solution.pilot_s, "discarded": solution.discarded_s}
+    typer.echo(
+        f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps"
+    )
+    parts = {
+        "run": run.cpu_s,
+        "checks": solution.check_s,
+        "pilot": solution.pilot_s,
+        "discarded": solution.discarded_s,
+    }
     told = ", ".join(f"{name} {seconds:.2f}" for name, seconds in parts.items() if seconds)
     typer.echo(f"CPU {solution.cpu_s:.2f} s: {told}")
 
 
-def _generate_ranges(scene: Scene, widths: dict[str, str], engine: str, out: Path | None, as_json: bool) -> None:
+def _generate_ranges(
+    scene: Scene, widths: dict[str, str], engine: str, out: Path | None, as_json: bool
+) -> None:
     """Prove intervals for uncertain inputs and write them.
 
     Raises:
@@ -197,7 +237,11 @@ def _generate_ranges(scene: Scene, widths: dict[str, str], engine: str, out: Pat
     folder = out or Path(GOLDEN, ranges_id(ranges))
     with stoppable("nothing half was written"):
         write_ranges(ranges, folder)
-    counts = {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)}
+    counts = {
+        "grid": len(ranges.times),
+        "transits": len(ranges.transits),
+        "possible": len(ranges.possible),
+    }
     period = period_texts(ranges)
     if as_json:
         emit({"dataset": ranges_id(ranges), "out": str(folder), "period_s": period, **counts})
@@ -208,7 +252,9 @@ def _generate_ranges(scene: Scene, widths: dict[str, str], engine: str, out: Pat
     if ranges.possible:
         typer.echo(f"intervals that may hold more transits: {counts['possible']}")
     for word, passages in ranges.sections.items():
-        undecided = f", intervals that are left open: {len(passages.possible)}" if passages.possible else ""
+        undecided = (
+            f", intervals that are left open: {len(passages.possible)}" if passages.possible else ""
+        )
         typer.echo(f"passages of {word}: {len(passages.table)}{undecided}")
     if period:
         typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")

@@ -65,7 +65,10 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
     scenes = [load_scene(name, replaced) for name in scene_ids()]
     scenes += [load_scene(name, ["inputs=binary64", *replaced]) for name in readings]
     named = [(scene, dataset_id(scene)) for scene in scenes]
-    every = [Job(scene, name, out / name if out else default_folder(scene, name)) for scene, name in named]
+    every = [
+        Job(scene, name, out / name if out else default_folder(scene, name))
+        for scene, name in named
+    ]
     return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
 
 
@@ -76,7 +79,10 @@ def is_done(job: Job) -> bool:
     except FoucaultError:
         return False
     sealed = not ships(job.folder) or seals().get(job.name) == files.manifest.seal
-    same = scene_inputs(files.scene) == scene_inputs(job.scene) and files.scene.inputs == job.scene.inputs
+    same = (
+        scene_inputs(files.scene) == scene_inputs(job.scene)
+        and files.scene.inputs == job.scene.inputs
+    )
     return sealed and same and files.manifest.id == job.name
 
 
@@ -115,7 +121,11 @@ def _check_installed(job: Job) -> None:
 
 
 def generate_all(
-    replaced: Sequence[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
+    replaced: Sequence[str],
+    out: Path | None,
+    workers: int | None,
+    cluster: str | None,
+    as_json: bool,
 ) -> None:
     """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
 
@@ -130,7 +140,8 @@ def generate_all(
     with stoppable("what is done stays, and the same command goes on"), progress() as show:
         for job in every:
             with suppress(OSError):  # no such folder yet
-                clear(job.folder.parent, job.folder.name)  # a dataset that is done is not written again
+                # a dataset that is done is not written again
+                clear(job.folder.parent, job.folder.name)
         undone = [job for job in every if not is_done(job)]
         for job in undone:
             _check_installed(job)
@@ -144,19 +155,30 @@ def generate_all(
                     typer.echo(_line(row))
     rows.sort(key=lambda row: str(row["dataset"]))
     failed = [row for row in rows if row["status"] != Status.OK.value]
-    counts = {"datasets": len(every), "sealed_before": len(every) - len(undone), "failed": len(failed)}
+    counts = {
+        "datasets": len(every),
+        "sealed_before": len(every) - len(undone),
+        "failed": len(failed),
+    }
     if as_json:
         emit({"rows": rows, **counts})
     else:
         done = len(undone) - len(failed)
-        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {done} made, {len(failed)} failed")
+        typer.echo(
+            f"{len(every)} datasets: {len(every) - len(undone)} were there, {done} made, {len(failed)} failed"
+        )
     if failed:
-        typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
+        typer.echo(
+            f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}",
+            err=True,
+        )
         unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
         raise typer.Exit(UnreachableError.exit_status if unreachable else 1)
 
 
-def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Generator[Row, None, None]:
+def _made(
+    undone: list[Job], workers: int | None, cluster: str | None
+) -> Generator[Row, None, None]:
     """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
     if not undone:
         return

@@ -43,7 +43,13 @@ def progress() -> Iterator[Show]:
             yield notice
         return
     from rich.console import Console  # takes a tenth of a second
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     console = Console(file=terminal_of(sys.stderr))
     columns = (
@@ -68,7 +74,9 @@ def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> 
         bars.start_task(task)
         text = plain(f"{label}: {item}" if item else label)
         whole = bars.tasks[task].total if total is None else total
-        bars.update(task, completed=completed, total=whole, description=text, visible=completed < whole)
+        bars.update(
+            task, completed=completed, total=whole, description=text, visible=completed < whole
+        )
 
     return move
 
@@ -82,7 +90,8 @@ def notice(label: str, total: float = 0, unit: str = "s simulated") -> Move:
         unit: of completed and total.
     """
     begun, known_total, noticed, last = time.monotonic(), total, False, 0.0
-    first: tuple[float, float] | None = None  # time and part done at the first move, also of a second try
+    # time and part done at the first move, also of a second try
+    first: tuple[float, float] | None = None
 
     def move(completed: float, total: float | None = None, item: str = "") -> None:
         nonlocal first, last, noticed
@@ -110,6 +119,11 @@ def _rough(amount: float) -> str:
 
 def in_words(seconds: float) -> str:
     """Return a rough time in the unit that suits it: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
-    scales = (("seconds", 1, 90), ("minutes", 60, 5400), ("hours", 3600, 172800), ("days", 86400, math.inf))
+    scales = (
+        ("seconds", 1, 90),
+        ("minutes", 60, 5400),
+        ("hours", 3600, 172800),
+        ("days", 86400, math.inf),
+    )
     unit, length = next((unit, length) for unit, length, until in scales if seconds < until)
     return f"{float(f'{seconds / length:.2g}'):g} {unit}"

@@ -12,7 +12,16 @@ from ..errors import FoucaultError, InputError, NotInstalledError, UnreachableEr
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings
 from .template import scene_file
-from .terminal import AsJson, Assignments, Uncertain, emit, option, refuse, scene_argument, widths_by_name
+from .terminal import (
+    AsJson,
+    Assignments,
+    Uncertain,
+    emit,
+    option,
+    refuse,
+    scene_argument,
+    widths_by_name,
+)
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
@@ -22,10 +31,17 @@ DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are show
 
 
 SCENE = scene_argument("A scene's id, or the path of a TOML file; may be left out with --template.")
-TEMPLATE = option("--template", "Print the scene as a TOML file to begin with, each field explained.")
+TEMPLATE = option(
+    "--template", "Print the scene as a TOML file to begin with, each field explained."
+)
 EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
-PROVED = option("--proved", "Also prove intervals of period and precession over the run, which takes as long as that.")
-SENSITIVITY = option("--sensitivity", "Also show how many digits the flow costs between release and end.")
+PROVED = option(
+    "--proved",
+    "Also prove intervals of period and precession over the run, which takes as long as that.",
+)
+SENSITIVITY = option(
+    "--sensitivity", "Also show how many digits the flow costs between release and end."
+)
 
 
 def command(
@@ -43,11 +59,18 @@ def command(
     `foucault show --template > mine.toml` begins a scene of your own.
     """
     if template:
-        unused = {"--equations": equations, "--sensitivity": sensitivity, "--uncertain": uncertain, "--json": as_json}
+        unused = {
+            "--equations": equations,
+            "--sensitivity": sensitivity,
+            "--uncertain": uncertain,
+            "--json": as_json,
+        }
         refuse({**unused, "--proved": proved}, "together with --template")
         if scene_word is None:
             refuse({"--set": set_}, "without SCENE")
-        typer.echo(scene_file(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
+        typer.echo(
+            scene_file(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False
+        )
         return
     if scene_word is None:
         expected = "a scene's id or the path of a TOML file"
@@ -87,7 +110,11 @@ def _document_lines(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
     yield from (f"{flag}: {meaning}" for flag, meaning in document["flag_meanings"].items())
     yield f"inputs are read as: {scene.inputs}"
     uncertain = {"uncertain": scene.uncertain} if scene.uncertain else {}
-    for section, table in {**scene_inputs(scene), **uncertain, "derived": document["derived"]}.items():
+    for section, table in {
+        **scene_inputs(scene),
+        **uncertain,
+        "derived": document["derived"],
+    }.items():
         yield f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items())
     yield _motion_line(document["motion"])
     if "proved" in document:
@@ -161,7 +188,8 @@ def _derived(scene: Scene) -> dict[str, str]:
     start = Start.of(scene.exact, DERIVED_PREC)
     ctx, k = start.ctx, start.k
     quantities = {}
-    if scene.site.gravity_is == "ellipsoid":  # effective gravity takes the distance out of the equations
+    # effective gravity takes the distance out of the equations
+    if scene.site.gravity_is == "ellipsoid":
         quantities["axis_distance_m"] = k.axis_distance * k.length
     strength = ctx.sqrt(sum(part * part for part in k.pull))
     quantities["pivot_gravity_m_s2"] = strength * k.length
@@ -181,7 +209,11 @@ def _motion(scene: Scene) -> dict[str, Any]:
         seen = swing(scene)
     except (FoucaultError, ArithmeticError) as error:
         return {"reason": str(error)}
-    motion = {"over_s": seen.over_s, "period_s": seen.period_s, "period_error_s": seen.period_error_s}
+    motion = {
+        "over_s": seen.over_s,
+        "period_s": seen.period_s,
+        "period_error_s": seen.period_error_s,
+    }
     if seen.precession_deg_per_h is not None:
         motion["precession_deg_per_h"] = seen.precession_deg_per_h
         motion["precession_error_deg_per_h"] = seen.precession_error_deg_per_h

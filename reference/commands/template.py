@@ -38,7 +38,9 @@ def _lines(table: SceneTable) -> Iterator[str]:
         if isinstance(value, SceneTable | dict):
             continue
         example = ["highest", "gate 30"] if name == "sections" else "0"
-        written = f"{'# ' if value is None else ''}{name} = {_toml(example if value is None else value)}"
+        written = (
+            f"{'# ' if value is None else ''}{name} = {_toml(example if value is None else value)}"
+        )
         extra: Any = info.json_schema_extra or {}
         unit = f"{extra['unit']}; " if extra else ""
         yield f"{written:{COLUMN}}  # {unit}{info.description}"

@@ -20,7 +20,11 @@ def completion(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]
 
 
 def option(
-    word: str, text: str, value: str | None = None, names: Callable[[str], list[str]] | None = None, **more: Any
+    word: str,
+    text: str,
+    value: str | None = None,
+    names: Callable[[str], list[str]] | None = None,
+    **more: Any,
 ) -> Any:
     """Return an option: its word, what the help says of it, the word for its value, and what a shell may complete.
 
@@ -29,7 +33,9 @@ def option(
     return typer.Option(word, help=text, metavar=value, autocompletion=names, **more)
 
 
-def scene_argument(text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE") -> Any:
+def scene_argument(
+    text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE"
+) -> Any:
     """Return the argument that is a scene: what the help says of it, and the word for it; a shell completes the ids."""
     return typer.Argument(metavar=value, help=text, autocompletion=completion(scene_ids))
 
@@ -53,12 +59,19 @@ Uncertain = Annotated[
         "KEY=±W",
     ),
 ]
-BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"  # why an option is refused
-EndTime = Annotated[str | None, option("--t-end", "End at this time, in s (default: the scene's).", "S")]
+# why an option is refused
+BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"
+EndTime = Annotated[
+    str | None, option("--t-end", "End at this time, in s (default: the scene's).", "S")
+]
 Workers = Annotated[int | None, option("--workers", "Use this many cores (default: all).", "N")]
-Cluster = Annotated[str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")]
+Cluster = Annotated[
+    str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")
+]
 SECTION = option(
-    "--section", "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.", "WORD"
+    "--section",
+    "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
+    "WORD",
 )
 Sections = Annotated[list[str] | None, SECTION]
 AsJson = Annotated[bool, option("--json", "Print one JSON document on stdout and nothing else.")]
@@ -122,12 +135,16 @@ def replacements(
         elif reason:
             raise InputError("--set", assignment, "a field that makes a difference here", reason)
         if field in values:
-            raise InputError("--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one.")
+            raise InputError(
+                "--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one."
+            )
         values[field] = assignment
     for option, (field, text) in options.items():
         if text is not None:
             if field in values and not (option == "--t-end" and values[field] == f"{field}={text}"):
-                raise InputError(option, text, f"no such option together with --set {values[field]}", "Keep one.")
+                raise InputError(
+                    option, text, f"no such option together with --set {values[field]}", "Keep one."
+                )
             values[field] = f"{field}={text}"
     return list(values.values())
 
@@ -149,7 +166,9 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
             raise InputError("--uncertain", word, f"one width of {key.strip()}")
         widths[key.strip()] = width
     overridden = {full_name(key) for key in widths}
-    return {name: width for name, width in scene.uncertain.items() if name not in overridden} | widths or None
+    return {
+        name: width for name, width in scene.uncertain.items() if name not in overridden
+    } | widths or None
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:
@@ -160,7 +179,13 @@ def refuse(options: Mapping[str, object], why: str) -> None:
     """
     for option, value in options.items():
         if value is not None and value is not False and value != []:  # 0 was given
-            got = " ".join(map(str, value)) if isinstance(value, list) else "set" if value is True else str(value)
+            got = (
+                " ".join(map(str, value))
+                if isinstance(value, list)
+                else "set"
+                if value is True
+                else str(value)
+            )
             raise InputError(option, got, f"no such option {why}", "It would have no effect.")
 
 

@@ -35,15 +35,23 @@ def command(
     from ..dataset.verify import recompute as recomputed
     from ..dataset.verify import verify
 
-    folders = [golden_folder(path) for path in paths or ()] or [golden_root() / name for name in seals()]
+    folders = [golden_folder(path) for path in paths or ()] or [
+        golden_root() / name for name in seals()
+    ]
     if not folders:
-        raise InputError("PATH", "nothing", "a golden dataset", "Make one with `foucault generate`.")
+        raise InputError(
+            "PATH", "nothing", "a golden dataset", "Make one with `foucault generate`."
+        )
     rows = []
     notes: list[str]
     for folder in folders:
         with progress() as show:
             if (folder / RANGES).is_file():
-                problems, undecided, notes = verify_ranges(folder, show(folder.name), recompute), [], []
+                problems, undecided, notes = (
+                    verify_ranges(folder, show(folder.name), recompute),
+                    [],
+                    [],
+                )
             elif (results := _written_results(folder)) is not None:
                 refuse({"--recompute": recompute}, "with a sweep or a report")
                 problems, undecided, notes = *results, []
@@ -54,7 +62,14 @@ def command(
                 if recompute and not problems:
                     problems, measured = recomputed(folder, show(folder.name))
                     undecided, notes = [], [*notes, *measured]
-        rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": [*undecided, *notes]})
+        rows.append(
+            {
+                "path": str(folder),
+                "ok": not problems,
+                "problems": problems,
+                "notes": [*undecided, *notes],
+            }
+        )
         if not as_json:
             typer.echo(f"{folder}: {'WRONG' if problems else '; '.join(['ok', *undecided])}")
             for line in [*problems, *notes]:

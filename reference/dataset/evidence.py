@@ -19,7 +19,8 @@ from .making import Making
 from .manifest import MANIFEST, Content
 from .record import PACKAGES
 
-ROUNDED_UP = Fraction(11, 10)  # a number that is rounded up to two digits is larger by a tenth at most
+# a number that is rounded up to two digits is larger by a tenth at most
+ROUNDED_UP = Fraction(11, 10)
 RUN = ("formulation", "number", "order", "steps")
 GAPS = ("position_m", "velocity_m_s", "transit_s")
 
@@ -43,7 +44,11 @@ def check_evidence(contents: Mapping[str, Content], solution: Solution) -> None:
 def _pairs(manifest: dict[str, Any], solution: Solution) -> Iterator[tuple[str, Any, Any]]:
     """Yield each field, what the manifest says there, and what it is."""
     scene, proof = solution.scene, solution.proof
-    for name, value in (("title", scene.title), ("source", scene.source), ("flags", list(scene.flags))):
+    for name, value in (
+        ("title", scene.title),
+        ("source", scene.source),
+        ("flags", list(scene.flags)),
+    ):
         yield name, manifest[name], value
     for name, said in manifest["generator"].items():
         yield f"generator.{name}", said, version(name) if name in PACKAGES else DATA_VERSION

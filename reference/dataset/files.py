@@ -26,7 +26,12 @@ from .sheets import GRID_HEADER, NUMBERS, SECTIONS_HEADER, TRANSITS_HEADER, Shee
 MAX_MANIFEST = 1 << 20  # bytes
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER, "sections": SECTIONS_HEADER}
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
-_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND, "section": SECTION_WORD}
+_PATTERNS = {
+    "k": "[1-9][0-9]{0,9}",
+    "direction": "[+]1|-1",
+    "bound": _BOUND,
+    "section": SECTION_WORD,
+}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
 _HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
 
@@ -54,7 +59,9 @@ class Files:
     foreign: list[str]
 
 
-LINE_ENDS = "its lines end with CR LF and not with LF: copy the files as binary ones (in Git: `* -text`)"
+LINE_ENDS = (
+    "its lines end with CR LF and not with LF: copy the files as binary ones (in Git: `* -text`)"
+)
 
 
 def with_lf(data: bytes) -> bytes:
@@ -88,7 +95,9 @@ def read_files(folder: Path) -> Files:
             data = (folder / name).read_bytes()
             if size != record.bytes:
                 ends_changed = hashlib.sha256(with_lf(data)).hexdigest() == record.sha256
-                what = LINE_ENDS if ends_changed else f"{size} bytes, the manifest says {record.bytes}"
+                what = (
+                    LINE_ENDS if ends_changed else f"{size} bytes, the manifest says {record.bytes}"
+                )
                 problems.append(f"{name}: {what}")
                 continue
             if hashlib.sha256(data).hexdigest() != record.sha256:
@@ -142,16 +151,22 @@ def read_manifest(folder: Path) -> Manifest:
     except ValidationError as error:
         older = document.get("schema_version") if isinstance(document, dict) else None
         if older in range(1, FORMAT):
-            raise refused(f"is of format {older}: make the dataset again with `foucault generate`") from None
+            raise refused(
+                f"is of format {older}: make the dataset again with `foucault generate`"
+            ) from None
         details = error.errors()[0]
         where = ".".join(map(str, details["loc"]))
-        raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
+        raise refused(
+            f"breaks the schema{' at ' + where if where else ''}: {details['msg']}"
+        ) from None
     except (ValueError, RecursionError) as error:
         raise refused(f"is not JSON in UTF-8: {error}") from None
     if manifest.text() == with_lf(text.encode()).decode() != text:
         raise DatasetError(str(folder), [f"{MANIFEST}: {LINE_ENDS}"])
     if manifest.text() != text:
-        raise refused("is not in the form in which it is written: spaces, the order of keys, or a key twice")
+        raise refused(
+            "is not in the form in which it is written: spaces, the order of keys, or a key twice"
+        )
     if manifest.expected_seal() != manifest.seal:
         raise refused("does not fit its seal: a byte was changed")
     return manifest
@@ -161,7 +176,9 @@ def _no_dataset(folder: Path) -> InputError:
     if (folder / RANGES).is_file():
         advice = "These are ranges: reference.load_ranges reads them."
         return InputError("PATH", str(folder), "a golden dataset", advice)
-    advice = did_you_mean(folder.name, () if folder.exists() else seals(), "Make it with `foucault generate`.")
+    advice = did_you_mean(
+        folder.name, () if folder.exists() else seals(), "Make it with `foucault generate`."
+    )
     return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
 
 
@@ -202,5 +219,7 @@ def _wrong_cell(cells: Sequence[str], patterns: dict[str, str]) -> str:
     if len(cells) != len(patterns):
         return f"{len(cells)} numbers, not {len(patterns)}"
     pairs = zip(patterns.items(), cells, strict=True)
-    name, cell = next((name, cell) for (name, form), cell in pairs if not re.fullmatch(form, cell, re.ASCII))
+    name, cell = next(
+        (name, cell) for (name, form), cell in pairs if not re.fullmatch(form, cell, re.ASCII)
+    )
     return f"{name} = {cell[:80]!r} is not a number of this column's form"

@@ -21,7 +21,8 @@ from ..scenes.scene import Reading, Scene
 from .manifest import Decimal, Manifest, ManifestPart, Name, Text
 from .sheets import GRID_HEADER, TRANSITS_HEADER, Sheet
 
-INSIDE = (32, 256, 2048)  # times in a piece at which the sign of xdot is looked at, for the transits between them
+# times in a piece at which the sign of xdot is looked at, for the transits between them
+INSIDE = (32, 256, 2048)
 HALVINGS = 64  # of the time between two signs
 
 Hexfloat = Annotated[str, Field(pattern=r"^0x[01]\.[0-9a-f]{1,13}p[+-][0-9]{1,4}$")]
@@ -44,7 +45,9 @@ class FunctionRecord(ManifestPart):
     @staticmethod
     def following(manifest: Manifest) -> dict[str, Any]:
         """Return what follows from the manifest of the dataset."""
-        same = {name: getattr(manifest, name) for name in ("schema_version", "id", "inputs", "frame")}
+        same = {
+            name: getattr(manifest, name) for name in ("schema_version", "id", "inputs", "frame")
+        }
         units = {", ".join(kind): unit for kind, unit in UNITS.items() if {*kind} <= {"t", *STATE}}
         return {**same, "units": units}
 
@@ -61,7 +64,9 @@ def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunctio
         record = FunctionRecord.model_validate(json.loads(text))
     except ValidationError as error:
         first = error.errors()[0]
-        raise ValueError(f"breaks the schema at {'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+        raise ValueError(
+            f"breaks the schema at {'.'.join(map(str, first['loc']))}: {first['msg']}"
+        ) from None
     count = len(record.times) - 1
     rules = {
         "is not in the form in which it is written": record.text() == text,
@@ -69,12 +74,16 @@ def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunctio
         "components: must be x, y, and z if there is no length_squared": tuple(record.components)
         == POSITION[: 2 if record.length_squared else 3],
         "times: must increase from 0": count > 0 and float.fromhex(record.times[0]) == 0,
-        "function.f64 has another size": len(data) == 8 * count * len(record.components) * (record.degree + 1),
+        "function.f64 has another size": len(data)
+        == 8 * count * len(record.components) * (record.degree + 1),
     }
     if broken := [rule for rule, holds in rules.items() if not holds]:
         raise ValueError(broken[0])
     function = GoldenFunction.of(record.model_dump(), record.bounds, data)
-    if any(b <= a for a, b in pairwise(function.times)) or not np.isfinite(function.coefficients).all():
+    if (
+        any(b <= a for a, b in pairwise(function.times))
+        or not np.isfinite(function.coefficients).all()
+    ):
         raise ValueError("times must increase, and coefficients must be finite")
     return record, function
 
@@ -82,7 +91,9 @@ def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunctio
 Bounded = tuple[Sheet, dict[str, str]]  # a table, and the bounds of its columns
 
 
-def evaluated(function: GoldenFunction, scene: Scene, manifest: Manifest) -> tuple[Bounded, Bounded]:
+def evaluated(
+    function: GoldenFunction, scene: Scene, manifest: Manifest
+) -> tuple[Bounded, Bounded]:
     """Return the grid and the transits of a dataset without tables, in doubles, each with the bounds of its columns.
 
     The grid's times are the doubles nearest to the scene's, in all their digits: the states are those at just these.
@@ -118,11 +129,18 @@ def evaluated(function: GoldenFunction, scene: Scene, manifest: Manifest) -> tup
     )
 
 
-def _bounds(function: GoldenFunction, columns: Iterable[Array], more: Iterable[float] = (0.0,) * 6) -> dict[str, str]:
+def _bounds(
+    function: GoldenFunction, columns: Iterable[Array], more: Iterable[float] = (0.0,) * 6
+) -> dict[str, str]:
     """Return the function's bounds with the rounding of decimals, and with something added to each."""
     rounding = [np.spacing(np.abs(column).max(initial=0.0)) for column in columns]
-    sums = [function.bound[name] + ulp + extra for name, ulp, extra in zip(STATE, rounding, more, strict=True)]
-    return {name: rounded_up(Fraction(float(bound))) for name, bound in zip(STATE, sums, strict=True)}
+    sums = [
+        function.bound[name] + ulp + extra
+        for name, ulp, extra in zip(STATE, rounding, more, strict=True)
+    ]
+    return {
+        name: rounded_up(Fraction(float(bound))) for name, bound in zip(STATE, sums, strict=True)
+    }
 
 
 def _states(function: GoldenFunction, times: Array) -> list[Array]:
@@ -131,7 +149,10 @@ def _states(function: GoldenFunction, times: Array) -> list[Array]:
 
 
 def _rows(columns: Iterable[Any]) -> list[tuple[str, ...]]:
-    texts = [map(repr, column.tolist()) if isinstance(column, np.ndarray) else column for column in columns]
+    texts = [
+        map(repr, column.tolist()) if isinstance(column, np.ndarray) else column
+        for column in columns
+    ]
     return list(zip(*texts, strict=True))
 
 

@@ -59,13 +59,15 @@ class PrintedTable(Framed):
 
     def exact(self, name: str) -> list[Fraction]:
         """Return the exact values of the printed decimals of a column."""
-        return [Fraction(Decimal(text)) for text in self.decimals(name)]  # faster than a fraction of the text
+        # faster than a fraction of the text
+        return [Fraction(Decimal(text)) for text in self.decimals(name)]
 
     def bound(self, name: str) -> list[Fraction]:
         """Return bounds on the errors of a column's printed values: a transit time's own, else the column's largest."""
         if name == "t":
             return self.exact("bound") if "bound" in self.columns else [Fraction(0)] * len(self)
-        if name not in (self._bounds if len(self) else self.columns):  # a table without rows has none
+        # a table without rows has none
+        if name not in (self._bounds if len(self) else self.columns):
             raise KeyError(f"a dataset bounds {', '.join(['t', *self._bounds])}, not {name!r}")
         return [Fraction(self._bounds[name])] * len(self) if len(self) else []
 
@@ -117,9 +119,15 @@ class Golden(GridColumns):
             return States.of(moments, np.empty((6, 0)), {})
         trajectory = dense(self, moments)
         rows = trajectory.states[np.searchsorted(trajectory.t, moments.ravel())]
-        rounding = dict(zip(STATE, np.spacing(np.abs(trajectory.states).max(axis=0)).tolist(), strict=True))
-        bounds = {name: trajectory.bound_m if name in POSITION else trajectory.bound_m_s for name in STATE}
-        return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
+        rounding = dict(
+            zip(STATE, np.spacing(np.abs(trajectory.states).max(axis=0)).tolist(), strict=True)
+        )
+        bounds = {
+            name: trajectory.bound_m if name in POSITION else trajectory.bound_m_s for name in STATE
+        }
+        return States.of(
+            moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()}
+        )
 
     @property
     def level(self) -> Level:
@@ -166,13 +174,17 @@ def load(name: str | Path) -> Golden:
         printed = files.tables["grid.csv"], files.tables.get("transits.csv", empty)
         tables = (printed[0], bounds.grid), (printed[1], bounds.transits)
     grid, transits = (PrintedTable(*table) for table in tables)
-    return Golden(files.folder, files.manifest, files.scene, grid, transits, function, _sections(files))
+    return Golden(
+        files.folder, files.manifest, files.scene, grid, transits, function, _sections(files)
+    )
 
 
 class _Sections(dict[str, PrintedTable]):
     def __missing__(self, word: str) -> PrintedTable:
         expected = f"a section of sections.csv, of which there are: {', '.join(self) or 'none'}"
-        raise InputError("sections", word, expected, "reference.solve(golden.scene, sections=…) finds any.")
+        raise InputError(
+            "sections", word, expected, "reference.solve(golden.scene, sections=…) finds any."
+        )
 
 
 def _sections(files: Files) -> _Sections:
@@ -181,7 +193,10 @@ def _sections(files: Files) -> _Sections:
     record, header = files.manifest.sections, sheet.header[1:]
     rows = {word: [row[1:] for row in sheet.rows if row[0] == word] for word in record.counts}
     return _Sections(
-        {word: PrintedTable(Sheet(header, passages, {}), record.bounds) for word, passages in rows.items()}
+        {
+            word: PrintedTable(Sheet(header, passages, {}), record.bounds)
+            for word, passages in rows.items()
+        }
     )
 
 
@@ -212,7 +227,9 @@ class Dense:
         pairs = (zip(*columns, strict=True) for columns in zip(exact, near, strict=True))
         low = np.array([[(p * d - n * q) / (q * d) for (p, q), (n, d) in pair] for pair in pairs])
         sizes = map(Fraction, np.abs(states).max(axis=1).tolist())
-        off = [max(table.bound(name)) + PAIR * size for name, size in zip(STATE, sizes, strict=True)]
+        off = [
+            max(table.bound(name)) + PAIR * size for name, size in zip(STATE, sizes, strict=True)
+        ]
         return cls(times, states.T, low.T, float(max(off[:3])), float(max(off[3:])))
 
 
@@ -229,7 +246,8 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
         UnreachableError: the scene cannot be solved so closely.
     """
     grid = golden.times
-    later = float(grid[-1] - grid[-2]) + ROUNDED * float(grid[-1])  # a program that counts steps may end with one more
+    # a program that counts steps may end with one more
+    later = float(grid[-1] - grid[-2]) + ROUNDED * float(grid[-1])
     requested = np.unique(moments_of(times, grid[-1], later))
     if not requested.size:
         raise InputError("t", "no times", "at least one time in s")

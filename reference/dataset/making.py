@@ -13,7 +13,13 @@ from ..scenes.scene import Scene
 from ..scenes.shipped import index, scene_ids
 from .place import changes, changes_in, is_of_shipped_scene, shipped_scene, ships
 
-ENGINE, AUDIT, CONFIRM, WITH_FUNCTION, BARE = "--engine", "--audit", "--confirm", "--function", "--no-tables"
+ENGINE, AUDIT, CONFIRM, WITH_FUNCTION, BARE = (
+    "--engine",
+    "--audit",
+    "--confirm",
+    "--function",
+    "--no-tables",
+)
 # How a dataset is made, in its command. What was made before there was --confirm says --no-confirm or, of a whole
 # confirmation, nothing; and nothing of an audit that there was not.
 OPTIONS = re.compile(
@@ -36,7 +42,10 @@ class Making:
     def of(cls, command: str) -> Making:
         """Read it off a dataset's command, or off the options in the index of what ships."""
         engine, audit, confirm, no_confirm, function, bare = OPTIONS.findall(command)[0]
-        keywords: dict[str, Any] = {"confirm": "none" if no_confirm else confirm or "whole", "tables": not bare}
+        keywords: dict[str, Any] = {
+            "confirm": "none" if no_confirm else confirm or "whole",
+            "tables": not bare,
+        }
         return cls(engine, audit.strip() == AUDIT, function=bool(function), **keywords)
 
     @property
@@ -49,7 +58,11 @@ class Making:
     def options_for(self, scene: Scene, name: str) -> str:
         """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
         listed = index().get(name, {}).get("options", self.options)
-        return listed if is_of_shipped_scene(scene, name) and Making.of(listed) == self else self.options
+        return (
+            listed
+            if is_of_shipped_scene(scene, name) and Making.of(listed) == self
+            else self.options
+        )
 
     def solve_options(self, scene: Scene) -> dict[str, Any]:
         """Return the options with which `solve` makes a scene's dataset in this way, or refuses it."""

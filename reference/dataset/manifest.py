@@ -186,7 +186,9 @@ class Manifest(ManifestPart):
     decimals: dict[Kind, dict[Name, Decimals]]
     bounds: Bounds
     counts: Counts
-    transits: Literal["complete", "undecided intervals", "not asked for", "xdot is identically zero"]
+    transits: Literal[
+        "complete", "undecided intervals", "not asked for", "xdot is identically zero"
+    ]
     possible: list[Possible]
     invariant: Invariant
     equations: Equations
@@ -196,7 +198,8 @@ class Manifest(ManifestPart):
     generator: dict[Name, Name]
     command: Text
     files: dict[FileName, FileRecord]
-    sections: SectionsRecord | None = None  # where the scene asks for some; else it does not stand there
+    # where the scene asks for some; else it does not stand there
+    sections: SectionsRecord | None = None
 
     def text(self) -> str:
         """Return the text of the file, without sections where there are none."""
@@ -205,28 +208,41 @@ class Manifest(ManifestPart):
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:
         bounds, transits = self.bounds, TRANSITS if self.counts.transits else ()
-        needed = [*ALWAYS, *["transits.csv"] * bool(transits), *["sections.csv"] * bool(self.sections)]
+        needed = [
+            *ALWAYS,
+            *["transits.csv"] * bool(transits),
+            *["sections.csv"] * bool(self.sections),
+        ]
         lacking = [] if self.alone else [name for name in needed if name not in self.files]
         sections, function = bool(self.sections), [name in self.files for name in FUNCTION]
         numbers = map(float, (*bounds.grid.values(), *bounds.transits.values()))
         of_grid, of_transits = ({*self.decimals.get(kind, ())} for kind in ("grid", "transits"))
         rules = {
-            "level: a proof and the level enclosed belong together": (self.level == "enclosed") == bool(self.enclosure),
-            "level: no run agrees with the published one": bool(self.cross_checks) or self.level == "computed",
-            "level: a single run has no cross-checks": not (self.cross_checks and self.level == "computed"),
+            "level: a proof and the level enclosed belong together": (self.level == "enclosed")
+            == bool(self.enclosure),
+            "level: no run agrees with the published one": bool(self.cross_checks)
+            or self.level == "computed",
+            "level: a single run has no cross-checks": not (
+                self.cross_checks and self.level == "computed"
+            ),
             "notes: one for each flag": {*self.notes} == {*self.flags},
             "counts: a grid has two times at least": self.counts.grid >= 2,
             f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(bounds.grid) == GRID,
-            f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(bounds.transits) == transits,
+            f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(bounds.transits)
+            == transits,
             "bounds: a number beyond the range of binary64": all(map(math.isfinite, numbers)),
-            f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": of_grid == {"t", *GRID},
+            f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": of_grid
+            == {"t", *GRID},
             f"decimals.transits: must name the columns {', '.join(TRANSITS)}": of_transits
             in ({*TRANSITS}, {*transits}),
             f"files: {' and '.join(lacking)} must be there, but for a golden function alone": not lacking,
             "sections: they belong to a scene that asks for some": sections
             == ("sections" in self.scene.get("run", ())),
-            "files: sections.csv belongs to a dataset with sections": sections or "sections.csv" not in self.files,
-            "files: a golden function has two files, and a proof": function[0] == function[1] <= bool(self.enclosure),
+            "files: sections.csv belongs to a dataset with sections": sections
+            or "sections.csv" not in self.files,
+            "files: a golden function has two files, and a proof": function[0]
+            == function[1]
+            <= bool(self.enclosure),
         }
         if broken := [rule for rule, holds in rules.items() if not holds]:
             raise ValueError(broken[0])
@@ -247,7 +263,11 @@ class Manifest(ManifestPart):
 
     def bound(self, table: Kind, column: str) -> Fraction:
         """Return the bound on a column's printed numbers, the largest of all rows."""
-        bounds = self.sections.bounds if table == "sections" and self.sections else getattr(self.bounds, table)
+        bounds = (
+            self.sections.bounds
+            if table == "sections" and self.sections
+            else getattr(self.bounds, table)
+        )
         return Fraction(bounds[column])
 
 

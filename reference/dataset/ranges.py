@@ -50,7 +50,9 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
         DatasetError: a table does not hold what was proved; nothing is written then.
     """
     if not isinstance(ranges, Ranges):
-        raise InputError("ranges", ranges, "what prove_ranges returns", "A Solution is written by write.")
+        raise InputError(
+            "ranges", ranges, "what prove_ranges returns", "A Solution is written by write."
+        )
     folder = checked_path("folder", folder, "the folder to write to")
     check_target(folder, RANGES)
     texts = _texts(ranges)
@@ -91,12 +93,20 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
     except DatasetError as error:
         return error.problems
     again = prove_ranges(
-        printed.scene, printed.uncertain, engine=printed.engine, derivatives=printed.derivatives, report=report
+        printed.scene,
+        printed.uncertain,
+        engine=printed.engine,
+        derivatives=printed.derivatives,
+        report=report,
     )
     problems = [*_misprints(texts, again), *_other_facts(texts, again)]
     if recompute and not problems:
         files = _texts(again)
-        problems = [f"{name}: recomputing gives another text" for name in files if files[name] != texts[name]]
+        problems = [
+            f"{name}: recomputing gives another text"
+            for name in files
+            if files[name] != texts[name]
+        ]
     return problems
 
 
@@ -112,16 +122,24 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
         texts = {name: _text(folder / name) for name in (RANGES, *names)}
         if text_of({**manifest, "seal": _seal(manifest)}) != texts[RANGES]:
             hint = _hint(texts[RANGES], _hash(text_of({**manifest, "seal": _seal(manifest)})))
-            raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed{hint}"])
+            raise DatasetError(
+                str(folder), [f"{RANGES} does not fit its seal: a byte was changed{hint}"]
+            )
         for name, digest in manifest["sha256"].items():
             if _hash(texts[name]) != digest:
                 hint = _hint(texts[name], digest)
-                raise DatasetError(str(folder), [f"{name}: a byte was changed (sha256 differs){hint}"])
+                raise DatasetError(
+                    str(folder), [f"{name}: a byte was changed (sha256 differs){hint}"]
+                )
         scene_id = manifest["id"].partition("+")[0].removesuffix(f".{manifest['inputs']}")
         scene = parse_scene({"id": scene_id, "inputs": manifest["inputs"], **manifest["scene"]})
-        tables = {name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in names}
+        tables = {
+            name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in names
+        }
         passages = {
-            word: _zeros([row[1:] for row in tables[SECTIONS_FILE] if row[0] == word], SECTION, possible)
+            word: _zeros(
+                [row[1:] for row in tables[SECTIONS_FILE] if row[0] == word], SECTION, possible
+            )
             for word, possible in manifest.get("sections", {}).items()
         }
         transits = _zeros(tables[TRANSITS_FILE], TRANSITS, manifest["possible"])
@@ -138,7 +156,9 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
     except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
         if isinstance(error, DatasetError):
             raise
-        raise DatasetError(str(folder), [f"cannot be read: {type(error).__name__} {error}"]) from None
+        raise DatasetError(
+            str(folder), [f"cannot be read: {type(error).__name__} {error}"]
+        ) from None
     return ranges, texts
 
 
@@ -162,7 +182,9 @@ def _hint(text: str, digest: str) -> str:
     return f": {LINE_ENDS}" if lines != text and _hash(lines) == digest else ""
 
 
-def _zeros(rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]) -> Zeros[Intervals]:
+def _zeros(
+    rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]
+) -> Zeros[Intervals]:
     return Zeros(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
@@ -227,7 +249,9 @@ def _grid_rows(ranges: Ranges) -> list[list[str]]:
     first, *later = ranges.grid.rows
     # the release may be known exactly, up to the rounding of the proof: it has the digits of the next row
     pairs = zip(first, later[0], strict=True)
-    release = [text for x, after in pairs for text in ends(x.low, x.high, places_of(after.low, after.high))]
+    release = [
+        text for x, after in pairs for text in ends(x.low, x.high, places_of(after.low, after.high))
+    ]
     rows = zip(ranges.times, [release, *_cells(later)], strict=True)
     return [[fixed_decimal(t, decimals), *row] for t, row in rows]
 
@@ -246,9 +270,15 @@ def _table(first: Sequence[str], columns: Sequence[str], rows: Sequence[Sequence
 def _texts(ranges: Ranges) -> dict[str, str]:
     """Return the files of ranges, sealed."""
     tables = {GRID_FILE: _table(["t"], STATE, _grid_rows(ranges))}
-    tables[TRANSITS_FILE] = _table(["k", "direction"], TRANSITS, _zero_rows(ranges.transits, ranges.directions))
+    tables[TRANSITS_FILE] = _table(
+        ["k", "direction"], TRANSITS, _zero_rows(ranges.transits, ranges.directions)
+    )
     if sections := ranges.sections.items():
-        rows = [[word, *row] for word, zeros in sections for row in _zero_rows(zeros.table, zeros.directions)]
+        rows = [
+            [word, *row]
+            for word, zeros in sections
+            for row in _zero_rows(zeros.table, zeros.directions)
+        ]
         tables[SECTIONS_FILE] = _table(["section", "k", "direction"], SECTION, rows)
     manifest = _manifest(ranges, tables)
     return {RANGES: text_of(manifest | {"seal": _seal(manifest)}), **tables}
@@ -266,7 +296,8 @@ def _hash(text: str) -> str:
 def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
     proof, scene = ranges.proof, ranges.scene
     inputs = scene_inputs(scene)
-    inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}  # as widths support
+    # as widths support
+    inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}
     run: dict[str, Any] = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
     run |= {"derivatives": True} if ranges.derivatives else {}
     sections = {word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()}
@@ -281,7 +312,11 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
         "period_s": period_texts(ranges),
         "possible": open_intervals(ranges.possible),
         **({"sections": sections} if sections else {}),
-        "counts": {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)},
+        "counts": {
+            "grid": len(ranges.times),
+            "transits": len(ranges.transits),
+            "possible": len(ranges.possible),
+        },
         "proof": run | {"radius_m": rounded_up(proof.radius)},
         "sha256": {name: _hash(text) for name, text in tables.items()},
     }

@@ -35,12 +35,17 @@ from .place import dataset_id
 from .sheets import Sheet, column_bounds, open_intervals, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
-UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
+UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {
+    "bound": "s",
+    "angles": "degrees",
+}
 PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
 INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
 
 
-def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | None, tables: bool) -> Manifest:
+def manifest_of(
+    solution: Solution, sheets: Mapping[str, Sheet], name: str | None, tables: bool
+) -> Manifest:
     """Return the manifest of a solution, still without files and seal.
 
     Args:
@@ -54,7 +59,9 @@ def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | Non
     name = name or dataset_id(scene)
     options = f"{ENGINE} {run.engine}"
     if proof is not None:
-        making = Making(run.engine, proof.audited, proof.confirmed, proof.enclosure.function is not None, tables)
+        making = Making(
+            run.engine, proof.audited, proof.confirmed, proof.enclosure.function is not None, tables
+        )
         options = making.options_for(scene, name)
     of_transits = column_bounds(solution.transits, transits.decimals) if transits.rows else {}
     end = grid.rows[-1][0]
@@ -70,7 +77,9 @@ def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | Non
         digits=scene.run.digits,
         decimals={"grid": grid.decimals, "transits": transits.decimals},
         bounds=bounds_of(column_bounds(solution.grid, grid.decimals), of_transits),
-        counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
+        counts=Counts(
+            grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)
+        ),
         transits=completeness(scene, XDOT not in solution.zeros, bool(solution.possible)),
         possible=_possible(solution.possible, end),
         run=RunRecord.model_validate(run),
@@ -87,7 +96,10 @@ def manifest_of(solution: Solution, sheets: Mapping[str, Sheet], name: str | Non
 def _possible(intervals: Iterable[tuple[Fraction, Fraction, str]], end: str) -> list[Possible]:
     """Return intervals rounded outwards, but not beyond the end of the run, which the last row prints exactly."""
     texts = open_intervals(intervals)
-    return [Possible.model_validate(part | {"to_s": min(part["to_s"], end, key=Fraction)}) for part in texts]
+    return [
+        Possible.model_validate(part | {"to_s": min(part["to_s"], end, key=Fraction)})
+        for part in texts
+    ]
 
 
 def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
@@ -96,7 +108,10 @@ def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
     end = fixed_decimal(solution.times[-1], exact_decimals(solution.times[-1:]))
     for _, passages in named if sheet.rows else ():
         of_section = column_bounds(passages.table, sheet.decimals)
-        bounds = {column: max(bounds.get(column, "0"), bound, key=Fraction) for column, bound in of_section.items()}
+        bounds = {
+            column: max(bounds.get(column, "0"), bound, key=Fraction)
+            for column, bound in of_section.items()
+        }
     return SectionsRecord(
         decimals=sheet.decimals,
         bounds=bounds,
@@ -153,8 +168,16 @@ def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
 
 def _enclosure(proof: Proof) -> EnclosureRecord:
     enclosure = proof.enclosure
-    record = {"method": enclosure.method, "prec": enclosure.bits, "order": enclosure.order, "steps": enclosure.steps}
-    record |= {"position_radius_m": enclosure.position_radius, "velocity_radius_m_s": enclosure.velocity_radius}
+    record = {
+        "method": enclosure.method,
+        "prec": enclosure.bits,
+        "order": enclosure.order,
+        "steps": enclosure.steps,
+    }
+    record |= {
+        "position_radius_m": enclosure.position_radius,
+        "velocity_radius_m_s": enclosure.velocity_radius,
+    }
     record |= {"transit_radius_s": proof.transit_radius, "agreement_bits": proof.agreement_bits}
     return EnclosureRecord.model_validate(record)
 
@@ -168,4 +191,6 @@ def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:
     h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
     values = h.fractions()
     drift = rounded_up(max(abs(value - values[0]) for value in values))
-    return Invariant.model_construct(h_m2_s2=fixed_decimal(values[0], scene.run.digits), drift_m2_s2=drift)
+    return Invariant.model_construct(
+        h_m2_s2=fixed_decimal(values[0], scene.run.digits), drift_m2_s2=drift
+    )

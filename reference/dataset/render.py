@@ -47,7 +47,9 @@ NOTES: dict[str, str] = TEXTS["notes"]  # on the vectors
 MOST = 16  # states, and as many transits
 
 
-def render(solution: Solution, name: str | None = None, *, tables: bool = True) -> dict[str, Content]:
+def render(
+    solution: Solution, name: str | None = None, *, tables: bool = True
+) -> dict[str, Content]:
     """Return the content of every file of a dataset, by file name; `name` is its id, by default the scene's own.
 
     Without `tables` they are manifest and golden function alone.
@@ -65,10 +67,16 @@ def render(solution: Solution, name: str | None = None, *, tables: bool = True) 
     record = manifest_of(solution, sheets, name, tables)
     contents: dict[str, Content] = {}
     if tables:
-        contents |= {name: sheet.csv() for name, sheet in sheets.items()} | derived_texts(record, sheets)
+        contents |= {name: sheet.csv() for name, sheet in sheets.items()} | derived_texts(
+            record, sheets
+        )
     if solution.proof and (function := solution.proof.enclosure.function):
-        contents |= zip(FUNCTION, (FunctionRecord.of(function, record).text(), function.data), strict=True)
-    manifest = record.model_copy(update={"files": {file: FileRecord.of(text) for file, text in contents.items()}})
+        contents |= zip(
+            FUNCTION, (FunctionRecord.of(function, record).text(), function.data), strict=True
+        )
+    manifest = record.model_copy(
+        update={"files": {file: FileRecord.of(text) for file, text in contents.items()}}
+    )
     return {MANIFEST: manifest.sealed().text(), **contents}
 
 
@@ -93,20 +101,33 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
         if enclosure and FUNCTION[1] in files:
             from ..enclosure.trusted.function import check_function
 
-            check_function(files[FUNCTION[0]], files[FUNCTION[1]], enclosure.function, enclosure.proved)
+            check_function(
+                files[FUNCTION[0]], files[FUNCTION[1]], enclosure.function, enclosure.proved
+            )
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 
 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:
     """Return the files that follow from the manifest and the tables: the page for people, and the vectors."""
-    page = {"certified.txt": certified_page(manifest, tables["grid.csv"], tables.get("transits.csv"))}
-    return page | ({"vectors.json": vectors(manifest, tables).text()} if "grid.binary64.csv" in tables else {})
+    page = {
+        "certified.txt": certified_page(manifest, tables["grid.csv"], tables.get("transits.csv"))
+    }
+    return page | (
+        {"vectors.json": vectors(manifest, tables).text()} if "grid.binary64.csv" in tables else {}
+    )
 
 
 def certified_page(manifest: Manifest, grid: Sheet, transits: Sheet | None) -> str:
     """Return the page that belongs to a manifest and its tables; values are called certified if they are proven."""
-    return "\n".join([*_inputs(manifest), *_states(manifest, grid), *_accuracy(manifest, transits), *_how_to(manifest)])
+    return "\n".join(
+        [
+            *_inputs(manifest),
+            *_states(manifest, grid),
+            *_accuracy(manifest, transits),
+            *_how_to(manifest),
+        ]
+    )
 
 
 def _inputs(manifest: Manifest) -> list[str]:
@@ -160,7 +181,10 @@ def _accuracy(manifest: Manifest, transits: Sheet | None) -> list[str]:
     ]
     if transits is not None and transits.rows:
         ends = (("first", transits.rows[0]), ("last", transits.rows[-1]))
-        lines += [f"  {word:5} t = {row[1]} s, direction {row[2]}, bound {row[-1]} s" for word, row in ends]
+        lines += [
+            f"  {word:5} t = {row[1]} s, direction {row[2]}, bound {row[-1]} s"
+            for word, row in ends
+        ]
     if count:
         lines += [f"  largest bound on a time {bounds.transit_s} s"]
     if count and all(check.transit_s is None for check in manifest.cross_checks):
@@ -231,7 +255,9 @@ def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
     of_grid = {"release": [0], "end": [len(grid.rows) - 1]}
     of_transits = {"end": [len(transits.rows) - 1], "closest_pair": pair}
     states = [
-        StateVector(row=i + 1, flags=_flags(of_grid, i), values=_values(manifest, tables, "grid", i))
+        StateVector(
+            row=i + 1, flags=_flags(of_grid, i), values=_values(manifest, tables, "grid", i)
+        )
         for i in _spread(len(grid.rows), MOST)
     ]
     zeros = [
@@ -243,11 +269,16 @@ def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
         )
         for i in sorted({*_spread(len(transits.rows), MOST - len(pair)), *pair})
     ]
-    used = {flag for state in states for flag in state.flags} | {flag for zero in zeros for flag in zero.flags}
+    used = {flag for state in states for flag in state.flags} | {
+        flag for zero in zeros for flag in zero.flags
+    }
     return Vectors(
         schema_version=FORMAT,
         **manifest.model_dump(include={"id", "level", "digits", "inputs", "frame", "scene"}),
-        columns={name: UNITS[KINDS[name]] for name in dict.fromkeys((*NUMBERS["grid"], *NUMBERS["transits"]))},
+        columns={
+            name: UNITS[KINDS[name]]
+            for name in dict.fromkeys((*NUMBERS["grid"], *NUMBERS["transits"]))
+        },
         notes={**manifest.notes, **{flag: note for flag, note in NOTES.items() if flag in used}},
         states=states,
         transits=zeros,
@@ -256,7 +287,11 @@ def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
 
 def _spread(count: int, most: int) -> list[int]:
     """Return the numbers of at most `most` rows out of `count`, evenly spread, with the first and the last."""
-    return list(range(count)) if count <= most else [i * (count - 1) // (most - 1) for i in range(most)]
+    return (
+        list(range(count))
+        if count <= most
+        else [i * (count - 1) // (most - 1) for i in range(most)]
+    )
 
 
 def _flags(places: Mapping[str, list[int]], i: int) -> list[str]:
@@ -278,7 +313,11 @@ def _values(manifest: Manifest, tables: Mapping[str, Sheet], kind: Any, i: int) 
     hexfloats = {f"{name}_hex": float(row[name]).hex() for name in NUMBERS[kind]}
     if doubles is not None:
         hexfloats = dict(zip(doubles.header, doubles.rows[i], strict=True))
-    bounds = {"t": row.get("bound", "0"), **{k: b for k, b in getattr(manifest.bounds, kind).items() if k != "t"}}
+    bounds = {
+        "t": row.get("bound", "0"),
+        **{k: b for k, b in getattr(manifest.bounds, kind).items() if k != "t"},
+    }
     return {
-        name: Value(decimal=row[name], hexfloat=hexfloats[f"{name}_hex"], bound=bounds[name]) for name in NUMBERS[kind]
+        name: Value(decimal=row[name], hexfloat=hexfloats[f"{name}_hex"], bound=bounds[name])
+        for name in NUMBERS[kind]
     }

@@ -19,7 +19,8 @@ from ..solver.solution import Solution, decimals_of_zeros, exact_decimals, grid_
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
 SECTIONS_HEADER = ("section", "k", "t", "direction", *STATE, "bound")
-NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}  # the decimals with a fixed number of digits, also doubles
+# the decimals with a fixed number of digits, also doubles
+NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,10 @@ class Sheet:
         places = [self.header.index(name) for name in columns]
         parted = [[row[i].partition(".") for row in self.rows] for i in places]
         decimals = max((len(part) for column in parted for _, _, part in column), default=0)
-        scaled = ((int(whole + part) * 10 ** (decimals - len(part)) for whole, _, part in column) for column in parted)
+        scaled = (
+            (int(whole + part) * 10 ** (decimals - len(part)) for whole, _, part in column)
+            for column in parted
+        )
         return [integers(column) for column in scaled], 10**decimals
 
     def csv(self) -> str:
@@ -54,7 +58,10 @@ def grid_sheet(solution: Solution) -> Sheet:
     decimals = {"t": exact_decimals(solution.times), **grid_decimals(solution)}
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
     first, *later = solution.grid.printed(decimals)
-    given = {name: fixed_decimal(value, decimals[name]) for name, value in solution.scene.exact.released.items()}
+    given = {
+        name: fixed_decimal(value, decimals[name])
+        for name, value in solution.scene.exact.released.items()
+    }
     release = tuple(given.get(name, text) for name, text in zip(GRID, first, strict=True))
     printed = [release, *later]
     return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
@@ -92,9 +99,14 @@ def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Shee
     rows = []
     for i, row in enumerate(sheet.rows):
         numbers = [None if column is None else float(column[i]) for column in columns]
-        plain = (text if number is None else f"{number:.16e}" for text, number in zip(row, numbers, strict=True))
+        plain = (
+            text if number is None else f"{number:.16e}"
+            for text, number in zip(row, numbers, strict=True)
+        )
         rows.append((*plain, *(number.hex() for number in numbers if number is not None)))
-    return Sheet((*sheet.header, *(f"{name}_hex" for name in sheet.header if name in doubles)), rows, {})
+    return Sheet(
+        (*sheet.header, *(f"{name}_hex" for name in sheet.header if name in doubles)), rows, {}
+    )
 
 
 def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
@@ -115,17 +127,27 @@ def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
 def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
     """Return the largest bound of each column as text, rounding to the printed digits included."""
     bounds = table.largest_bounds()
-    return {name: rounded_up(bounds[name] + Fraction(1, 2 * 10 ** decimals[name])) for name in table.columns}
+    return {
+        name: rounded_up(bounds[name] + Fraction(1, 2 * 10 ** decimals[name]))
+        for name in table.columns
+    }
 
 
 def open_intervals(intervals: Iterable[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
     """Return intervals that may hold other zeros as text, rounded outwards, each with the parity of their number."""
-    return [{"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity} for low, high, parity in intervals]
+    return [
+        {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
+        for low, high, parity in intervals
+    ]
 
 
 def by_field(inputs: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
     """Return the inputs of a scene, given section by section, by names such as site.latitude."""
-    return {f"{section}.{key}": value for section, table in inputs.items() for key, value in table.items()}
+    return {
+        f"{section}.{key}": value
+        for section, table in inputs.items()
+        for key, value in table.items()
+    }
 
 
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
@@ -137,4 +159,7 @@ def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
             return SECTION_SEPARATOR.join(value)
         return str(value).lower() if isinstance(value, bool) else str(value)
 
-    return {section: {key: text(value) for key, value in table.items()} for section, table in document.items()}
+    return {
+        section: {key: text(value) for key, value in table.items()}
+        for section, table in document.items()
+    }

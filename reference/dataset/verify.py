@@ -20,9 +20,12 @@ from .record import generator
 from .render import render
 
 MAX_PROBLEMS = 20  # sentences returned at most
-BEYOND = "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"
+BEYOND = (
+    "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"
+)
 FOLLOWS = ("seal", "files")  # from everything else
-MEASURED = ("run", "cross_checks", "enclosure", "generator")  # may differ with the machine or the libraries
+# may differ with the machine or the libraries
+MEASURED = ("run", "cross_checks", "enclosure", "generator")
 HARDWARE = (DOUBLE.name, LONG_DOUBLE.name)
 
 
@@ -72,9 +75,18 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
 
 def _claims(manifest: Manifest) -> list[str]:
     """Return what a manifest says of its proof and its cross-checks, for which nothing but the index can vouch."""
-    confirmed = f" (confirmation: {Making.of(manifest.command).confirm})" if manifest.enclosure else ""
-    claims = {"the proof": manifest.enclosure, f"the cross-checks{confirmed}": manifest.cross_checks}
-    return [name for name, evidence in claims.items() if evidence and seals().get(manifest.id) != manifest.seal]
+    confirmed = (
+        f" (confirmation: {Making.of(manifest.command).confirm})" if manifest.enclosure else ""
+    )
+    claims = {
+        "the proof": manifest.enclosure,
+        f"the cross-checks{confirmed}": manifest.cross_checks,
+    }
+    return [
+        name
+        for name, evidence in claims.items()
+        if evidence and seals().get(manifest.id) != manifest.seal
+    ]
 
 
 def problems_of(folder: Path) -> list[str]:
@@ -91,7 +103,12 @@ def problems_of(folder: Path) -> list[str]:
 
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    of_tables = [scene_check.table_problems, scene_check.problems, read_back.problems, physics.problems]
+    of_tables = [
+        scene_check.table_problems,
+        scene_check.problems,
+        read_back.problems,
+        physics.problems,
+    ]
     checks = [scene_check.problems] if files.manifest.alone else of_tables
     for check in (*checks, function.problems):
         try:
@@ -146,7 +163,9 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     solution = solve(files.scene, **making.solve_options(files.scene), report=tell)
     texts = render(solution, manifest.id, tables=making.tables)
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
-    fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]
+    fields = [
+        *differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))
+    ]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
     changed = [name for name, record in again.files.items() if record != manifest.files.get(name)]
     wrong = [f"{name}: {_how_it_differs(files.texts.get(name), texts[name])}" for name in changed]
@@ -155,7 +174,10 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
     excused = manifest.generator != again.generator or any(run.number in HARDWARE for run in runs)
     if excused and all(place.startswith(MEASURED) for place, *_ in fields):
-        return [], [f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}", *lines]
+        return [], [
+            f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}",
+            *lines,
+        ]
     return lines, []
 
 

@@ -57,12 +57,19 @@ def writable_place(folder: Path) -> Iterator[tuple[Path, Path]]:
         target.parent.mkdir(parents=True, exist_ok=True)
         with workspace(target.parent, target.name) as work:
             yield work, target
-    except (OSError, RuntimeError) as error:  # the latter: links in a circle, on older versions of Python
+    except (
+        OSError,
+        RuntimeError,
+    ) as error:  # the latter: links in a circle, on older versions of Python
         advice = f"{getattr(error, 'strerror', None) or error}."
-        raise InputError("--out", str(folder), "a writable place with room for a dataset", advice) from None
+        raise InputError(
+            "--out", str(folder), "a writable place with room for a dataset", advice
+        ) from None
 
 
-def write(solution: Solution, folder: str | Path, name: str | None = None, *, tables: bool = True) -> Path:
+def write(
+    solution: Solution, folder: str | Path, name: str | None = None, *, tables: bool = True
+) -> Path:
     """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in its place.
 
     Args:
@@ -77,11 +84,16 @@ def write(solution: Solution, folder: str | Path, name: str | None = None, *, ta
     """
     if not isinstance(solution, Solution):
         raise InputError(
-            "solution", solution, "a Solution", "Solve the scene first. Ranges are written by write_ranges."
+            "solution",
+            solution,
+            "a Solution",
+            "Solve the scene first. Ranges are written by write_ranges.",
         )
     folder = checked_path("folder", folder, "the folder to write to")
     if not tables and solution.function is None:
-        raise InputError("tables", "none", "a golden function, or tables", "Solve it with function=True.")
+        raise InputError(
+            "tables", "none", "a golden function, or tables", "Solve it with function=True."
+        )
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
         advice = "What ships in data/golden is proved by FLINT alone, too."
         raise InputError("audit", "no audit", "an audited proof", advice)
@@ -108,7 +120,9 @@ def replace(target: Path, new: Path, work: Path) -> None:
     new.rename(target)
 
 
-def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution | None = None) -> None:
+def write_texts(
+    texts: Mapping[str, Content], folder: Path, solution: Solution | None = None
+) -> None:
     """Write the files of a dataset that was rendered, as `write` does; without its solution, they were checked."""
     check_target(folder)
     with writable_place(folder) as (work, target):
@@ -117,7 +131,10 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
             raise DatasetError(str(folder), problems)
         if solution is not None:
             contents = {path.name: path.read_bytes() for path in new.iterdir()}
-            kept = {name: data if name == FUNCTION[1] else data.decode() for name, data in contents.items()}
+            kept = {
+                name: data if name == FUNCTION[1] else data.decode()
+                for name, data in contents.items()
+            }
             check_evidence(kept, solution)
             check_proved(kept, solution)
         replace(target, new, work)
@@ -131,7 +148,9 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=Fraction)
     measured = vars(solution.guard).items() if solution.guard else ()
-    guard = {name: float(value) if isinstance(value, Fraction) else value for name, value in measured}
+    guard = {
+        name: float(value) if isinstance(value, Fraction) else value for name, value in measured
+    }
     return {
         "scene": solution.scene.id,
         "out": str(folder),
@@ -141,7 +160,8 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "confirmed": solution.proof.confirmed if solution.proof else None,
         "transits": len(solution.directions),
         "possible": len(solution.possible),
-        "bound_m": float(bound) or math.ulp(0.0) * (bound != "0"),  # the least double, where it is less
+        # the least double, where it is less
+        "bound_m": float(bound) or math.ulp(0.0) * (bound != "0"),
         "cpu_s": solution.cpu_s,
         "run_cpu_s": solution.run.cpu_s,
         "check_cpu_s": solution.check_s,

@@ -19,7 +19,8 @@ from .trusted.system import SceneBalls, scaled
 
 AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
 GRAIN = 64  # step sizes are rescaled by multiples of 1/GRAIN
-LOPSIDED = Fraction(33, 32)  # largest ratio of the time step before to its own that an expansion is stretched to cover
+# largest ratio of the time step before to its own that an expansion is stretched to cover
+LOPSIDED = Fraction(33, 32)
 
 
 def turned(inputs: Any, chain: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
@@ -42,7 +43,10 @@ def _turned_rows(e: TaylorStep, balls: SceneBalls) -> tuple[list[int], ...]:
     w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
     p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
     turn, _, _, cm, cw = scaled(balls, e.h, bits).whole
-    V = [f.derivative() + g // unit for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)]
+    V = [
+        f.derivative() + g // unit
+        for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)
+    ]
     tension = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
     return east, m, w, [int(c) for c in tension.coeffs()]
 
@@ -52,7 +56,9 @@ def rescaled(e: TaylorStep, ratio: Fraction) -> TaylorStep:
     return e._replace(h=ratio * e.h, rows=stretched(e.coefficients, (0, 0, 0, 2), ratio))
 
 
-def stretched(rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction) -> tuple[list[int], ...]:
+def stretched(
+    rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction
+) -> tuple[list[int], ...]:
     """Return coefficients of s / ratio, each row also times a power of the ratio, which is a multiple of 1/GRAIN."""
     factor, shift = int(ratio * GRAIN), GRAIN.bit_length() - 1
     most = [factor**k for k in range(max(map(len, rows)) + 2)]

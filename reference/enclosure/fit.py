@@ -49,16 +49,24 @@ class FunctionFit:
 
     def rounding_of_z(self, series: list[arb], off: int) -> float:
         """Return how far a series of z rounds, its coefficients and its values, in ulp of the length; 0 without one."""
-        costs = ((off * k**2 + k + 1) * abs(x) * 2**-53 + abs(x - float(x)) for k, x in enumerate(series[2 * CUT :]))
+        costs = (
+            (off * k**2 + k + 1) * abs(x) * 2**-53 + abs(x - float(x))
+            for k, x in enumerate(series[2 * CUT :])
+        )
         return float(sum(costs, arb(0))) / ulp(float(self.following.balls.inputs.length))
 
     def finish(self) -> ProvedFunction:
         """Finish the proof, with the lowest degree that costs next to nothing."""
         pieces, count, k, degree = self.following.pieces, self.following.count, np.arange(CUT), 0
         sizes = np.abs(np.array([piece[1] for piece in pieces])).reshape(-1, count, CUT)
-        there = np.array([[float(off) for off in piece[4].entries()] for piece in pieces]).reshape(-1, count, 4)
+        there = np.array([[float(off) for off in piece[4].entries()] for piece in pieces]).reshape(
+            -1, count, 4
+        )
         half = np.array([[[float(2 / piece[3])]] for piece in pieces])
-        weights: dict[int, Any] = {0: (3 * k**2 + k + 1, k**0, 1.0), 2: (k**2 * (k**2 + k + 7 / 3), k**2, half)}
+        weights: dict[int, Any] = {
+            0: (3 * k**2 + k + 1, k**0, 1.0),
+            2: (k**2 * (k**2 + k + 7 / 3), k**2, half),
+        }
         for j, (kept, left, scale) in weights.items():
             rounding = (2.0**-53 * scale * sizes * kept).cumsum(2)[..., -1]
             tails = (scale * sizes * left)[..., ::-1].cumsum(2)[..., ::-1].max(0)

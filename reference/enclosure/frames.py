@@ -37,10 +37,14 @@ class ColumnSource:
         back = np.zeros((M + 1, 6, 6))  # coefficient k stands at M - k
         back[M] = np.eye(6)
         for k in range(M):
-            back[M - k - 1] = product(field[:, : k + 1].reshape(6, -1), back[M - k :].reshape(-1, 6)) / (k + 1)
+            back[M - k - 1] = product(
+                field[:, : k + 1].reshape(6, -1), back[M - k :].reshape(-1, 6)
+            ) / (k + 1)
         flow = back[::-1].reshape(M + 1, 36)
         unit = np.array([1.0] * 3 + [h * self.w0] * 3)
-        start, end = (product(_powers(float(s), M)[None], flow).reshape(6, 6) for s in (step.low, step.high))
+        start, end = (
+            product(_powers(float(s), M)[None], flow).reshape(6, 6) for s in (step.low, step.high)
+        )
         combine = product(_inverse(start), unit[:, None] * self._frame(widths))
         columns = product(flow.reshape(-1, 6), combine).reshape(M + 1, 6, 6)
         self.end = product(end, combine) / unit[:, None]
@@ -52,12 +56,17 @@ class ColumnSource:
         h, M = float(step.h), ORDER
         w, c, g = self.w * h, self.c * h * h, self.g * h
         one = 1 << step.bits
-        rows = [[int(x) / one for x in fmpz_poly(row).truncate(M + 2).coeffs()] for row in step.coefficients]
+        rows = [
+            [int(x) / one for x in fmpz_poly(row).truncate(M + 2).coeffs()]
+            for row in step.coefficients
+        ]
         whole = np.array([row + [0.0] * (M + 2 - len(row)) for row in rows[:3]]).T
         n = whole[: M + 1]
         speed = whole[1:] * np.arange(1, M + 2)[:, None] + np.cross(w, n)
         products = np.cross(n[:, None], speed[None])
-        turn = np.array([products[range(k + 1), range(k, -1, -1)].sum(axis=0) for k in range(M + 1)])
+        turn = np.array(
+            [products[range(k + 1), range(k, -1, -1)].sum(axis=0) for k in range(M + 1)]
+        )
         turn[0] -= w
         field = np.zeros((6, M + 1, 6))
         field[:3, :, :3] = hats(turn).transpose(1, 0, 2)
@@ -74,15 +83,20 @@ class ColumnSource:
         lengths = np.sqrt((self.end * self.end).sum(axis=0))
         straight = self.end / lengths
         inverse = _inverse(straight)
-        if (straight * straight).ravel().cumsum()[-1] * (inverse * inverse).ravel().cumsum()[-1] < ILL**2:
+        if (straight * straight).ravel().cumsum()[-1] * (inverse * inverse).ravel().cumsum()[
+            -1
+        ] < ILL**2:
             return straight
-        logs = [float(arb(length).log()) + width for length, width in zip(lengths, widths, strict=True)]
+        logs = [
+            float(arb(length).log()) + width for length, width in zip(lengths, widths, strict=True)
+        ]
         return _orthogonal(straight[:, sorted(range(6), key=lambda j: -logs[j])])
 
 
 def product(a: Any, b: Any) -> Any:
     """Return the matrix product, each sum taken in order."""
-    return np.multiply(a.T[:, :, None], b[:, None, :], order="C").sum(axis=0)  # along the first axis: one by one
+    # along the first axis: one by one
+    return np.multiply(a.T[:, :, None], b[:, None, :], order="C").sum(axis=0)
 
 
 def _powers(x: float, order: int) -> Any:

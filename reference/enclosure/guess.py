@@ -8,7 +8,8 @@ from typing import Any
 from flint import arb, arb_poly, ctx
 
 SHORT = 64  # bits in which Newton's method begins
-ORDERS = 40  # of the Taylor series, enough for this: a coefficient is about a quarter of the one before
+# of the Taylor series, enough for this: a coefficient is about a quarter of the one before
+ORDERS = 40
 POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
 NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
 NEGLIGIBLE = arb(2) ** -12  # part of what xdot is uncertain by

@@ -30,8 +30,10 @@ from .trusted.system import SceneBalls
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
 COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
-RADIUS_BITS = 400  # up to which one radius is always cheaper than columns: a step by columns takes six times as long
-RADIUS_SHARE = 0.2  # beyond that, share of the target bits that one radius may lose before columns are cheaper
+# up to which one radius is always cheaper than columns: a step by columns takes six times as long
+RADIUS_BITS = 400
+# beyond that, share of the target bits that one radius may lose before columns are cheaper
+RADIUS_SHARE = 0.2
 LEAST_BITS, MAX_BITS = 96, 2048
 LOOK_BITS = 128  # in which a scene is looked at before its proof
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
@@ -41,7 +43,8 @@ USELESS = 2**12  # a state known this many times less closely than requested end
 TINY = -1e9  # stands for the logarithm of a width that is 0
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
-Lost = Callable[[int], int]  # bits that an approximant of so many loses, if one radius carries its error
+# bits that an approximant of so many loses, if one radius carries its error
+Lost = Callable[[int], int]
 
 
 class ProofPlan(NamedTuple):
@@ -111,7 +114,9 @@ def enclose(
         plan, reason = plan_for(inputs, times[-1], radius, method, lost), "nothing tried"
     except (ArithmeticError, ValueError) as error:
         advice = "Its numbers are too far apart: check lengths, rates and angles."
-        raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
+        raise UnreachableError(
+            f"enclosure: no precision can be chosen for this scene; {error}.", advice
+        ) from None
     for _ in range(ATTEMPTS):
         try:
             run = _Run(inputs, plan, list(times), radius, zeros, progress, flint_only, function)
@@ -166,7 +171,10 @@ class _Run:
             )  # the same polynomials, each ended at the double below its end
         for step in until(steps, end):
             begun = process_time()
-            course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
+            course.advance(
+                step,
+                *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []),
+            )
             if fit:
                 fit.add()
             spent += process_time() - begun
@@ -181,12 +189,18 @@ class _Run:
         proved = function.proved if function else course.finish()
         position, velocity = self._check_widths(proved.states, end, 1, bits)
         spent += process_time() - begun
-        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, spent, function)
+        return Enclosure(
+            proved, bits, order, count, self.plan.method, position, velocity, spent, function
+        )
 
-    def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
+    def _check_widths(
+        self, states: Sequence[State], time: Fraction, factor: int, bits: int
+    ) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""
         widths = [[(i.high - i.low) / 2 for i in row] for row in states]
-        position, velocity = (max(max(row[part]) for row in widths) for part in (slice(3), slice(3, 6)))
+        position, velocity = (
+            max(max(row[part]) for row in widths) for part in (slice(3), slice(3, 6))
+        )
         if max(position, velocity) > factor * self.radius:
             missing = magnitude(max(position, velocity) / self.radius) + 6
             # what the rest of the run will lose, if it is like what lies behind
@@ -203,7 +217,8 @@ def check_gates(inputs: Any, words: tuple[str, ...]) -> None:
     Raises:
         InputError: as `demand_rest_positions`.
     """
-    with suppress(ArithmeticError, ValueError):  # of other faults of a scene the proof tells the reason
+    # of other faults of a scene the proof tells the reason
+    with suppress(ArithmeticError, ValueError):
         demand_rest_positions(SceneBalls(inputs, LOOK_BITS), words)
 
 
@@ -225,7 +240,9 @@ def demand_rest_positions(balls: SceneBalls, words: tuple[str, ...]) -> None:
             raise gate_without_rest(word, reason) from None
 
 
-def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None, lost: Lost | None = None) -> ProofPlan:
+def plan_for(
+    inputs: Any, end: Fraction, radius: Fraction, method: str | None, lost: Lost | None = None
+) -> ProofPlan:
     """Choose method and precision for balls of `radius` at `end`.
 
     Raises:
@@ -235,7 +252,9 @@ def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None, l
     w, span = float(balls.w0), float(end)
     loss = span * float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * w) / 0.693
     target = magnitude(inputs.length / radius) + log2(2 + span * w)
-    cheap = target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS
+    cheap = (
+        target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS
+    )
     method = method or ("radius" if cheap else "columns")
     extra = loss if method == "radius" else COLUMN_MARGIN_BITS + 2 * log2(2 + span * w) / 2
     bits = max(LEAST_BITS, 8 * ceil((target + MARGIN_BITS + extra) / 8))

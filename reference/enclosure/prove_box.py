@@ -19,7 +19,8 @@ from .trusted.shapes import Box, Interval, ProvedBox, ProvedDerivatives
 
 LOOK_BITS = 192  # in which a box is looked at
 BOX_BITS = 12  # the approximant is off by this part of the box at most
-GROWTH = 1.0  # logarithm of what one radius grows by: beyond it the motion is followed by its derivatives
+# logarithm of what one radius grows by: beyond it the motion is followed by its derivatives
+GROWTH = 1.0
 ADVICE = "Make the inputs less uncertain, or the run shorter (run.t_end)."
 
 
@@ -69,12 +70,16 @@ def enclose_box(
     try:
         balls = BoxBalls(box, LOOK_BITS)
         demand_rest_positions(balls, zeros)
-        bits = plan_for(box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius").bits
+        bits = plan_for(
+            box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius"
+        ).bits
         windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, zeros)
         course, latest = windows.course, windows.course.times[-1]
         follower = source = None
         # the rate at which Theorem C's radius grows, in 1/s
-        growth = float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * float(balls.w0))
+        growth = float(max(balls.below, balls.above + balls.speed**2, key=float)) / (
+            2 * float(balls.w0)
+        )
         if halves and (derivatives or growth * float(latest) > GROWTH):
             from .tangents import TangentSource, scales_of
             from .trusted.derivatives import Derivatives
@@ -93,9 +98,12 @@ def enclose_box(
         cpu_s += process_time() - begun
     except (ArithmeticError, ValueError):
         holds = float(reached / windows.pace.high) if reached else 0.0
-        raise UnreachableError(f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE) from None
+        raise UnreachableError(
+            f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE
+        ) from None
     radius = interval(course.bound.eta * balls.length).high
-    lean = interval(sum((2 * x.rad() for x in balls.tilt), arb(0))).high  # these balls hold the scene's own
+    # these balls hold the scene's own
+    lean = interval(sum((2 * x.rad() for x in balls.tilt), arb(0))).high
     return BoxEnclosure(proved, bits, count, radius, windows.pace, lean, cpu_s, found)
 
 

@@ -25,6 +25,8 @@ class SumsChecked:
 def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
     """Raise ArithmeticError unless a piece's exact sums are those it was proved with, and shortened ones bound them."""
     table, whole = piece.rows.table, piece.k.whole
-    sums = zip(piece.norms, norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True)
+    sums = zip(
+        piece.norms, norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True
+    )
     if not all(exact == own and bound >= own for own, exact, bound in sums):
         raise ArithmeticError("audit: the sums of digits are not FLINT's")

@@ -32,7 +32,10 @@ class TangentSource:
     def __init__(self, balls: BoxBalls, ways: list[Way]) -> None:
         """Read the ways as floats."""
         self.columns, self.w0, self.drag = ColumnSource(balls), float(balls.w0), float(balls.drag)
-        self.turns, self.slows = [np.array([*map(float, way.turn)]) for way in ways], [float(way.slow) for way in ways]
+        self.turns, self.slows = (
+            [np.array([*map(float, way.turn)]) for way in ways],
+            [float(way.slow) for way in ways],
+        )
         self.crosses = hats(np.array(self.turns)).transpose(0, 2, 1)
         self.ends = [np.array([*map(float, way.last)]) for way in ways]
 
@@ -57,14 +60,20 @@ class TangentSource:
         flow[0, :, :6] = np.eye(6)
         matrices = field.transpose(1, 0, 2)
         for k in range(M):
-            flow[k + 1] = (np.einsum("kij,kjl->il", matrices[: k + 1], flow[k::-1]) + forces[k]) / (k + 1)
-        start, end = (np.tensordot(float(s) ** np.arange(M + 1), flow, 1) for s in (step.low, step.high))
+            flow[k + 1] = (np.einsum("kij,kjl->il", matrices[: k + 1], flow[k::-1]) + forces[k]) / (
+                k + 1
+            )
+        start, end = (
+            np.tensordot(float(s) ** np.arange(M + 1), flow, 1) for s in (step.low, step.high)
+        )
         proposals, begins = [], np.array([unit * x for x in self.ends]).T - start[:, 6:]
         for j, y in enumerate(np.linalg.solve(start[:, :6], begins).T):
             rows = flow[:, :, :6] @ y + flow[:, :, 6 + j]
             self.ends[j] = (end[:, :6] @ y + end[:, 6 + j]) / unit
             bits = FINE - frexp(np.abs(rows).max() or 1.0)[1]
-            proposals.append((np.rint(np.ldexp(rows.T, bits)).astype(np.int64).tolist(), max(bits, 0)))
+            proposals.append(
+                (np.rint(np.ldexp(rows.T, bits)).astype(np.int64).tolist(), max(bits, 0))
+            )
         return proposals
 
 

@@ -19,7 +19,9 @@ AUTO = "auto"  # the fastest engine that is installed
 def folders_with(file: str) -> tuple[str, ...]:
     """Return the folders here that have a module of this name."""
     folders = (module.name for module in iter_modules(__path__) if module.ispkg)
-    return tuple(sorted(name for name in folders if find_spec(f"{__name__}.{name}.{file}") is not None))
+    return tuple(
+        sorted(name for name in folders if find_spec(f"{__name__}.{name}.{file}") is not None)
+    )
 
 
 def engine_names() -> tuple[str, ...]:

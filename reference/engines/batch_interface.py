@@ -19,7 +19,8 @@ from ..numbers.precision import Array
 from ..system.imports import OptionalEngine
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
-CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
+# of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
+CLOSE_PAIR = 0.25
 LEAST_BEND = 1e-6  # of a highest point: below it the orbit is conical
 XDOT = (0, 0, 0, 1, 0, 0, 0)  # the form a·n + b·n' - d of the transits: a, b and d
 
@@ -72,11 +73,18 @@ class Rows:
     @classmethod
     def joined(cls, blocks: Sequence[Self]) -> Self:
         """Return the rows of several blocks, in order."""
-        return cls(*(np.concatenate([getattr(block, field.name) for block in blocks]) for field in fields(cls)))
+        return cls(
+            *(
+                np.concatenate([getattr(block, field.name) for block in blocks])
+                for field in fields(cls)
+            )
+        )
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return some of the rows: a slice, or an array of indices or truths."""
-        return type(self)(*(np.ascontiguousarray(getattr(self, field.name)[chosen]) for field in fields(self)))
+        return type(self)(
+            *(np.ascontiguousarray(getattr(self, field.name)[chosen]) for field in fields(self))
+        )
 
 
 @dataclass(frozen=True)
@@ -154,7 +162,11 @@ class Outcomes:
         for name in ("steps", "transits", "close_pairs", "apsides", "same_side"):
             columns[name] = np.zeros(count, np.int32)
         columns |= {"fate": np.zeros(count, np.int8), "state": np.full((count, 6), np.nan)}
-        for name, kind in (("transit_row", np.int64), ("transit_t", np.float64), ("transit_direction", np.int8)):
+        for name, kind in (
+            ("transit_row", np.int64),
+            ("transit_t", np.float64),
+            ("transit_direction", np.int8),
+        ):
             columns[name] = np.zeros(0, kind)
         return cls(**columns)
 
@@ -236,15 +248,22 @@ class PlumbAxes:
         size = square_root(north * north + up * up)
         sin, cos = plumb_line(north, up, size, np.where(size.vanishes, 1.0, 0.0))
         turn = turned(of(rows.turn[:, 1]), of(rows.turn[:, 2]), sin, cos)
-        n, V = ((of(part[:, 0]), *turned(of(part[:, 1]), of(part[:, 2]), sin, cos)) for part in (rows.n, rows.V))
+        n, V = (
+            (of(part[:, 0]), *turned(of(part[:, 1]), of(part[:, 2]), sin, cos))
+            for part in (rows.n, rows.V)
+        )
         speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
         return cls(size, sin, cos, turn, n, V, speed)
 
     def forms(self, rows: Rows) -> Array:
         """Return a, b and d of the rows' forms, shape (7, n); here n is counted from the lowest point, (0, 0, -1)."""
-        ax, ay, az, bx, by, bz, d = (DoubleDouble.from_pairs(rows.form[:, i]) for i in range(len(XDOT)))
+        ax, ay, az, bx, by, bz, d = (
+            DoubleDouble.from_pairs(rows.form[:, i]) for i in range(len(XDOT))
+        )
         ap, au = turned(ay, az, self.sin, self.cos)
-        return np.array([part.high for part in (ax, ap, au, bx, *turned(by, bz, self.sin, self.cos), d + au)])
+        return np.array(
+            [part.high for part in (ax, ap, au, bx, *turned(by, bz, self.sin, self.cos), d + au)]
+        )
 
 
 def moved(numbers: Array, way: int) -> Array:

@@ -35,7 +35,8 @@ SPARE_BITS = 64  # of forms, places and states beyond the run's own
 NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
 ROUNDING = 2.0**-46  # of Bernstein's form in double, against the sum of the coefficients' sizes
 BLURRED = 2.0**10  # times its rounding: a form below that is made again of a piece alone
-MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
+# of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
+MOST_TERMS = 40
 GRAZING = "Ask for more digits, or leave this section out (run.sections)."
 
 
@@ -43,8 +44,15 @@ class SectionSearch:
     """The passages of one section: `take` all steps in order."""
 
     def __init__(self, word: str, form: Form, prec: int) -> None:
-        self.word, self.form, self.bits, self.noise = word, form, prec + SPARE_BITS, prec - NOISE_BITS
-        self.whole = [[int(to_fraction(x) * (1 << self.bits)) for x in v] for v in (form.a, form.b, [form.d])]
+        self.word, self.form, self.bits, self.noise = (
+            word,
+            form,
+            prec + SPARE_BITS,
+            prec - NOISE_BITS,
+        )
+        self.whole = [
+            [int(to_fraction(x) * (1 << self.bits)) for x in v] for v in (form.a, form.b, [form.d])
+        ]
         self.left, self.passages = 0, list[tuple[list[int], int, list[int]]]()
 
     def take(self, steps: list[TaylorStep], rows: list[list[list[int]]], series: Array) -> None:
@@ -68,13 +76,18 @@ class SectionSearch:
         a, d = ([x * h.numerator // h.denominator for x in v] for v in (a, d))
         g = [-d[0] << step.bits] + [0] * (len(rows[0]) - 2)
         for p, q, row in zip(a, b, rows, strict=True):
-            g = [x + p * c + q * k * rate for k, (x, c, rate) in enumerate(zip(g, row, row[1:], strict=False), 1)]
+            g = [
+                x + p * c + q * k * rate
+                for k, (x, c, rate) in enumerate(zip(g, row, row[1:], strict=False), 1)
+            ]
         least = (sum(map(abs, a)) + sum(map(abs, b))) << step.bits >> self.noise
         if not self.left:  # at the release
             while g and abs(g[0]) <= least:
                 g = g[1:]
         if not g or max(map(abs, g)) <= least:
-            raise IntegrationError(f"{self.word}: the motion stays in this section, as far as digits tell.", GRAZING)
+            raise IntegrationError(
+                f"{self.word}: the motion stays in this section, as far as digits tell.", GRAZING
+            )
         places = Places(g, least, self.bits, self.word)
         left, right = self.left or places.sign(0), places.sign(unit)
         for low, high, sign in places.isolated(left, right):
@@ -186,7 +199,10 @@ def bernstein(terms: int) -> tuple[Array, Array]:
 def _left_out(row: list[int], s: float) -> int:
     """Return about what a rate lacks at a place: twice the next term, as terms fall like the last four, two by two."""
     last, before = (max(map(abs, pair)) for pair in (row[-2:], row[-4:-2]))
-    return 2 * len(row) * min(last, last * last // max(before, 1)) * int(s ** (len(row) - 1) * 2**53) >> 53
+    return (
+        2 * len(row) * min(last, last * last // max(before, 1)) * int(s ** (len(row) - 1) * 2**53)
+        >> 53
+    )
 
 
 def _shifted(value: int, bits: int) -> int:
@@ -202,9 +218,14 @@ def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, Zeros[Table]]
         IntegrationError: a section that the motion touches, or stays in, as far as the digits tell.
     """
     start = Start.of(plan.inputs, plan.number.prec + SPARE_BITS + GUARD_BITS)
-    searches = [SectionSearch(word, form_of(word, start), plan.number.prec) for word in plan.sections]
+    searches = [
+        SectionSearch(word, form_of(word, start), plan.number.prec) for word in plan.sections
+    ]
     unit = 1 << plan.number.prec + SPARE_BITS
-    sin, cos = ((int(to_fraction(x) * unit)) for x in ((start.k.sin, start.k.cos) if start.k.rate else (1, 0)))
+    sin, cos = (
+        (int(to_fraction(x) * unit))
+        for x in ((start.k.sin, start.k.cos) if start.k.rate else (1, 0))
+    )
     while batch := list(islice(steps, BATCH)):
         rows = []
         for step in batch:
@@ -217,7 +238,11 @@ def passages(plan: Plan, steps: Iterator[TaylorStep]) -> dict[str, Zeros[Table]]
         series = (np.array(rows, object) / (1 << step.bits)).astype(float)
         for search in searches:
             search.take(batch, rows, series)
-    bits, length, last = plan.number.prec + SPARE_BITS, plan.inputs.length, int(plan.times[-1] * unit)
+    bits, length, last = (
+        plan.number.prec + SPARE_BITS,
+        plan.inputs.length,
+        int(plan.times[-1] * unit),
+    )
     tables = {}
     for search in searches:
         kept = [passage for passage in search.passages if passage[0][0] <= last]

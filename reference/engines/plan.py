@@ -27,10 +27,14 @@ from ..scenes.inputs import Inputs
 from ..system.imports import OptionalEngine
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s
-Pace = Callable[[int, float], None]  # called with the steps taken and the time reached; raises to end a run
+# called with the steps taken and the time reached; raises to end a run
+Pace = Callable[[int, float], None]
 
-AT_REST = "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
-MOST_TURN = 1.75  # longest step times the swing's frequency: a small swing's series reach further, bounds do not
+AT_REST = (
+    "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
+)
+# longest step times the swing's frequency: a small swing's series reach further, bounds do not
+MOST_TURN = 1.75
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,9 @@ class Engine(OptionalEngine, ABC):
     proof_step_s: ClassVar[float]
 
     @abstractmethod
-    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()) -> Plan:
+    def plan(
+        self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()
+    ) -> Plan:
         """Return the cheapest run with at least `prec` bits."""
 
     def witness(self, published: Plan, prec: int) -> Plan:
@@ -132,7 +138,9 @@ class Engine(OptionalEngine, ABC):
 
         No number in it may be the published run's by construction, so that their difference tells an error.
         """
-        return replace(self.plan(published.inputs, prec, published.times, published.zeros), other_steps=True)
+        return replace(
+            self.plan(published.inputs, prec, published.times, published.zeros), other_steps=True
+        )
 
     @property
     def _code(self) -> Any:

@@ -80,7 +80,9 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     return replace(done, zeros={**done.zeros, **found}, cpu_s=done.cpu_s + process_time() - begun)
 
 
-def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None) -> tuple[Run, Run]:
+def run_both(
+    first: Plan, second: Plan, steps: int, report: Report | None = None
+) -> tuple[Run, Run]:
     """Do two runs, at the same time if the machine has two cores and the work is worth another process.
 
     Args:

@@ -23,8 +23,10 @@ MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
 RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
 FINER = 16  # parts of the time between two samples, where a form may dip to zero there
-QUIET = 1e-4  # of a swing's period after the release: there heyoka may report the zero at the release
-MOST_LATE = 1e-3  # of a radian of the swing, as a zero of the height's rate was found: else its series tells little
+# of a swing's period after the release: there heyoka may report the zero at the release
+QUIET = 1e-4
+# of a radian of the swing, as a zero of the height's rate was found: else its series tells little
+MOST_LATE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -69,11 +71,15 @@ class RowMotion:
 
     def earlier(self, by: Array) -> Self:
         """Return the motion a little earlier than at its times, n'' as it is."""
-        return type(self)(subtract(self.n, scale(by, self.v)), subtract(self.v, scale(by, self.a)), self.a)
+        return type(self)(
+            subtract(self.n, scale(by, self.v)), subtract(self.v, scale(by, self.a)), self.a
+        )
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return the motion at some of its times."""
-        return type(self)(*(tuple(part[chosen] for part in vector) for vector in (self.n, self.v, self.a)))
+        return type(self)(
+            *(tuple(part[chosen] for part in vector) for vector in (self.n, self.v, self.a))
+        )
 
 
 @dataclass(frozen=True)
@@ -105,10 +111,16 @@ class RowRelease:
     @classmethod
     def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any) -> Self:
         """Return what is known of a row whose motion at the release is given, and in these axes the form."""
-        rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
+        rate, multiplicity, rising = (
+            np.sqrt(axes.size.high[row]),
+            rows.zeros_at_release[row],
+            rows.rising[row],
+        )
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
         x, p, u = motion.n
-        east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0], -x, -turn[2] * p)[multiplicity]
+        east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0], -x, -turn[2] * p)[
+            multiplicity
+        ]
         return cls(
             length=rows.length[row, 0],
             end=rows.t_end[row, 0],
@@ -118,7 +130,10 @@ class RowRelease:
             forms={TRANSIT: form, HEIGHT: RISE},
             zero={TRANSIT: multiplicity > 0, HEIGHT: rising == 0},
             # at rest on the plumb line the bob can but rise
-            signs={TRANSIT: rows.leaves[row] or np.sign(east), HEIGHT: rising or np.sign(motion.a[2]) or 1},
+            signs={
+                TRANSIT: rows.leaves[row] or np.sign(east),
+                HEIGHT: rising or np.sign(motion.a[2]) or 1,
+            },
             angle=np.arctan2(np.hypot(x, p), -u),
         )
 
@@ -141,20 +156,29 @@ class Samples:
         signs = np.concatenate([[release.signs[kind]], zeros.directions])
         expected = signs[np.searchsorted(zeros.times, self.times[1:])]
         alternate = (signs[:-1] * signs[1:] < 0).all()
-        alternate = alternate and (self.motion.form(release.forms[kind])[0][1:] * expected > 0).all()
+        alternate = (
+            alternate and (self.motion.form(release.forms[kind])[0][1:] * expected > 0).all()
+        )
         return not (alternate and not self._dips(zeros, at, release, kind)[0].size)
 
     def finer(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> Array:
         """Return the times of samples, with more of them where the form of a kind may dip to zero."""
-        return np.union1d(self.times, np.linspace(*self._dips(zeros, at, release, kind), FINER + 1)[1:-1])
+        return np.union1d(
+            self.times, np.linspace(*self._dips(zeros, at, release, kind), FINER + 1)[1:-1]
+        )
 
-    def _dips(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> tuple[Array, Array]:
+    def _dips(
+        self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int
+    ) -> tuple[Array, Array]:
         """Return the neighbours among samples and zeros between which a form may go through zero and back.
 
         The cubic through the values and slopes there says how low the minimum between them is, but for its error: that
         of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
-        signs, times = np.append(release.signs[kind], zeros.directions), np.append(self.times, zeros.times)
+        signs, times = (
+            np.append(release.signs[kind], zeros.directions),
+            np.append(self.times, zeros.times),
+        )
         order = np.argsort(times, kind="stable")
         rate, slope = self.motion.form(release.forms[kind])
         sign, most = signs[np.cumsum(order >= len(rate))[:-1]], np.abs(rate).max()
@@ -162,18 +186,30 @@ class Samples:
         length = np.diff(times)
         rate = np.concatenate([rate, 0 * zeros.times])[order]
         slope = np.concatenate([slope, at.form(release.forms[kind])[1]])[order]
-        left, right, before, after = sign * [rate[:-1], rate[1:], slope[:-1] * length, slope[1:] * length]
+        left, right, before, after = sign * [
+            rate[:-1],
+            rate[1:],
+            slope[:-1] * length,
+            slope[1:] * length,
+        ]
         if release.zero[kind]:
             left[0], before[0] = 0, max(before[0], 0)
         between = 3 * (right - left) - before - after
         s = before / (before - between - np.sqrt(between**2 - before * after))
-        least = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * ((3 - 2 * s) * right - (1 - s) * after)
+        least = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * (
+            (3 - 2 * s) * right - (1 - s) * after
+        )
         may = (s > 0) & (s < 1) & (least < most * (2 * release.rate * length) ** 4 / 384)
         return times[:-1][may], times[1:][may]
 
 
 def describe_transits(
-    outcomes: Outcomes, row: int, release: RowRelease, zeros: RowZeros, at: RowMotion, samples: Samples
+    outcomes: Outcomes,
+    row: int,
+    release: RowRelease,
+    zeros: RowZeros,
+    at: RowMotion,
+    samples: Samples,
 ) -> None:
     """Fill in a row's transits: the zeros, and the motion at them."""
     t, (_, ax) = zeros.times, at.form(release.forms[TRANSIT])
@@ -183,11 +219,18 @@ def describe_transits(
     if len(t):
         outcomes.t_first[row], outcomes.t_last[row] = t[0], t[-1]
         outcomes.least_ax[row] = np.abs(ax).min() * release.length
-        outcomes.close_pairs[row] = np.count_nonzero(np.diff(t) < CLOSE_PAIR * 2 * np.pi / release.rate)
+        outcomes.close_pairs[row] = np.count_nonzero(
+            np.diff(t) < CLOSE_PAIR * 2 * np.pi / release.rate
+        )
 
 
 def describe_highest_points(
-    outcomes: Outcomes, row: int, release: RowRelease, zeros: RowZeros, at: RowMotion, samples: Samples
+    outcomes: Outcomes,
+    row: int,
+    release: RowRelease,
+    zeros: RowZeros,
+    at: RowMotion,
+    samples: Samples,
 ) -> None:
     """Fill in a row's highest points, the zeros at which the height begins to fall, and its largest angle.
 
@@ -206,12 +249,19 @@ def describe_highest_points(
         return
     late = at.v[2] / at.a[2]
     zeros = RowZeros(zeros.times - late, zeros.directions)
-    if samples.lost(zeros, at, release, HEIGHT) or not (np.abs(late) * release.rate < MOST_LATE).all():
+    if (
+        samples.lost(zeros, at, release, HEIGHT)
+        or not (np.abs(late) * release.rate < MOST_LATE).all()
+    ):
         outcomes.fate[row] = DOUBTFUL
         return
     t, (x, p, _) = zeros.times[high], at.earlier(late)[high].n
     azimuth = np.arctan2(p, x)
-    outcomes.apsides[row], outcomes.least_bend[row], outcomes.least_fall[row] = len(t), bend, fall.min()
+    outcomes.apsides[row], outcomes.least_bend[row], outcomes.least_fall[row] = (
+        len(t),
+        bend,
+        fall.min(),
+    )
     outcomes.apsis_first[row], outcomes.apsis_last[row] = t[0], t[-1]
     half_turns = np.round(np.diff(azimuth) / np.pi)
     outcomes.turn[row] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)

@@ -42,9 +42,13 @@ class Variants:
     def __init__(self) -> None:
         from .heyoka.propagator import Propagator
 
-        self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=len(self._PARAMETERS))
+        self._propagator = Propagator(
+            self._MODEL.variables, self._rates, DOUBLE, parameters=len(self._PARAMETERS)
+        )
 
-    def states(self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None) -> Array:
+    def states(
+        self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None
+    ) -> Array:
         """Return the states of one run.
 
         Args:
@@ -59,7 +63,10 @@ class Variants:
             InputError: the release is beyond the cord's reach.
             IntegrationError: heyoka stops before the last time, or a state is not finite.
         """
-        if inputs.position is not None and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2:
+        if (
+            inputs.position is not None
+            and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2
+        ):
             raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
         start = Start.of(inputs, DOUBLE.prec + GUARD_BITS)
         k = (start.k if alter is None else alter(start.k)).converted(float)
@@ -82,14 +89,21 @@ class Variants:
         return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
 
     @classmethod
-    def _rates(cls, state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
+    def _rates(
+        cls, state: Sequence[Any], functions: Any, parameters: Sequence[Any]
+    ) -> Sequence[Any]:
         k = Constants.of(dict(zip(cls._PARAMETERS, parameters, strict=True)))
         return cls._MODEL.derivatives(state, k, functions)
 
 
-STEPS_PER_RADIAN = 100  # most steps while the scene's fastest rate goes through a radian: a run takes one or two
+# most steps while the scene's fastest rate goes through a radian: a run takes one or two
+STEPS_PER_RADIAN = 100
 LEAST_STEPS = 10_000  # and of a whole run
-SINGULAR = {"plane": "at the horizontal", "angles": "on the vertical", "lagrangian": "on the vertical"}
+SINGULAR = {
+    "plane": "at the horizontal",
+    "angles": "on the vertical",
+    "lagrangian": "on the vertical",
+}
 
 
 def integrate(
@@ -169,7 +183,9 @@ def trajectory(
     """
     scene = as_scene(scene)
     if formulation not in FORMULATIONS:
-        raise unknown("formulation", formulation, f"one of {', '.join(FORMULATIONS)}", FORMULATIONS, "")
+        raise unknown(
+            "formulation", formulation, f"one of {', '.join(FORMULATIONS)}", FORMULATIONS, ""
+        )
     _check_number(number)
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
@@ -177,26 +193,35 @@ def trajectory(
     from .heyoka.model import RoundedModel
 
     try:
-        model = RoundedModel(carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number)
+        model = RoundedModel(
+            carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number
+        )
         moments, state = _from_zero(times, model.numbers), model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
     radians = start.fastest_rate * float(moments[-1])
     propagator = model.propagator(tolerance, radians)
     try:
-        states = propagator.from_zero(state, moments, max_steps=LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians))
+        states = propagator.from_zero(
+            state, moments, max_steps=LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians)
+        )
     except IntegrationError as error:
         where = SINGULAR.get(formulation)
-        advice = f"The formulation {formulation} is singular {where}: take momentum." if where else ""
+        advice = (
+            f"The formulation {formulation} is singular {where}: take momentum." if where else ""
+        )
         raise IntegrationError(error.reason, advice) from None
     rows = model.doubles(states)
-    rows[0] = [float(part * start.k.length) for part in (*start.n, *start.v)]  # a formulation rounds them
+    # a formulation rounds them
+    rows[0] = [float(part * start.k.length) for part in (*start.n, *start.v)]
     return rows
 
 
 def _check_number(number: object) -> None:
     if not isinstance(number, NumberType):
-        raise InputError("number", number, "DOUBLE, LONG_DOUBLE or real(BITS) of reference.numbers.precision")
+        raise InputError(
+            "number", number, "DOUBLE, LONG_DOUBLE or real(BITS) of reference.numbers.precision"
+        )
 
 
 def _from_zero(times: Sequence[Any] | Array, numbers: Any) -> Any:
@@ -213,5 +238,10 @@ def _numbers(field: str, values: Any, numbers: Any, expected: str) -> Any:
     """Return what a caller gave as heyoka's numbers of a run's type."""
     try:
         return numbers.all_of(values)
-    except (ArithmeticError, AttributeError, TypeError, ValueError):  # what is no number, infinity and NaN among them
+    except (
+        ArithmeticError,
+        AttributeError,
+        TypeError,
+        ValueError,
+    ):  # what is no number, infinity and NaN among them
         raise InputError(field, values, expected) from None

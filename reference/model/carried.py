@@ -12,7 +12,8 @@ from .constants import Constants, Vector, is_zero
 from .formulations import Formulation
 from .start import Start
 
-_PLACES = (0.11, 0.23, 0.31, 0.17, 0.13, 0.19)  # any state will do: rates that vanish do so by the exact zeros of k
+# any state will do: rates that vanish do so by the exact zeros of k
+_PLACES = (0.11, 0.23, 0.31, 0.17, 0.13, 0.19)
 
 
 def constant_variables(formulation: Formulation, k: Constants) -> list[str]:
@@ -34,7 +35,9 @@ def carried(formulation: Formulation, start: Start, number: Callable[[Any], Any]
     if not names:
         return formulation
     values = zip(formulation.variables, start.state(formulation), strict=True)
-    return CarriedFormulation(formulation, {name: number(value) for name, value in values if name in names})
+    return CarriedFormulation(
+        formulation, {name: number(value) for name, value in values if name in names}
+    )
 
 
 @dataclass(frozen=True)
@@ -77,4 +80,7 @@ class CarriedFormulation:
 
     def _full(self, state: State) -> State:
         values = iter(state)
-        return tuple(self.constant[name] if name in self.constant else next(values) for name in self.whole.variables)
+        return tuple(
+            self.constant[name] if name in self.constant else next(values)
+            for name in self.whole.variables
+        )

@@ -19,7 +19,9 @@ from ..scenes.inputs import Inputs
 Vector = tuple[Any, Any, Any]
 
 
-def axis_distance(equatorial_radius: Any, flattening: Any, altitude: Any, sin: Any, cos: Any, sqrt: Any) -> Any:
+def axis_distance(
+    equatorial_radius: Any, flattening: Any, altitude: Any, sin: Any, cos: Any, sqrt: Any
+) -> Any:
     """Return the distance R = (N + h) cos(latitude) of the suspension from the axis, in m: Mathar (2), (3).
 
     Args:
@@ -107,11 +109,15 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
     sin = number(ctx.sinpi(to_mpf(inputs.latitude / 180, ctx)))
     cos = number(ctx.cospi(to_mpf(inputs.latitude / 180, ctx)))
     names = ("length", "gravity", "rotation_rate", "equatorial_radius", "flattening", "altitude")
-    length, gravity, rate, radius, flattening, altitude = (to_mpf(getattr(inputs, name), ctx) for name in names)
+    length, gravity, rate, radius, flattening, altitude = (
+        to_mpf(getattr(inputs, name), ctx) for name in names
+    )
     # effective gravity contains the centrifugal force at the pivot: what is left is that of a pivot on the axis
     carried = inputs.gravity_is == "ellipsoid"
     try:
-        distance = axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt) if carried else ctx.zero
+        distance = (
+            axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt) if carried else ctx.zero
+        )
     except ZeroDivisionError:  # at the pole of an Earth as flat as a disc
         raise BeyondDoublesError from None
     north, up, pull_north, pull_up = turn_and_pull(length, gravity, rate, distance, sin, cos)
@@ -119,7 +125,12 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
         length=length,
         turn=(0, number(north), number(up)),
         pull=(0, number(pull_north), number(pull_up)),
-        centrifugal=(number(rate * rate), number(up * up), number(-north * up), number(north * north)),
+        centrifugal=(
+            number(rate * rate),
+            number(up * up),
+            number(-north * up),
+            number(north * north),
+        ),
         drag=number(to_mpf(inputs.drag, ctx)),
         gravity=number(gravity / length),
         axis_distance=number(distance / length),
@@ -135,7 +146,9 @@ def constants_in_double(inputs: Inputs) -> Constants:
     return constants(inputs, context(DOUBLE_BITS + GUARD_BITS)).converted(float)
 
 
-def turn_and_pull(length: Any, gravity: Any, rate: Any, distance: Any, sin: Any, cos: Any) -> tuple[Any, Any, Any, Any]:
+def turn_and_pull(
+    length: Any, gravity: Any, rate: Any, distance: Any, sin: Any, cos: Any
+) -> tuple[Any, Any, Any, Any]:
     """Return what of Ω and of c points north and up, in any number type; `distance` is R."""
     outward = rate * rate * distance
     return rate * cos, rate * sin, -outward * sin / length, (outward * cos - gravity) / length

@@ -53,7 +53,9 @@ class Momentum:
         """Return n' and H' as in the class's docstring."""
         n, momentum = _halves(state)
         _, v = self.cartesian(state, k, functions)
-        torque = subtract(add(cross(n, k.pull), cross(momentum, k.turn)), scale(k.drag, cross(n, v)))
+        torque = subtract(
+            add(cross(n, k.pull), cross(momentum, k.turn)), scale(k.drag, cross(n, v))
+        )
         return (*v, *torque)
 
 
@@ -191,7 +193,11 @@ class Angles:
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
         """Return n and n' by (7) and (10), over l."""
         sp, cp, sl, cl, phi_rate, azimuth_rate = _turned(state, functions)
-        v = (phi_rate * cp * cl - azimuth_rate * sp * sl, phi_rate * cp * sl + azimuth_rate * sp * cl, phi_rate * sp)
+        v = (
+            phi_rate * cp * cl - azimuth_rate * sp * sl,
+            phi_rate * cp * sl + azimuth_rate * sp * cl,
+            phi_rate * sp,
+        )
         return (sp * cl, sp * sl, -cp), v
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
@@ -213,7 +219,12 @@ class Angles:
             product(k.pull[1], cl),
             product(-1, along, minus(product(north, cl), 2 * phi_rate)),
         )
-        return (phi_rate, azimuth_rate, phi_second, minus(turning / sp, product(k.drag, azimuth_rate)))
+        return (
+            phi_rate,
+            azimuth_rate,
+            phi_second,
+            minus(turning / sp, product(k.drag, azimuth_rate)),
+        )
 
 
 class Lagrangian(Angles):
@@ -239,7 +250,15 @@ class Lagrangian(Angles):
         return plus(kinetic, product(k.gravity, cp))
 
 
-_INSTANCES: tuple[Formulation, ...] = (Momentum(), Inertial(), Space(), Spin(), Plane(), Angles(), Lagrangian())
+_INSTANCES: tuple[Formulation, ...] = (
+    Momentum(),
+    Inertial(),
+    Space(),
+    Spin(),
+    Plane(),
+    Angles(),
+    Lagrangian(),
+)
 FORMULATIONS: dict[str, Formulation] = {formulation.name: formulation for formulation in _INSTANCES}
 
 
@@ -250,4 +269,10 @@ def _halves(state: State) -> tuple[Vector, Vector]:
 def _turned(state: State, functions: Functions) -> tuple[Any, ...]:
     """Return sine and cosine of cord angle and azimuth, and the rates of both."""
     phi, azimuth, *rates = state
-    return functions.sin(phi), functions.cos(phi), functions.sin(azimuth), functions.cos(azimuth), *rates
+    return (
+        functions.sin(phi),
+        functions.cos(phi),
+        functions.sin(azimuth),
+        functions.cos(azimuth),
+        *rates,
+    )

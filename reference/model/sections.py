@@ -40,15 +40,21 @@ def form_of(word: str, start: Start) -> Form:
         return Form(NOTHING, (1, 0, 0), 0)
     ctx, angle = start.ctx, to_mpf(azimuth_of(word) / 180, start.ctx)
     try:
-        return form_along(word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest)
+        return form_along(
+            word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest
+        )
     except UnreachableError:
-        raise gate_without_rest(word, "so fast a rotation, or weightlessness, leaves none") from None
+        raise gate_without_rest(
+            word, "so fast a rotation, or weightlessness, leaves none"
+        ) from None
 
 
 def gate_without_rest(word: str, reason: str) -> InputError:
     """Return the error of a gate through a rest position that does not exist, or is not known; `reason` says why."""
     expected = f"a section that needs no rest position: {reason}"
-    advice = f"Write {word}@0 for the plane through the suspension's vertical, or leave this gate out."
+    advice = (
+        f"Write {word}@0 for the plane through the suspension's vertical, or leave this gate out."
+    )
     return InputError("run.sections", word, expected, advice)
 
 

@@ -77,7 +77,9 @@ class Start:
         try:
             return rest_position(self.k, self.ctx)
         except (ValueError, ZeroDivisionError):
-            raise UnreachableError("no rest position is singled out that the bob could swing about.") from None
+            raise UnreachableError(
+                "no rest position is singled out that the bob could swing about."
+            ) from None
 
     @cached_property
     def lean(self) -> Any:
@@ -94,7 +96,9 @@ def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
     length = to_mpf(inputs.length, ctx)
     if inputs.position is not None:
         x, y, vx, vy = (to_mpf(value, ctx) for value in inputs.position)
-        z = -ctx.sqrt(to_mpf(inputs.length**2 - inputs.position[0] ** 2 - inputs.position[1] ** 2, ctx))
+        z = -ctx.sqrt(
+            to_mpf(inputs.length**2 - inputs.position[0] ** 2 - inputs.position[1] ** 2, ctx)
+        )
         return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
     assert inputs.angles is not None
     angle, azimuth = (to_mpf(value / 180, ctx) for value in inputs.angles[:2])

@@ -24,9 +24,12 @@ SECTION = ("t", *STATE)  # of sections.csv, beside section, number, direction an
 WHOLE = ("k", "direction")  # columns of whole numbers
 TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
 
-UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}  # of the columns of each kind
-KINDS = {name: kind for kind in UNITS for name in kind}  # the columns of a column's kind, whose sizes are alike
-HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}  # the same errors are assumed of both
+# of the columns of each kind
+UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}
+# the columns of a column's kind, whose sizes are alike
+KINDS = {name: kind for kind in UNITS for name in kind}
+# the same errors are assumed of both
+HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}
 
 
 def place_of(name: str, columns: tuple[str, ...]) -> int:
@@ -49,7 +52,9 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
     try:
         from pandas import DataFrame
     except ImportError:
-        raise InputError("to_pandas", "nothing", "the package pandas", "Install it: pip install pandas.") from None
+        raise InputError(
+            "to_pandas", "nothing", "the package pandas", "Install it: pip install pandas."
+        ) from None
     return DataFrame(columns)
 
 
@@ -66,7 +71,12 @@ class Framed:
             InputError: pandas is not installed.
         """
         columns = {name: self.array(name) for name in self.columns}
-        return data_frame({name: column.astype(int) if name in WHOLE else column for name, column in columns.items()})
+        return data_frame(
+            {
+                name: column.astype(int) if name in WHOLE else column
+                for name, column in columns.items()
+            }
+        )
 
     def _repr_html_(self) -> str | None:
         try:
@@ -110,4 +120,6 @@ class GridColumns(Framed):
             """Return a grid column, shape (rows,)."""
             if name in GRID:
                 return self.grid[name]
-            raise no_attribute(f"a {type(self).__name__}", name, {*GRID, *(n for n in dir(self) if n[0] != "_")})
+            raise no_attribute(
+                f"a {type(self).__name__}", name, {*GRID, *(n for n in dir(self) if n[0] != "_")}
+            )

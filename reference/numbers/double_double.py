@@ -87,14 +87,20 @@ class DoubleDouble:
 
     def where(self, chosen: Any, other: Self) -> Self:
         """Return these numbers where `chosen`, the others elsewhere."""
-        return type(self)(np.where(chosen, self.high, other.high), np.where(chosen, self.low, other.low))
+        return type(self)(
+            np.where(chosen, self.high, other.high), np.where(chosen, self.low, other.low)
+        )
 
 
 def square_root(a: DoubleDouble) -> DoubleDouble:
     """Return the square root, of zero zero."""
     first = np.sqrt(a.high)
     rest = a - DoubleDouble(*_product(first, first))
-    return DoubleDouble(*_quick(first, np.divide(0.5 * rest.high, first, out=np.zeros_like(first), where=first != 0)))
+    return DoubleDouble(
+        *_quick(
+            first, np.divide(0.5 * rest.high, first, out=np.zeros_like(first), where=first != 0)
+        )
+    )
 
 
 def sine_and_cosine(degrees: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:

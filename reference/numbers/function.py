@@ -36,7 +36,9 @@ class States:
     @classmethod
     def of(cls, t: Array, columns: Iterable[Array], bound: Mapping[str, float]) -> States:
         """Build from times of any shape and the six components, shape (times,); a single time gives plain numbers."""
-        shaped = {name: column.reshape(t.shape)[()] for name, column in zip(STATE, columns, strict=True)}
+        shaped = {
+            name: column.reshape(t.shape)[()] for name, column in zip(STATE, columns, strict=True)
+        }
         return cls(t=t[()], **shaped, bound=bound)
 
 
@@ -57,13 +59,17 @@ class GoldenFunction:
     bound: Mapping[str, float]
 
     @classmethod
-    def of(cls, facts: Mapping[str, Any], bounds: Mapping[str, Fraction | str], data: bytes) -> GoldenFunction:
+    def of(
+        cls, facts: Mapping[str, Any], bounds: Mapping[str, Fraction | str], data: bytes
+    ) -> GoldenFunction:
         """Build from what function.json says of its coefficients, its bounds, and the bytes of function.f64."""
         times = np.array([float.fromhex(text) for text in facts["times"]])
         shape = len(times) - 1, len(facts["components"]), facts["degree"] + 1
         coefficients = np.frombuffer(data, "<f8").astype(np.float64).reshape(shape)
         square = facts["length_squared"] and float.fromhex(facts["length_squared"])
-        in_doubles = {name: math.nextafter(float(bound), math.inf) for name, bound in bounds.items()}
+        in_doubles = {
+            name: math.nextafter(float(bound), math.inf) for name, bound in bounds.items()
+        }
         return cls(times, np.ascontiguousarray(coefficients.transpose(2, 1, 0)), square, in_doubles)
 
     def at(self, t: npt.ArrayLike) -> States:
@@ -110,6 +116,9 @@ def moments_of(times: npt.ArrayLike, end: float | Fraction, later: float = 0.0) 
     outside = t[~((t >= 0) & (t <= float(end) + later))]
     if outside.size:
         raise InputError(
-            "t", f"{outside[0]:.17g}", expected, "The scene ends there: a larger run.t_end solves a longer one."
+            "t",
+            f"{outside[0]:.17g}",
+            expected,
+            "The scene ends there: a larger run.t_end solves a longer one.",
         )
     return t

@@ -18,7 +18,8 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-GUARD_BITS = 64  # more than a run's own: its constants and conversions are computed with them, then rounded once
+# more than a run's own: its constants and conversions are computed with them, then rounded once
+GUARD_BITS = 64
 DOUBLE_BITS = 53
 LONG_DOUBLE_BITS = 64
 
@@ -124,7 +125,8 @@ def decimals_for(largest: Fraction, digits: int) -> int:
 def magnitude(value: Fraction) -> int:
     """Return floor(log10(value)) exactly: the power of ten of the leading digit of a positive number."""
     bits = value.numerator.bit_length() - value.denominator.bit_length()
-    guess = math.floor((bits + 1) * math.log10(2))  # the value is below 2**(bits + 1); texts of integers are limited
+    # the value is below 2**(bits + 1); texts of integers are limited
+    guess = math.floor((bits + 1) * math.log10(2))
     while value < Fraction(10) ** guess:
         guess -= 1
     return guess

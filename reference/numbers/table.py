@@ -41,7 +41,9 @@ class Table(Framed):
     errors: list[tuple[int, ...]] = field(default_factory=list, repr=False)
 
     @classmethod
-    def of_intervals(cls, columns: tuple[str, ...], rows: Iterable[Sequence[Any]], bits: int) -> Table:
+    def of_intervals(
+        cls, columns: tuple[str, ...], rows: Iterable[Sequence[Any]], bits: int
+    ) -> Table:
         """Return the middles of intervals (exact ends `low`, `high`), and their half-widths as errors, rounded up."""
         values, errors = [], []
         for row in rows:
@@ -88,7 +90,9 @@ class Table(Framed):
         if columns == self.columns:
             return self
         places = [place_of(name, self.columns) for name in columns]
-        values, errors = ([tuple(row[i] for i in places) for row in rows] for rows in (self.values, self.errors))
+        values, errors = (
+            [tuple(row[i] for i in places) for row in rows] for rows in (self.values, self.errors)
+        )
         return Table(columns, self.bits, values, errors)
 
     def distance(self, other: Table) -> Table:
@@ -96,7 +100,10 @@ class Table(Framed):
         other, bits = other.only(self.columns), max(self.bits, other.bits)
         up, other_up = bits - self.bits, bits - other.bits
         rows = zip(self.values, other.values, strict=True)
-        gaps = [tuple(abs((p << up) - (q << other_up)) for p, q in zip(a, b, strict=True)) for a, b in rows]
+        gaps = [
+            tuple(abs((p << up) - (q << other_up)) for p, q in zip(a, b, strict=True))
+            for a, b in rows
+        ]
         return Table(self.columns, bits, gaps)
 
     def largest(self) -> dict[str, Fraction]:
@@ -108,8 +115,14 @@ class Table(Framed):
         return self._maxima(self.errors)
 
     def _maxima(self, rows: Sequence[tuple[int, ...]]) -> dict[str, Fraction]:
-        unit, columns = 1 << self.bits, zip(*rows, strict=True) if rows else ((0,) for _ in self.columns)
-        return {name: Fraction(max(map(abs, column)), unit) for name, column in zip(self.columns, columns, strict=True)}
+        unit, columns = (
+            1 << self.bits,
+            zip(*rows, strict=True) if rows else ((0,) for _ in self.columns),
+        )
+        return {
+            name: Fraction(max(map(abs, column)), unit)
+            for name, column in zip(self.columns, columns, strict=True)
+        }
 
     def printed(self, decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
         """Return the rows as text, each number rounded to its column's digits after the point."""
@@ -123,7 +136,9 @@ class Table(Framed):
             for row in self.values
         ]
 
-    def undecided(self, decimals: Mapping[str, int], exact: Container[str] = ()) -> tuple[Fraction, str, str] | None:
+    def undecided(
+        self, decimals: Mapping[str, int], exact: Container[str] = ()
+    ) -> tuple[Fraction, str, str] | None:
         """Return the least known of the numbers of which the bounds do not decide each printed digit, or None.
 
         It comes as its bound in units of the last printed digit, its column and its text. A number is decided if every
@@ -137,17 +152,26 @@ class Table(Framed):
                     continue
                 if rounded((value - error) * scale, unit) != rounded((value + error) * scale, unit):
                     text = with_decimal_point(rounded(value * scale, unit), decimals[name])
-                    worst = max((Fraction(error * scale, unit), name, text), worst or (Fraction(0), "", ""))
+                    worst = max(
+                        (Fraction(error * scale, unit), name, text), worst or (Fraction(0), "", "")
+                    )
         return worst
 
 
-def resolved(largest: Mapping[str, Fraction], errors: Mapping[str, Fraction]) -> dict[str, Fraction]:
+def resolved(
+    largest: Mapping[str, Fraction], errors: Mapping[str, Fraction]
+) -> dict[str, Fraction]:
     """Return the size of each column: its largest number, or that of its kind if it is nothing but error.
 
     A coordinate that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
     """
-    sizes = {name: size if size > NOISE * errors[name] else Fraction(0) for name, size in largest.items()}
-    return {name: size or max(sizes.get(column, Fraction(0)) for column in KINDS[name]) for name, size in sizes.items()}
+    sizes = {
+        name: size if size > NOISE * errors[name] else Fraction(0) for name, size in largest.items()
+    }
+    return {
+        name: size or max(sizes.get(column, Fraction(0)) for column in KINDS[name])
+        for name, size in sizes.items()
+    }
 
 
 def decimals_of(sizes: Mapping[str, Fraction], digits: int) -> dict[str, int]:
@@ -216,7 +240,9 @@ class FixedPoint:
 
     def sqrt(self) -> FixedPoint:
         """Return the square root of a column, 0 where a number is below zero."""
-        return FixedPoint(integers(math.isqrt(max(0, value) << self.bits) for value in self.values), self.bits)
+        return FixedPoint(
+            integers(math.isqrt(max(0, value) << self.bits) for value in self.values), self.bits
+        )
 
     def __getitem__(self, rows: Array) -> FixedPoint:
         """Return some of the numbers of a column."""

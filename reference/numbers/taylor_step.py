@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 LOCAL = ("x", "y", "z")  # n east, north and up
-EARTH = ("x", "m", "w", "tension")  # n in the axes of the proof (`SceneBalls` in enclosure/trusted/system.py), and h² λ
+# n in the axes of the proof (`SceneBalls` in enclosure/trusted/system.py), and h² λ
+EARTH = ("x", "m", "w", "tension")
 DIGIT_BITS = 22  # what limbs are, and what a proof sums
 
 

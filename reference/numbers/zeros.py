@@ -8,8 +8,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from .columns import SECTION, TRANSITS
 
-XDOT = "xdot"  # the word of the zeros that are called transits; every other word is that of a section
-Undecided = tuple[tuple[Fraction, Fraction, str], ...]  # intervals in s, each with the parity of its zeros
+# the word of the zeros that are called transits; every other word is that of a section
+XDOT = "xdot"
+# intervals in s, each with the parity of its zeros
+Undecided = tuple[tuple[Fraction, Fraction, str], ...]
 T = TypeVar("T")
 
 

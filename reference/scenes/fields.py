@@ -32,7 +32,10 @@ def _section_words(value: Any) -> Any:
     if listed is None:
         return None
     if not isinstance(listed, list | tuple) or not all(isinstance(word, str) for word in listed):
-        raise Refused(f"a list of words: {SECTION_WORDS}", 'Write each in quotes: sections = ["highest", "gate 45"].')
+        raise Refused(
+            f"a list of words: {SECTION_WORDS}",
+            'Write each in quotes: sections = ["highest", "gate 45"].',
+        )
     words = (" ".join(word.split()) for word in listed)
     return tuple(word for word in words if word) or None
 
@@ -69,9 +72,13 @@ class SceneTable(BaseModel):
 class Pendulum(SceneTable):
     """The cord, and what slows the bob down."""
 
-    length: Positive = field("67", "m", "length of the cord, from the suspension to the centre of the bob")
+    length: Positive = field(
+        "67", "m", "length of the cord, from the suspension to the centre of the bob"
+    )
     drag: NotNegative = field(
-        "0", "1/s", "linear drag, deceleration over velocity: 2 ln 2 over the time in which the swing halves"
+        "0",
+        "1/s",
+        "linear drag, deceleration over velocity: 2 ln 2 over the time in which the swing halves",
     )
 
 
@@ -106,7 +113,9 @@ class Release(SceneTable):
         None, "degrees", "angle of the cord from straight down; 90 is horizontal"
     )
     azimuth: Annotated[Number, within("-360", "360")] | None = field(
-        None, "degrees", "direction of the bob, from east to north: 0 is east, 90 north; 90 minus the compass bearing"
+        None,
+        "degrees",
+        "direction of the bob, from east to north: 0 is east, 90 north; 90 minus the compass bearing",
     )
     angle_rate: Number | None = field(None, "degrees/s", "rate of the angle")
     azimuth_rate: Number | None = field(None, "degrees/s", "rate of the azimuth")
@@ -121,19 +130,29 @@ def _no_truth_value(value: Any) -> Any:
     return value
 
 
-Digits = Annotated[int, BeforeValidator(_no_truth_value), checked(lambda digits: 1 <= digits <= MAX_DIGITS, _DIGITS)]
+Digits = Annotated[
+    int,
+    BeforeValidator(_no_truth_value),
+    checked(lambda digits: 1 <= digits <= MAX_DIGITS, _DIGITS),
+]
 
 
 class RunTable(SceneTable):
     """How long the motion is followed, when it is printed, and how far the digits are to be trusted."""
 
-    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = field("86400", "s", "end of the motion")
+    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = field(
+        "86400", "s", "end of the motion"
+    )
     grid_step: Positive = field("60", "s", "time between two rows of the grid")
     digits: Digits = field(40, "", f"significant digits, at most {MAX_DIGITS}")
-    level: Level = field("confirmed", "", "what has to stand behind every digit; enclosed is a proof")
+    level: Level = field(
+        "confirmed", "", "what has to stand behind every digit; enclosed is a proof"
+    )
     transits: bool = field(True, "", "whether the times of the transits are sought")
     sections: Sections = field(
-        None, "", "other moments that are sought: highest, lowest, gate AZIMUTH, gate AZIMUTH@0, turn AZIMUTH"
+        None,
+        "",
+        "other moments that are sought: highest, lowest, gate AZIMUTH, gate AZIMUTH@0, turn AZIMUTH",
     )
 
     @property

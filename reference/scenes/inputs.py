@@ -8,9 +8,14 @@ from typing import Literal
 
 GravityIs = Literal["ellipsoid", "effective"]
 
-SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ only by the rounding of the inputs
-SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")  # numbers of a site
-RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+# of a grid step: times nearer than this differ only by the rounding of the inputs
+SAME_TIME = Fraction(1, 1 << 30)
+# numbers of a site
+SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
+RELEASES = {
+    "position": ("x", "y", "vx", "vy"),
+    "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate"),
+}
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,9 @@ def is_scene_id(word: str) -> bool:
     return re.fullmatch("[a-z][a-z0-9_]{0,63}", word) is not None
 
 
-Id = Annotated[str, checked(is_scene_id, "a lower-case letter followed by letters, digits or _ (at most 64)")]
+Id = Annotated[
+    str, checked(is_scene_id, "a lower-case letter followed by letters, digits or _ (at most 64)")
+]
 
 
 class Scene(SceneTable):
@@ -51,7 +53,9 @@ class Scene(SceneTable):
     title: Line = field("", "", "what it is, in one line")
     source: Line = field("", "", "where its numbers come from")
     flags: tuple[Line, ...] = field((), "", "words for what is difficult in it")
-    inputs: Reading = field("decimal", "", "decimal: each number is exact; binary64: the double next to it")
+    inputs: Reading = field(
+        "decimal", "", "decimal: each number is exact; binary64: the double next to it"
+    )
     pendulum: Pendulum = Pendulum()
     site: Site = Site()
     release: Release
@@ -65,8 +69,13 @@ class Scene(SceneTable):
         def read(text: str | None) -> Fraction:
             return as_read(text or "0", self.inputs)
 
-        inverse, kind = self.site.inverse_flattening, "position" if self.release.angle is None else "angles"
-        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE} | dict.fromkeys(RELEASES)
+        inverse, kind = (
+            self.site.inverse_flattening,
+            "position" if self.release.angle is None else "angles",
+        )
+        numbers: dict[str, Any] = {
+            name: read(getattr(self.site, name)) for name in SITE
+        } | dict.fromkeys(RELEASES)
         numbers[kind] = tuple(read(getattr(self.release, name)) for name in RELEASES[kind])
         return Inputs(
             length=read(self.pendulum.length),
@@ -91,11 +100,14 @@ class Scene(SceneTable):
         lines = [f"{self.id}: {self.title}"]
         for name, table in self.model_dump(exclude_none=True).items():
             if isinstance(table, dict) and table:
-                lines.append(f"[{name}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
+                lines.append(
+                    f"[{name}] " + ", ".join(f"{key} = {value}" for key, value in table.items())
+                )
         return f"<pre>{escape(chr(10).join(lines))}</pre>"
 
 
-Words = str | Iterable[str] | Mapping[str, Any]  # one word `key=value`, several, or a mapping from keys to values
+# one word `key=value`, several, or a mapping from keys to values
+Words = str | Iterable[str] | Mapping[str, Any]
 
 
 def words_of(values: Words) -> list[str]:
@@ -120,7 +132,8 @@ def _word(key: str, value: Any) -> str:
 
 
 def _is_listed(value: Any) -> bool:
-    single = isinstance(value, str) or getattr(value, "shape", None) == ()  # an array of one number, without axes
+    # an array of one number, without axes
+    single = isinstance(value, str) or getattr(value, "shape", None) == ()
     return isinstance(value, Iterable) and not single
 
 
@@ -222,7 +235,9 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
         InputError: names each wrong field, what it got and what was expected; the first one is its `field`.
     """
     if not isinstance(document, Mapping):
-        raise InputError("scene", document, "nested mappings: {'id': 'mine', 'release': {'x': '1', 'y': '0'}}")
+        raise InputError(
+            "scene", document, "nested mappings: {'id': 'mine', 'release': {'x': '1', 'y': '0'}}"
+        )
     try:
         scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
     except ValidationError as error:
@@ -246,18 +261,29 @@ def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     needed = kinds[0][:2]
     missing = [name for name in needed if name not in fields]
     for name in missing:
-        yield InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
+        yield InputError(
+            f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}."
+        )
     position, length = exact.position, exact.length
     if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
         got = f"x = {release.x}, y = {release.y}"
-        expected = f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²"
-        yield InputError("release", got, expected, "For a release at or above the horizontal give angle and azimuth.")
+        expected = (
+            f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²"
+        )
+        yield InputError(
+            "release",
+            got,
+            expected,
+            "For a release at or above the horizontal give angle and azimuth.",
+        )
 
 
 def _wrong_in_run(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     run = scene.run
     if exact.t_end < LEAST_T_END:
-        yield InputError("run.t_end", run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
+        yield InputError(
+            "run.t_end", run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide"
+        )
     elif exact.t_end / exact.grid_step > MAX_ROWS:
         expected = f"at most {MAX_ROWS} grid times up to t_end"
         yield InputError("run.grid_step", run.grid_step, expected, "Take a longer step.")
@@ -283,7 +309,9 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
         if path.suffix == ".toml":
             raise
         advice = f"`foucault show --template` prints one. Before a trajectory: `foucault score SCENE {path.name}`."
-        raise InputError(error.field, error.got, error.expected, _FOLDER if os.path.isdir(path) else advice) from None
+        raise InputError(
+            error.field, error.got, error.expected, _FOLDER if os.path.isdir(path) else advice
+        ) from None
     file_id = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document:
         if not is_scene_id(file_id):
@@ -309,7 +337,9 @@ def as_scene(scene: AnyScene) -> Scene:
     if isinstance(scene, str | Path):
         return load_scene(scene)
     if not isinstance(scene, Scene):
-        raise InputError("scene", scene, "a Scene, an id, the path of a TOML file, or nested mappings")
+        raise InputError(
+            "scene", scene, "a Scene, an id, the path of a TOML file, or nested mappings"
+        )
     return scene
 
 

@@ -20,7 +20,8 @@ WITHOUT_FUNCTION = {
     "paris_30d": 114,
 }
 PACKAGE = Path(__file__).resolve().parents[1]
-DATA_VERSION = "1.1"  # of what datasets hold, apart from the code's: docs/format.md says when it is raised
+# of what datasets hold, apart from the code's: docs/format.md says when it is raised
+DATA_VERSION = "1.1"
 
 
 def data_root() -> Path:

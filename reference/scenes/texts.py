@@ -10,7 +10,14 @@ from fractions import Fraction
 from numbers import Integral
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema, WrapValidator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ValidationError,
+    ValidationInfo,
+    WithJsonSchema,
+    WrapValidator,
+)
 from pydantic_core import ErrorDetails
 
 from ..errors import InputError, did_you_mean
@@ -41,7 +48,10 @@ def _reading(info: ValidationInfo) -> str:
 
 def _as_text(value: object) -> object:
     if isinstance(value, float):
-        raise Refused("a decimal number in quotes", f'Write "{value}" as a string: a bare TOML float is rounded.')
+        raise Refused(
+            "a decimal number in quotes",
+            f'Write "{value}" as a string: a bare TOML float is rounded.',
+        )
     if isinstance(value, Integral | Decimal) and not isinstance(value, bool):
         return str(value)
     return value
@@ -57,7 +67,9 @@ def _decimal(text: str, info: ValidationInfo) -> str:
     try:
         as_read(text, _reading(info))
     except OverflowError:
-        raise Refused(f"a number that a double holds, at most {sys.float_info.max:.3g} in size", _DOUBLES) from None
+        raise Refused(
+            f"a number that a double holds, at most {sys.float_info.max:.3g} in size", _DOUBLES
+        ) from None
     return text
 
 
@@ -68,8 +80,16 @@ def _how_to_write(text: str) -> str:
     if text.lower().lstrip("+-") in ("nan", "inf", "infinity"):
         return "NaN and inf are not numbers here."
     if _DECIMAL.fullmatch(text.replace(",", ".")):
-        return "Write a decimal point, not a comma." if "," in text else f"Write at most {MAX_LENGTH} characters."
-    return "Write the number alone, in SI units or degrees: 1200 for 20 min." if _DECIMAL.match(text) else ""
+        return (
+            "Write a decimal point, not a comma."
+            if "," in text
+            else f"Write at most {MAX_LENGTH} characters."
+        )
+    return (
+        "Write the number alone, in SI units or degrees: 1200 for 20 min."
+        if _DECIMAL.match(text)
+        else ""
+    )
 
 
 _DOUBLES = "The numbers are read as binary64 here."
@@ -89,7 +109,9 @@ def checked(holds: Callable[[Any], bool], expected: str) -> AfterValidator:
 def within(low: str, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
     """Return the check that a number lies in a range, with its ends or (`open_low`) without the lower one."""
     least, most = Fraction(low), Fraction(high) if high else None
-    expected = f"a number {'above' if open_low else 'at least'} {low}" + (f" and at most {high}" if high else "")
+    expected = f"a number {'above' if open_low else 'at least'} {low}" + (
+        f" and at most {high}" if high else ""
+    )
 
     def check(text: str, info: ValidationInfo) -> str:
         value = as_read(text, _reading(info))
@@ -102,8 +124,11 @@ def within(low: str, high: str | None = None, *, open_low: bool = False) -> Afte
 
 
 Line = Annotated[str, checked(is_plain, "one line of text without control characters")]
-_SCHEMA = {"type": ["string", "integer"], "pattern": f"^(inf|{_DECIMAL.pattern})$"}  # what an editor checks
-Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal), WithJsonSchema(_SCHEMA)]
+# what an editor checks
+_SCHEMA = {"type": ["string", "integer"], "pattern": f"^(inf|{_DECIMAL.pattern})$"}
+Number = Annotated[
+    str, BeforeValidator(_as_text), AfterValidator(_decimal), WithJsonSchema(_SCHEMA)
+]
 OR_INF = WrapValidator(lambda value, check: value if value == "inf" else check(value))
 Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
@@ -115,7 +140,11 @@ def _by_full_name(widths: object) -> object:
         return widths
     full: dict[str, object] = {}
     for top, inner in widths.items():
-        full |= {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
+        full |= (
+            {f"{top}.{key}": width for key, width in inner.items()}
+            if isinstance(inner, Mapping)
+            else {top: inner}
+        )
     return full
 
 

@@ -34,7 +34,8 @@ from .pilot import MARGIN_BITS
 
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
-INSTANT = Fraction("1e-6")  # of the fastest rate's radian: a form's second rate is a difference over it
+# of the fastest rate's radian: a form's second rate is a difference over it
+INSTANT = Fraction("1e-6")
 ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here
 
 
@@ -74,7 +75,9 @@ class Agreement:
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
         missing, apart = [bits_lacking(gaps, decimals)], dict[str, Table | None]()
-        tables = {word: zeros.table.only(columns_of(word)) for word, zeros in published.zeros.items()}
+        tables = {
+            word: zeros.table.only(columns_of(word)) for word, zeros in published.zeros.items()
+        }
         for word, zeros in published.zeros.items():
             places = zero_decimals(tables, word, decimals, digits)
             lacking, apart[word] = zeros_lacking(
@@ -93,7 +96,9 @@ def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
     columns = zip(states.columns, zip(*states.values, strict=True), strict=True)
     changing = [name for name, column in columns if len(set(column)) > 1]
     if changing and not any(gaps[name] for name in changing):
-        raise IntegrationError("The two runs are the same run: they differ nowhere, so their agreement proves nothing.")
+        raise IntegrationError(
+            "The two runs are the same run: they differ nowhere, so their agreement proves nothing."
+        )
 
 
 def _resolution(published: Run, witness: Run) -> dict[str, Fraction]:
@@ -106,7 +111,9 @@ def _resolution(published: Run, witness: Run) -> dict[str, Fraction]:
     return {name: size / 2**witness.plan.number.prec for name, size in sizes.items()}
 
 
-def zero_decimals(tables: Mapping[str, Table], word: str, grid: Mapping[str, int], digits: int) -> dict[str, int]:
+def zero_decimals(
+    tables: Mapping[str, Table], word: str, grid: Mapping[str, int], digits: int
+) -> dict[str, int]:
     """Return the digits after the point that a word's zeros are printed with.
 
     Those of t follow from the latest zero in the same file, those of ax from the largest, the others are the grid's.
@@ -120,7 +127,10 @@ def zero_decimals(tables: Mapping[str, Table], word: str, grid: Mapping[str, int
     same_file = [table for other, table in tables.items() if (other == XDOT) == (word == XDOT)]
     latest = max(table.largest()["t"] for table in same_file)
     sizes = tables[word].largest() | {"t": latest}
-    return {name: grid[name] if name in grid else decimals_for(size, digits) for name, size in sizes.items()}
+    return {
+        name: grid[name] if name in grid else decimals_for(size, digits)
+        for name, size in sizes.items()
+    }
 
 
 def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
@@ -171,9 +181,15 @@ def _motion_at(run: Run, word: str) -> _Motion:
     bits = table.bits + GUARD_BITS
     start = Start.of(run.plan.inputs, bits)
     form, k = form_of(word, start), start.k.converted(lambda x: FixedPoint.of(x, bits))
-    a, b = (_vector(0 if is_zero(x) else FixedPoint.of(x, bits) for x in part) for part in (form.a, form.b))
+    a, b = (
+        _vector(0 if is_zero(x) else FixedPoint.of(x, bits) for x in part)
+        for part in (form.a, form.b)
+    )
     columns = list(zip(*table.values, strict=True)) or [()] * len(table.columns)
-    state = [FixedPoint.column(integers(column), 1 << table.bits, bits) / k.length for column in columns[1:]]
+    state = [
+        FixedPoint.column(integers(column), 1 << table.bits, bits) / k.length
+        for column in columns[1:]
+    ]
     n, v = _vector(state[:3]), _vector(state[3:])
     step = FixedPoint.of(INSTANT / Fraction(start.fastest_rate), bits)
     acc = acceleration(n, v, k)
@@ -191,7 +207,9 @@ def _motion_at(run: Run, word: str) -> _Motion:
         weights={name: abs(float(x)) for name, x in zip(STATE, (*form.a, *form.b), strict=True)},
         slope=np.abs(_floats(rate)) * length,
         bend=np.abs(_floats((rate_later - rate) / step)) * length,
-        of_error=_of_rate(form, _vector(map(_floats, n)), _vector(map(_floats, v)), start.k.converted(float)),
+        of_error=_of_rate(
+            form, _vector(map(_floats, n)), _vector(map(_floats, v)), start.k.converted(float)
+        ),
         rates=dict(zip(STATE, sizes, strict=True)),
         second_rates=dict(zip(STATE, second_sizes, strict=True)),
     )
@@ -207,11 +225,17 @@ def _of_rate(form: Form, n: Vector, v: Vector, k: Constants) -> dict[str, Any]:
     tight = abs(dot(v, v) + dot(n, pulled))
     of_position = size * square + aside * (_norm(pulled) + square)
     of_velocity = size * loss + aside * (2 * _norm(v) + loss)
-    of_places = {name: tight * abs(part) + of_position for name, part in zip(POSITION, b, strict=True)}
-    return of_places | {name: abs(part) + of_velocity for name, part in zip(VELOCITY, a, strict=True)}
+    of_places = {
+        name: tight * abs(part) + of_position for name, part in zip(POSITION, b, strict=True)
+    }
+    return of_places | {
+        name: abs(part) + of_velocity for name, part in zip(VELOCITY, a, strict=True)
+    }
 
 
-def with_zero_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None) -> Table:
+def with_zero_errors(
+    run: Run, errors: Mapping[str, Fraction], word: str, apart: Table | None
+) -> Table:
     """Return the columns that are printed of a word's zeros in a run, with the error of each number.
 
     With the form's error e, its rate f, off by at most f_e, and its second rate g, a zero is late by at most the
@@ -226,9 +250,13 @@ def with_zero_errors(run: Run, errors: Mapping[str, Fraction], word: str, apart:
     zeros, power = run.zeros[word].table, bits_in(max(errors.values()))
     motion = _motion_at(run, word)
     # errors are in units of 2**power, as doubles may not hold them; a step's polynomial has errors of its own
-    parts: dict[str, Any] = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
+    parts: dict[str, Any] = {
+        name: float(size / Fraction(2) ** power) for name, size in errors.items()
+    }
     for name in STATE if zeros.errors else ():
-        parts[name] = parts[name] + _in_units([int(x * 2**zeros.bits) for x in zeros.bound(name)], zeros.bits + power)
+        parts[name] = parts[name] + _in_units(
+            [int(x * 2**zeros.bits) for x in zeros.bound(name)], zeros.bits + power
+        )
     form_error = sum(parts[name] * motion.weights[name] for name in STATE)
     rate_error = sum(parts[name] * motion.of_error[name] for name in STATE)
 

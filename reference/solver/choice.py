@@ -21,8 +21,10 @@ from .proving import first_radius
 from .solution import SAMPLED
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
-ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
-SAMPLES = 3  # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
+# precisions are multiples of this, so that small changes of the pilot's errors do not show
+ROUND_TO_BITS = 8
+# pilot runs where their errors are stated: in one alone the constants may be rounded luckily
+SAMPLES = 3
 HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 
 
@@ -34,15 +36,24 @@ def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> 
     Raises:
         UnreachableError: as `run_pilot`.
     """
-    if scene.run.level in ("computed", "self_consistent") and bits_of(scene.run.digits) <= LONG_DOUBLE.prec:
+    if (
+        scene.run.level in ("computed", "self_consistent")
+        and bits_of(scene.run.digits) <= LONG_DOUBLE.prec
+    ):
         pilot = run_pilot(scene.exact, times, hardware=True)
-        if published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).number.hardware:
+        if published_plan(
+            scene, times, pilot, first_prec(scene, pilot, engine), engine
+        ).number.hardware:
             return pilot
     if scene.run.level != "computed":
         return run_pilot(scene.exact, times)
     pilot = run_pilot(scene.exact, times, samples=SAMPLES)
     published = published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).engine
-    return pilot if published == pilot.engine else run_pilot(scene.exact, times, published, samples=SAMPLES)
+    return (
+        pilot
+        if published == pilot.engine
+        else run_pilot(scene.exact, times, published, samples=SAMPLES)
+    )
 
 
 def need_flint() -> None:
@@ -51,7 +62,9 @@ def need_flint() -> None:
     Raises:
         InputError: it is not.
     """
-    needed("flint", "enclose", "run.level", "the level enclosed", ", or ask for the level confirmed")
+    needed(
+        "flint", "enclose", "run.level", "the level enclosed", ", or ask for the level confirmed"
+    )
 
 
 def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
@@ -64,10 +77,14 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
     """
     if scene.run.level == "enclosed":
         need_flint()
-        from ..enclosure.prove import plan_for  # python-flint is not imported unless the level asks for it
+        # python-flint is not imported unless the level asks for it
+        from ..enclosure.prove import plan_for
 
         feed = Feed(scene.exact, times, AUTO, pilot.steps)
-        bits = plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits - COEFFICIENT_BITS
+        bits = (
+            plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits
+            - COEFFICIENT_BITS
+        )
         return fastest(bits, steps=pilot.steps, proof=True).plan(scene.exact, bits, times)
     return published_plan(scene, times, pilot, first_prec(scene, pilot, AUTO), AUTO)
 
@@ -88,7 +105,9 @@ def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
     return rounded_prec(max(prec, LONG_DOUBLE.prec))
 
 
-def published_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int, engine: str) -> Plan:
+def published_plan(
+    scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int, engine: str
+) -> Plan:
     """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
     finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
     bits = prec if scene.run.level == "computed" else finer
@@ -100,7 +119,10 @@ def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, pre
 
     It is `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed.
     """
-    number, formulation = DOUBLE if prec == DOUBLE.prec else real(prec), "space" if pilot.tension > 0 else "spin"
+    number, formulation = (
+        DOUBLE if prec == DOUBLE.prec else real(prec),
+        "space" if pilot.tension > 0 else "spin",
+    )
     return Plan(scene.exact, formulation, number, times, scene.run.zeros)
 
 
@@ -110,7 +132,9 @@ def drawn_intervals(scene: Scene) -> list[int]:
     A tenth of them, rounded up: those with the least sha256 of "HASH K", where K counts intervals from 1, and HASH is
     the sha256, in hexadecimal figures, of the scene's inputs as JSON without spaces.
     """
-    inputs = scene.model_dump_json(include={"inputs", "pendulum", "site", "release", "run"}, exclude_none=True)
+    inputs = scene.model_dump_json(
+        include={"inputs", "pendulum", "site", "release", "run"}, exclude_none=True
+    )
     word, count = sha256(inputs.encode()).hexdigest(), len(scene.exact.grid) - 1
     drawn = sorted(range(count), key=lambda i: sha256(f"{word} {i + 1}".encode()).digest())
     return sorted(drawn[: ceil(Fraction(count, SAMPLED))])

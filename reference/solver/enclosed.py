@@ -15,7 +15,15 @@ from typing import Any
 
 from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
-from ..engines.registry import WORTH_A_PROCESS, expected_s, in_background, reports, run, send_run, slowest
+from ..engines.registry import (
+    WORTH_A_PROCESS,
+    expected_s,
+    in_background,
+    reports,
+    run,
+    send_run,
+    slowest,
+)
 from ..errors import IntegrationError
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
@@ -30,13 +38,19 @@ from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, proved
 from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
 
-AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
+# steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
+AUDIT_STEPS = 2000
 LOWER = 5  # priority of that process, in steps of `nice`
 WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
 
 
 def solve_enclosed(
-    scene: Scene, engine: str, report: Report | None, audit: bool, confirm: Confirmation, function: bool
+    scene: Scene,
+    engine: str,
+    report: Report | None,
+    audit: bool,
+    confirm: Confirmation,
+    function: bool,
 ) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
@@ -58,15 +72,22 @@ def solve_enclosed(
     enclosure.check_gates(scene.exact, scene.run.sections or ())
     problem = ProofTask(scene, engine, run_pilot(scene.exact, tuple(scene.exact.grid)), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
-        confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
+        # of a grid so fine a sample costs more: a step at least for each interval
+        confirm = "whole"
     with ExitStack() as meanwhile:
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
-        confirming = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
+        confirming = (
+            meanwhile.enter_context(in_background(pays, send_run, plan))
+            if confirm == "whole"
+            else None
+        )
         pays = problem.pilot.steps >= AUDIT_STEPS
         again = in_background(pays, _send_digits, replace(problem, function=False))
         second_proof = meanwhile.enter_context(again) if audit else None
-        report = report and slowest(report, [child for child in (confirming, second_proof) if child is not None])
+        report = report and slowest(
+            report, [child for child in (confirming, second_proof) if child is not None]
+        )
         solution = proved(problem, enclosure.enclose, report)
         if plan and confirm == "sampled":  # while the audit goes on
             solution = confirmed(problem, solution, confirm, _sampled(plan, solution, report))
@@ -74,7 +95,9 @@ def solve_enclosed(
             solution = audited(solution, *second_proof.result(report))
         if confirming is not None:
             solution = confirmed(problem, solution, confirm, confirming.result(report))
-        return solution if confirming and not solution.possible else guarded(solution, problem.pilot)
+        return (
+            solution if confirming and not solution.possible else guarded(solution, problem.pilot)
+        )
 
 
 def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:
@@ -93,7 +116,8 @@ def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
     tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
     decided = {
-        word: (zeros.directions, [parity for *_, parity in zeros.possible]) for word, zeros in solution.zeros.items()
+        word: (zeros.directions, [parity for *_, parity in zeros.possible])
+        for word, zeros in solution.zeros.items()
     }
     return tables, decided
 
@@ -116,7 +140,9 @@ def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None
     """
     scene, pilot = problem.scene, problem.pilot
     bits = prec or first_prec(scene, pilot, AUTO)
-    check_reach(pilot.steps // (SAMPLED if confirm == "sampled" else 1), bits, scene.run.digits, WITHOUT)
+    check_reach(
+        pilot.steps // (SAMPLED if confirm == "sampled" else 1), bits, scene.run.digits, WITHOUT
+    )
     return confirming_plan(scene, tuple(scene.exact.grid), pilot, bits)
 
 
@@ -128,7 +154,9 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     return run_between(states_alone, solution.grid, drawn_intervals(solution.scene), report)
 
 
-def confirmed(problem: ProofTask, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
+def confirmed(
+    problem: ProofTask, solution: Solution, confirm: Confirmation, witness: Run
+) -> Solution:
     """Return a proved solution with the run that confirms it, at a precision that is raised until it agrees.
 
     Raises:
@@ -151,7 +179,9 @@ def confirmed(problem: ProofTask, solution: Solution, confirm: Confirmation, wit
         prec = max(LONG_DOUBLE.prec, rounded_prec(witness.plan.number.prec + missing))
         plan = _confirming_plan(problem, confirm, prec)
         witness = run(plan) if confirm == "whole" else _sampled(plan, solution)
-    raise IntegrationError(f"heyoka does not confirm the proof: it is {float(check.position_m):.2g} m away.")
+    raise IntegrationError(
+        f"heyoka does not confirm the proof: it is {float(check.position_m):.2g} m away."
+    )
 
 
 def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck, int]:
@@ -163,7 +193,9 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
     missing = [bits_lacking(gaps, grid_decimals(solution))]
     for word, zeros in solution.zeros.items():
         if word in witness.zeros and not zeros.possible:
-            lacking, apart = zeros_lacking(zeros, witness.zeros[word], decimals_of_zeros(solution, word), witness)
+            lacking, apart = zeros_lacking(
+                zeros, witness.zeros[word], decimals_of_zeros(solution, word), witness
+            )
             missing.append(lacking)
             if word == XDOT and apart is not None:
                 late = apart.largest()["t"]

@@ -39,25 +39,35 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     scene, times = solution.scene, solution.times
     if not solution.zeros:
         return solution
-    usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
+    usual, finer = (
+        pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS)
+    )
     least, more = _bits_to_see(solution.transits, times[-1], pilot), second_order_bits(scene, pilot)
     contradiction: IntegrationError | None = None
     units = {name: Fraction(1, 10**places) for name, places in pilot.decimals(USUAL_DIGITS).items()}
     for prec in (max(usual + more, least), max(finer + more, least + finer - usual)):
         if prec > MOST_CHECK_PREC:
-            reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
+            reason: Exception = UnreachableError(
+                f"A run would take {prec} bits to see transits so flat."
+            )
             break
         try:
-            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, tuple(solution.zeros)))
+            event_run = run(
+                Plan(scene.exact, "momentum", cheapest_type(prec), times, tuple(solution.zeros))
+            )
         except (UnreachableError, OverflowError) as error:
             reason = error
             break
         gaps = solution.grid.distance(event_run.grid).largest()
         try:
             if any(gaps[name] > unit for name, unit in units.items()):
-                raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
+                raise IntegrationError(
+                    f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure."
+                )
             apart = _zero_gaps(event_run, solution, _between_rows(gaps))
-        except IntegrationError as error:  # the motion may amplify errors too much for so few digits
+        except (
+            IntegrationError
+        ) as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
             solution = replace(solution, discarded_s=solution.discarded_s + event_run.cpu_s)
         else:
@@ -76,7 +86,9 @@ def _between_rows(gaps: Mapping[str, Fraction]) -> dict[str, Fraction]:
     return {name: ESTIMATE_FACTOR * gap for kind, gap in largest.items() for name in kind}
 
 
-def _zero_gaps(event_run: Run, solution: Solution, errors: Mapping[str, Fraction]) -> dict[str, Fraction]:
+def _zero_gaps(
+    event_run: Run, solution: Solution, errors: Mapping[str, Fraction]
+) -> dict[str, Fraction]:
     """Return by word how far the zeros that a run found are from the enclosed ones, at most, in s.
 
     `errors` are how far its states may be off.
@@ -100,7 +112,11 @@ def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
     times = [0, *transits.whole("t", transits.bits), math.floor(end * unit)]
     apart = min((b - a for a, b in pairwise(times) if b > a), default=times[-1])
     least = Fraction(min(map(abs, transits.whole("ax", transits.bits))) * apart, unit**2)
-    return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
+    return (
+        pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS
+        if least
+        else MOST_CHECK_PREC + 1
+    )
 
 
 def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) -> Fraction:
@@ -118,7 +134,9 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
     name = "transit" if word == XDOT else f"{word} passage"
     seen = found.table
     if len(seen) != len(zeros.directions) and not zeros.possible:
-        raise IntegrationError(f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}.")
+        raise IntegrationError(
+            f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}."
+        )
     bits = max(zeros.table.bits, seen.bits)
     rounding = zeros.table.largest()["t"] * Fraction(2) ** (EVALUATION_BITS - prec)
     late = [math.floor((bound + rounding) * 2**bits) for bound in seen.bound("t")]
@@ -127,9 +145,15 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
     gaps = [0]
     rows = zip(zeros.table.whole("t", bits), bounds, zeros.directions, strict=True)
     for k, (t, bound, direction) in enumerate(rows, 1):
-        near = (abs(t - time) for time, off, sign in remaining if sign == direction and abs(t - time) <= bound + off)
+        near = (
+            abs(t - time)
+            for time, off, sign in remaining
+            if sign == direction and abs(t - time) <= bound + off
+        )
         gap = next(near, None)
         if gap is None:
-            raise IntegrationError(f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s.")
+            raise IntegrationError(
+                f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s."
+            )
         gaps.append(gap)
     return Fraction(max(gaps), 2**bits)

@@ -26,14 +26,20 @@ from ..scenes.scene import Scene
 PILOT_PREC = 47  # of the first exact run: three limbs
 PILOT_GAP_BITS = 22  # bits between it and the second: a limb
 LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
-MARGIN_BITS = 14  # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
-CLOSE_TRANSIT_BITS = 12  # bits that the time of a day's worst conditioned transit loses against xdot
-ESTIMATE_FACTOR = 16  # safety factor from the pilot's error to that of a run which no second one checks
+# a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
+MARGIN_BITS = 14
+# bits that the time of a day's worst conditioned transit loses against xdot
+CLOSE_TRANSIT_BITS = 12
+# safety factor from the pilot's error to that of a run which no second one checks
+ESTIMATE_FACTOR = 16
 LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
-LEAST_TIMES = 64  # the pilot runs are compared at more times than this, so that no error is small by luck
-LOST = Fraction(1, 1 << 12)  # an error above this part of the largest position or speed leaves no digit
+# the pilot runs are compared at more times than this, so that no error is small by luck
+LEAST_TIMES = 64
+# an error above this part of the largest position or speed leaves no digit
+LOST = Fraction(1, 1 << 12)
 STILL_PREC = 128  # bits from which a velocity that is exactly zero is that of rest
-ZERO_PREC = 512  # bits from which a position or velocity that shrinks with the precision is taken for zero
+# bits from which a position or velocity that shrinks with the precision is taken for zero
+ZERO_PREC = 512
 MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_RAISES = 6  # of the precision, before giving up
 MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
@@ -72,12 +78,19 @@ class Pilot:
     def cautious(self) -> dict[str, Fraction]:
         """Errors to assume where no second run checks them: with a safety factor, a floor, and the same for x and y."""
         least = {name: LEAST_ULPS * size / 2**self.prec for name, size in self.largest.items()}
-        floored = {name: ESTIMATE_FACTOR * max(error, least[name]) for name, error in self.errors.items()}
-        return {name: max(floored[column] for column in HORIZONTAL.get(name, (name,))) for name in floored}
+        floored = {
+            name: ESTIMATE_FACTOR * max(error, least[name]) for name, error in self.errors.items()
+        }
+        return {
+            name: max(floored[column] for column in HORIZONTAL.get(name, (name,)))
+            for name in floored
+        }
 
     def estimates(self, prec: int) -> dict[str, Fraction]:
         """Return the errors to state for a single run at a precision."""
-        return {name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()}
+        return {
+            name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()
+        }
 
     def decimals(self, digits: int) -> dict[str, int]:
         """Return the decimals of each column with which its largest number has `digits` significant digits."""
@@ -106,7 +119,12 @@ class Pilot:
 
 
 def run_pilot(
-    inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *, samples: int = 1, hardware: bool = False
+    inputs: Inputs,
+    times: tuple[Fraction, ...],
+    engine: str = AUTO,
+    *,
+    samples: int = 1,
+    hardware: bool = False,
 ) -> Pilot:
     """Measure rounding errors from two cheap runs, in higher precision if the first keep no digit.
 
@@ -123,7 +141,9 @@ def run_pilot(
     """
     if len(times) <= LEAST_TIMES:
         times = tuple(times[-1] * k / LEAST_TIMES for k in range(LEAST_TIMES + 1))
-    pair = (DOUBLE.prec, LONG_DOUBLE.prec) if hardware else (PILOT_PREC, PILOT_PREC + PILOT_GAP_BITS)
+    pair = (
+        (DOUBLE.prec, LONG_DOUBLE.prec) if hardware else (PILOT_PREC, PILOT_PREC + PILOT_GAP_BITS)
+    )
     pace: Pace | None = Pace(inputs, times[-1])
     last_prec, good_until, steps = 0, Fraction(0), 0
     while pair[1] <= MAX_PREC and effort(steps, pair[1]) <= MAX_STEPS:
@@ -131,7 +151,9 @@ def run_pilot(
         try:
             coarse = run(_plan(inputs, times, prec, engine, hardware), pace=pace)
             fine = run(_plan(inputs, times, pair[1], engine, hardware))
-            further = [run(_plan(inputs, times, prec + i, engine, hardware)) for i in range(1, samples)]
+            further = [
+                run(_plan(inputs, times, prec + i, engine, hardware)) for i in range(1, samples)
+            ]
             tension = coarse.tension
         except OverflowError:
             raise BeyondDoublesError from None
@@ -144,11 +166,17 @@ def run_pilot(
             errors = {name: max(error, apart[name] * 2**i) for name, error in errors.items()}
         if not _lost(errors, largest, inputs.length, prec):
             drifted = {name: largest[name] * steps / 2**prec for name in largest}
-            errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
+            errors = (
+                errors
+                if hardware
+                else {name: max(error, drifted[name]) for name, error in errors.items()}
+            )
             cpu_s = sum(done.cpu_s for done in (coarse, fine, *further))
             return Pilot(prec, errors, largest, tension, cpu_s, steps, coarse.plan.engine)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
-        next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
+        next_prec = max(
+            2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1])
+        )
         pair, last_prec, hardware = (next_prec, next_prec + LATER_GAP_BITS), prec, False
     raise UnreachableError(
         f"Rounding grows so fast that runs keep no digit beyond t = {float(good_until):.3g} s; "
@@ -157,21 +185,29 @@ def run_pilot(
     )
 
 
-def _plan(inputs: Inputs, times: tuple[Fraction, ...], prec: int, engine: str, hardware: bool) -> Plan:
+def _plan(
+    inputs: Inputs, times: tuple[Fraction, ...], prec: int, engine: str, hardware: bool
+) -> Plan:
     """Return a pilot run, in limbs or in heyoka's `real` unless it is to be one in hardware."""
     if hardware:
         return Plan(inputs, "momentum", DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE, times)
-    radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(times[-1]))  # about one a step
+    # about one a step
+    radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(times[-1]))
     plan = fastest(max(prec, LONG_DOUBLE.prec + 1), engine, 2 * radians).plan(inputs, prec, times)
     return replace(plan, number=real(prec)) if plan.number.hardware else plan
 
 
-def _lost(errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int) -> bool:
+def _lost(
+    errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int
+) -> bool:
     """Return whether position or velocity keeps no digit; one that shrinks with the precision is zero, not lost.
 
     Nor does one keep it that is exactly zero in few bits: numbers with a fixed point may not show so slow a motion.
     """
-    pairs = [(max(errors[name] for name in kind), max(largest[name] for name in kind)) for kind in (POSITION, VELOCITY)]
+    pairs = [
+        (max(errors[name] for name in kind), max(largest[name] for name in kind))
+        for kind in (POSITION, VELOCITY)
+    ]
     zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(0)
     return any(error > size * LOST if size > zero else prec < STILL_PREC for error, size in pairs)
 
@@ -189,7 +225,11 @@ def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], en
 
 def _good_until(gaps: Table, times: tuple[Fraction, ...], largest: dict[str, Fraction]) -> Fraction:
     """Return the time in s until which both position and velocity keep a digit."""
-    most = {name: LOST * max(largest[column] for column in kind) for kind in (POSITION, VELOCITY) for name in kind}
+    most = {
+        name: LOST * max(largest[column] for column in kind)
+        for kind in (POSITION, VELOCITY)
+        for name in kind
+    }
     columns = [(gaps.exact(name), limit) for name, limit in most.items()]
     lost = (i for i in range(len(times)) if any(column[i] > limit for column, limit in columns))
     first = next(lost, len(times))
@@ -241,7 +281,10 @@ class Pace:
         steps_before, t_before = self._before
         if not self._watching or steps - steps_before < PACE_STEPS:
             return
-        self._before, pace = (steps, t), (steps - steps_before) / (t - t_before) if t > t_before else math.inf
+        self._before, pace = (
+            (steps, t),
+            (steps - steps_before) / (t - t_before) if t > t_before else math.inf,
+        )
         needed, drag = steps + (self._end - t) * pace, self._inputs.drag
         self._watching = needed > MAX_STEPS
         if self._watching and (steps >= MAX_STEPS or drag * Fraction(t) >= SETTLED or not drag):
@@ -273,4 +316,6 @@ def second_order_bits(scene: Scene, pilot: Pilot) -> int:
     fastest_speed = max(pilot.sizes[name] for name in VELOCITY)
     if not fastest_speed or not {"highest", "lowest"} & {*(scene.run.sections or ())}:
         return 0
-    return bits_in(scene.exact.length * Fraction(Start.of(scene.exact, DOUBLE.prec).rate) / fastest_speed)
+    return bits_in(
+        scene.exact.length * Fraction(Start.of(scene.exact, DOUBLE.prec).rate) / fastest_speed
+    )

@@ -18,7 +18,8 @@ from ..numbers.taylor_step import TaylorStep
 from ..scenes.inputs import Inputs
 from ..system.workers import Emit, Worker
 
-COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
+# coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
+COEFFICIENT_BITS = 20
 BATCH = 32  # steps sent at once
 # A step of heyoka is as long as its epsilon allows: one radius that encloses such a run comes out up to 10 bits wider
 # than `MARGIN_BITS` counts on, and a proof that begins with too few bits is made a second time. Columns begin too low
@@ -39,7 +40,9 @@ class EngineChanged(Exception):
 class Feed:
     """The run whose Taylor steps a proof takes: called with the proof's bits, it starts one and returns its steps."""
 
-    def __init__(self, inputs: Inputs, times: tuple[Fraction, ...], engine: str, steps: int = MANY_STEPS) -> None:
+    def __init__(
+        self, inputs: Inputs, times: tuple[Fraction, ...], engine: str, steps: int = MANY_STEPS
+    ) -> None:
         """Declare the run.
 
         Args:
@@ -112,7 +115,9 @@ class Feed:
                 self.proof_s += process_time() - begun
 
 
-def _steps_and_run(engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[Sent]:
+def _steps_and_run(
+    engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int
+) -> Iterator[Sent]:
     """Yield the steps of an engine's run, in the axes of a proof and paired, and at last the run.
 
     Beside each stand the CPU seconds since the first, before which code is compiled.
@@ -122,7 +127,13 @@ def _steps_and_run(engine: str, inputs: Inputs, times: tuple[Fraction, ...], pre
     runs: list[Run] = []
 
     def steps() -> Iterator[TaylorStep]:
-        runs.append((yield from engines()[engine].taylor_steps(inputs, times, prec, prec + COEFFICIENT_BITS)))
+        runs.append(
+            (
+                yield from engines()[engine].taylor_steps(
+                    inputs, times, prec, prec + COEFFICIENT_BITS
+                )
+            )
+        )
 
     items: Iterator[TaylorStep | Run] = chain(pair(turned(inputs, steps())), runs)
     cpu_s, begun = 0.0, None

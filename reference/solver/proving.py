@@ -22,16 +22,30 @@ from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, second_order_bits
 from .proof_steps import EngineChanged, Feed
-from .solution import CrossCheck, Proof, Solution, Source, UndecidedRounding, check_decided, separated
+from .solution import (
+    CrossCheck,
+    Proof,
+    Solution,
+    Source,
+    UndecidedRounding,
+    check_decided,
+    separated,
+)
 
-MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
-ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
+# bits by which a swing may die down: beyond them balls are made smaller step by step
+MOST_DIED = 1024
+# balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
+ROUNDING_BITS = 20
 ROUNDING_TRIES = 8  # radii that are tried before giving up
 FINER = 2**16  # the next radius is smaller by this factor at least,
-SPARE = 2**20  # and at least so small that the widest undecided number is known to this part of its last digit
-TIE = Fraction(1, 2**40)  # of the last digit: a number that lies so near to the middle of two decimals is a tie
-TABLE_BITS = 64  # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
-EVALUATION_BITS = 12  # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
+# and at least so small that the widest undecided number is known to this part of its last digit
+SPARE = 2**20
+# of the last digit: a number that lies so near to the middle of two decimals is a tie
+TIE = Fraction(1, 2**40)
+# the tables' integers carry this many bits more than the proof, so that rounding costs nothing
+TABLE_BITS = 64
+# bits that a run may lose when its polynomial is evaluated, so that it misses its ball
+EVALUATION_BITS = 12
 
 
 @dataclass(frozen=True)
@@ -101,16 +115,24 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
     raise UnreachableError(f"{reason} Balls of {rounded_up(tried)} m were tried.", advice)
 
 
-def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot) -> Solution:
+def _solution(
+    scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot
+) -> Solution:
     bits = enclosed.bits + TABLE_BITS
     grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
     gaps = checked_states(grid, times, approximant).largest()
-    check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
+    # no further run, so no further cost
+    check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)
     table = partial(Table.of_intervals, bits=bits)
-    zeros = {word: separated(of_word, word, times[-1], table) for word, of_word in enclosed.proved.zeros.items()}
+    zeros = {
+        word: separated(of_word, word, times[-1], table)
+        for word, of_word in enclosed.proved.zeros.items()
+    }
     size, gap = (max(columns[name] for name in POSITION) for columns in (grid.largest(), gaps))
     transit_radius = max(zeros[XDOT].table.bound("t"), default=None) if XDOT in zeros else None
-    proof = Proof(enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec)
+    proof = Proof(
+        enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec
+    )
     return Solution(scene, times, grid, zeros, Source.of(approximant), (check,), pilot.cpu_s, proof)
 
 
@@ -121,7 +143,9 @@ def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
     balls.
     """
     decimals = pilot.decimals(scene.run.digits)
-    unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
+    unit = Fraction(
+        1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY))
+    )
     return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
 
 
@@ -146,5 +170,7 @@ def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -
     for name in grid.columns:
         for t, gap, radius in zip(times, gaps.exact(name), grid.bound(name), strict=True):
             if gap > radius + rounding:
-                raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
+                raise IntegrationError(
+                    f"the run is outside the enclosure at t = {float(t)} s in {name}."
+                )
     return gaps

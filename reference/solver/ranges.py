@@ -59,7 +59,9 @@ class Intervals(Framed):
     def to_pandas(self) -> Any:
         """Return the columns x_low, x_high and so on as a pandas.DataFrame of doubles, rounded outward."""
         ends = (("low", self.low), ("high", self.high))
-        return data_frame({f"{name}_{word}": of(name) for name in self.columns for word, of in ends})
+        return data_frame(
+            {f"{name}_{word}": of(name) for name in self.columns for word, of in ends}
+        )
 
 
 class Derivative(NamedTuple):
@@ -140,8 +142,13 @@ class Ranges(WithZeros[Intervals]):
         slopes = [slope for j in range(len(halves)) if (slope := self._precession(j))]
         if wide is None or wide.precession is None or len(slopes) < len(halves):
             return wide
-        scene_points = [[(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (point.own for point in points)]
-        far = sum((half * max(-x.low, x.high) for half, x in zip(halves, slopes, strict=True)), Fraction(0))
+        scene_points = [
+            [(x.low, x.high) for x in (z.t, z.x, z.y, z.z)] for z in (point.own for point in points)
+        ]
+        far = sum(
+            (half * max(-x.low, x.high) for half, x in zip(halves, slopes, strict=True)),
+            Fraction(0),
+        )
         return wide.near(swing_of(scene_points, self.scene.exact, self.proof.bits), far)
 
     @cached_property
@@ -151,7 +158,10 @@ class Ranges(WithZeros[Intervals]):
         if section is None or self.proof is None:
             return None, []
         columns = (section.table.exact(name) for name in ("t", "x", "y", "z"))
-        intervals, derivatives = _decided([*zip(*columns, strict=True)], section.possible), self.proof.derivatives
+        intervals, derivatives = (
+            _decided([*zip(*columns, strict=True)], section.possible),
+            self.proof.derivatives,
+        )
         points = [*derivatives.zeros["highest"][: len(intervals)]] if derivatives else []
         wide = swing_of(intervals, self.scene.exact, self.proof.bits, self.proof.lean)
         return wide, points if all(point.own for point in points) else []
@@ -188,10 +198,14 @@ class Ranges(WithZeros[Intervals]):
         derivatives, name = getattr(self.proof, "derivatives", None), full_name(name)
         if derivatives is None:
             advice = "reference.prove_ranges(…, derivatives=True)"
-            raise InputError("derivative", name, "ranges that were solved with derivatives", f"Write {advice}.")
+            raise InputError(
+                "derivative", name, "ranges that were solved with derivatives", f"Write {advice}."
+            )
         names = derivatives.names
         if name not in names:
-            raise unknown("derivative", name, "an uncertain input", names, f"There are {', '.join(names)}.")
+            raise unknown(
+                "derivative", name, "an uncertain input", names, f"There are {', '.join(names)}."
+            )
         j = names.index(name)
         times = [zero.times[j] for zero in derivatives.zeros.get(XDOT, ()) if zero.times]
         complete = len(times) == len(self.transits) > 0
@@ -205,7 +219,11 @@ class Ranges(WithZeros[Intervals]):
     def shares(self) -> dict[str, tuple[Fraction, float]]:
         """Return by how much each uncertain input alone may move the period, in s, at most, and its share of all."""
         slopes = {name: self.derivative(name).period for name in self.uncertain}
-        moved = {name: Fraction(self.uncertain[name]) * max(-x.low, x.high) for name, x in slopes.items() if x}
+        moved = {
+            name: Fraction(self.uncertain[name]) * max(-x.low, x.high)
+            for name, x in slopes.items()
+            if x
+        }
         whole = sum(moved.values())
         return {name: (far, float(far / whole) if whole else 0.0) for name, far in moved.items()}
 

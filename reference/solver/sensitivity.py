@@ -26,7 +26,8 @@ from ..scenes.inputs import RELEASES, Inputs
 from ..scenes.scene import Scene
 from .pilot import MAX_PREC, run_pilot
 
-DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation
+# a change above this part of a column's size is no longer proportional to the perturbation
+DIVERGED = Fraction(1, 64)
 # In which each input is nudged: most get smaller, as x, y and the angle must, to stay on the sphere; length and
 # gravity, which set the swing's frequency, change in opposite directions.
 _WAYS = {"y": Fraction(-1, 2), "azimuth": Fraction(-1, 2)}
@@ -53,13 +54,23 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
     number = DOUBLE if pilot.prec <= DOUBLE.prec else real(2 * LONG_DOUBLE.prec)
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))
-        changed = [_perturbed(inputs, nudge, release=release) for release in (True, False)[: 1 + constants]]
-        base, *perturbed = (run(Plan(each, "momentum", number, times)) for each in (inputs, *changed))
+        changed = [
+            _perturbed(inputs, nudge, release=release) for release in (True, False)[: 1 + constants]
+        ]
+        base, *perturbed = (
+            run(Plan(each, "momentum", number, times)) for each in (inputs, *changed)
+        )
         changes = [base.grid.only(GRID).distance(other.grid).largest() for other in perturbed]
-        worst = max(change[name] / size for change in changes for name, size in pilot.sizes.items() if size)
+        worst = max(
+            change[name] / size for change in changes for name, size in pilot.sizes.items() if size
+        )
         if worst <= DIVERGED:
             ratio = worst / nudge
-            return max(0.0, math.log10(ratio.numerator) - math.log10(ratio.denominator)) if ratio else 0.0
+            return (
+                max(0.0, math.log10(ratio.numerator) - math.log10(ratio.denominator))
+                if ratio
+                else 0.0
+            )
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(
         f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be measured.",
@@ -104,7 +115,9 @@ class Sensitivity:
 
     def rounding(self) -> Array:
         """Return how far rounding every input to binary64 moves the trajectory, shape (times, 6)."""
-        changes = {name: Fraction(float(value)) - value for name, value in self.scene.exact.by_name.items()}
+        changes = {
+            name: Fraction(float(value)) - value for name, value in self.scene.exact.by_name.items()
+        }
         slopes = [float(change) * self._slope(name) for name, change in changes.items() if change]
         return self._along(np.sum(slopes, axis=0)) if slopes else np.zeros((len(self.times), 6))
 
@@ -113,7 +126,9 @@ class Sensitivity:
         inputs, value = self.scene.exact, self.scene.exact.by_name[name]
         nudge = _NUDGE * max(abs(value), Fraction(1))
         ahead, behind = (_parts(with_value(inputs, name, value + side * nudge)) for side in (1, -1))
-        return np.array([float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)])
+        return np.array(
+            [float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)]
+        )
 
     def _along(self, slope: Array) -> Array:
         """Return the response to a change of start, constants and length."""
@@ -122,10 +137,13 @@ class Sensitivity:
         size = len(_MODEL.variables)
         base = np.array([float(part) for part in _parts(self.scene.exact)])
         start, turn, length = base[:size], np.array([0.0, *base[size : size + 2]]), base[-1]
-        strength = max(1.0, float(np.abs(slope).max()))  # keeps the derivative near 1, for the step size
+        # keeps the derivative near 1, for the step size
+        strength = max(1.0, float(np.abs(slope).max()))
         parameters = [0.0, *base[size:-1], *(slope[size:-1] / strength)]
         count = len(parameters)
-        propagator = Propagator(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
+        propagator = Propagator(
+            _MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True
+        )
         rows = propagator.from_zero([*start, *(slope[:size] / strength)], self.times, parameters)
         n, momentum, dn, dmomentum = np.split(rows, 4, axis=1)
         dn, dspin = strength * dn, strength * dmomentum - np.array([0.0, *slope[size : size + 2]])
@@ -137,7 +155,9 @@ def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> S
     """Return the rates of `momentum` with constants c + ε d as parameters, also those that are zero in the scene."""
     epsilon, *pairs = parameters
     values, direction = pairs[: len(_CONSTANTS)], pairs[len(_CONSTANTS) :]
-    varied = {name: c + epsilon * d for name, c, d in zip(_CONSTANTS, values, direction, strict=True)}
+    varied = {
+        name: c + epsilon * d for name, c, d in zip(_CONSTANTS, values, direction, strict=True)
+    }
     return _MODEL.derivatives(state, Constants.of(varied), functions)
 
 

@@ -44,7 +44,15 @@ class Source:
     def of(cls, run: Run) -> Source:
         """Build from a run."""
         plan = run.plan
-        return cls(plan.engine, plan.formulation, str(plan.number), run.order, run.steps, run.cpu_s, run.compile_s)
+        return cls(
+            plan.engine,
+            plan.formulation,
+            str(plan.number),
+            run.order,
+            run.steps,
+            run.cpu_s,
+            run.compile_s,
+        )
 
 
 @dataclass(frozen=True)
@@ -56,10 +64,19 @@ class CrossCheck(Source):
     transit_s: Fraction | None
 
     @classmethod
-    def by(cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None) -> CrossCheck:
+    def by(
+        cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None
+    ) -> CrossCheck:
         """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
-        position_m, velocity_m_s = (max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY))
-        return cls(**vars(Source.of(witness)), position_m=position_m, velocity_m_s=velocity_m_s, transit_s=transit_s)
+        position_m, velocity_m_s = (
+            max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY)
+        )
+        return cls(
+            **vars(Source.of(witness)),
+            position_m=position_m,
+            velocity_m_s=velocity_m_s,
+            transit_s=transit_s,
+        )
 
 
 @dataclass(frozen=True)
@@ -208,11 +225,15 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
 
 def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
     """Return the tables of grid, transits and sections, each with the digits after the point of its columns."""
-    of_zeros = [(zeros.table, decimals_of_zeros(solution, word)) for word, zeros in solution.zeros.items()]
+    of_zeros = [
+        (zeros.table, decimals_of_zeros(solution, word)) for word, zeros in solution.zeros.items()
+    ]
     return [(solution.grid, grid_decimals(solution)), *of_zeros]
 
 
-def separated(zeros: Sequence[Any], word: str, end: Fraction, table: Callable[[tuple[str, ...], Any], T]) -> Zeros[T]:
+def separated(
+    zeros: Sequence[Any], word: str, end: Fraction, table: Callable[[tuple[str, ...], Any], T]
+) -> Zeros[T]:
     """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
 
     Zeros lie in (0, end], and the ball of a cluster may be a little wider.

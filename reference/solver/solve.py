@@ -70,7 +70,13 @@ def solve(
         InputError: a field of the scene is wrong.
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
-    requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits, "sections": sections}
+    requested = {
+        "digits": digits,
+        "level": level,
+        "t_end": t_end,
+        "transits": transits,
+        "sections": sections,
+    }
     scene = requested_scene(scene, requested)
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
@@ -79,7 +85,12 @@ def solve(
     proving = {"audit": audit, "confirm": confirm != "none", "function": function}
     for name, value in proving.items():
         if value and settings.level != "enclosed":
-            raise InputError(name, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
+            raise InputError(
+                name,
+                settings.level,
+                "the level enclosed",
+                "Nothing else has the proof that it takes.",
+            )
     # a proof is not imported unless it is asked for
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed
@@ -92,12 +103,18 @@ def solve(
 
 def solve_at(scene: Scene, times: Collection[Fraction], digits: int) -> Solution:
     """Solve a scene at the level self_consistent and without transits, at times in s that stand for its grid."""
-    scene = scene.with_values([f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"])
-    every = tuple(sorted({Fraction(0), *times} | ({scene.exact.grid_step} if not any(times) else set())))
+    scene = scene.with_values(
+        [f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"]
+    )
+    every = tuple(
+        sorted({Fraction(0), *times} | ({scene.exact.grid_step} if not any(times) else set()))
+    )
     return _agreed(scene, every, pilot_for(scene, every), AUTO, None)
 
 
-def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = None) -> Solution | None:
+def roughly(
+    scene: Scene, times: Iterable[Fraction], report: Report | None = None
+) -> Solution | None:
     """Solve a scene at times in s by two cheap runs, in long double and in double and another formulation.
 
     Their distance is the error that is stated; None where they find other transits.
@@ -120,7 +137,9 @@ def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = Non
     return _assemble(scene, published, gap, (check,), 0.0)
 
 
-def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
+def _computed(
+    scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None
+) -> Solution:
     """Solve by a single run, whose errors are estimated from the pilot's."""
     pilot = pilot_for(scene, times, engine)
     prec = first_prec(scene, pilot, engine)
@@ -130,7 +149,9 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Re
     return _assemble(scene, published, Agreement(0, {}, errors), (), pilot.cpu_s)
 
 
-def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
+def _agreed(
+    scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None
+) -> Solution:
     """Solve by two runs, at a precision that is raised until they agree."""
     digits = scene.run.digits
     prec = first_prec(scene, pilot, engine)
@@ -147,13 +168,18 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         gap = Agreement.between(published, witness, digits)
         if not gap.missing_bits:
             checks = (CrossCheck.by(witness, gap.grid, gap.transit_s),)
-            return replace(_assemble(scene, published, gap, checks, pilot.cpu_s), discarded_s=discarded_s)
+            return replace(
+                _assemble(scene, published, gap, checks, pilot.cpu_s), discarded_s=discarded_s
+            )
         discarded_s += published.cpu_s + witness.cpu_s
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
-            last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord
+            # limbs hold no more bits of a swing much smaller than the cord
+            last_resort = fastest(MAX_PREC).name
             if fine.engine == last_resort:
-                raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
+                raise UnreachableError(
+                    "Two runs disagree, and a higher precision does not bring them together."
+                )
             engine = last_resort
         last_gap, next_prec = largest, max(LONG_DOUBLE.prec, rounded_prec(prec + gap.missing_bits))
         if out_of_reach(pilot.steps, next_prec):
@@ -173,11 +199,15 @@ def _witness(fine: Plan, prec: int, engine: str, steps: int) -> Plan:
     return coarse.plan(fine.inputs, prec, fine.times, fine.zeros)
 
 
-def _assemble(scene: Scene, published: Run, gap: Agreement, checks: tuple[CrossCheck, ...], pilot_s: float) -> Solution:
+def _assemble(
+    scene: Scene, published: Run, gap: Agreement, checks: tuple[CrossCheck, ...], pilot_s: float
+) -> Solution:
     """Return a run with its bounds as a `Solution`, given its errors and how far a second run is apart, if any."""
     grid = published.grid.only(GRID).with_errors(gap.errors)
     zeros = {
-        word: of_word._replace(table=with_zero_errors(published, gap.errors, word, gap.zeros.get(word)))
+        word: of_word._replace(
+            table=with_zero_errors(published, gap.errors, word, gap.zeros.get(word))
+        )
         for word, of_word in published.zeros.items()
     }
     return Solution(scene, published.plan.times, grid, zeros, Source.of(published), checks, pilot_s)

@@ -18,19 +18,26 @@ from ..model.start import Start
 from ..numbers.precision import GUARD_BITS, to_fraction, to_mpf
 from ..scenes.inputs import Inputs
 
-CERTAIN = 1e-6  # of a right angle: how near to it the turn from one highest point to the next may come
-CLEAR = 16  # times as far as the rest position is off the plumb line is where a swing's highest points are its ends
+# of a right angle: how near to it the turn from one highest point to the next may come
+CERTAIN = 1e-6
+# times as far as the rest position is off the plumb line is where a swing's highest points are its ends
+CLEAR = 16
 HOUR = 3600
 # Why there is no swing, no precession or no full turn
 NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
-LEAN = f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
+LEAN = (
+    f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
+)
 NO_SECTION = "the section highest was not asked for, from which the swing follows"
 UNDECIDED = "it is not decided which of its points are the highest"
-ONE_SIDE = "highest points that follow one another lie on one side: they are not the ends of a swing"
+ONE_SIDE = (
+    "highest points that follow one another lie on one side: they are not the ends of a swing"
+)
 FAST = "the site may turn by a right angle and more from one highest point to the next: nobody can tell which way"
 SMALL = "the plane turns by less than it may seem to, since the rest position is off the plumb line"
 LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
-ARC, DEGREES = Fraction(21, 20), Fraction(573, 10)  # a little more than π/3, and than a radian in degrees
+# a little more than π/3, and than a radian in degrees
+ARC, DEGREES = Fraction(21, 20), Fraction(573, 10)
 
 Ends = tuple[Fraction, Fraction]
 
@@ -87,7 +94,9 @@ class Swing:
         return replace(self, precession=(max(low, least - far), min(high, most + far)))
 
 
-def swing_of(points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)) -> Swing | None:
+def swing_of(
+    points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)
+) -> Swing | None:
     """Return the swing from the highest points of a run, or None; arguments are those of `swing_or_reason`."""
     swing = swing_or_reason(points, inputs, bits, lean)
     return swing if isinstance(swing, Swing) else None
@@ -146,7 +155,9 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
 
 def left_out_texts(reasons: dict[str, str]) -> list[str]:
     """Return what `left_out` gives as words of a line."""
-    groups = {reason: [name for name in reasons if reasons[name] == reason] for reason in reasons.values()}
+    groups = {
+        reason: [name for name in reasons if reasons[name] == reason] for reason in reasons.values()
+    }
     return [f"no {' and no '.join(names)} ({reason})" for reason, names in groups.items()]
 
 
@@ -179,7 +190,9 @@ def _seen(point: Sequence[Ends], start: Start, lean: Fraction) -> Seen:
     x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in point)
     dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in point)
     p = (north * z - up * y) / strength  # up is below 0: along the meridian, northwards
-    dp = (abs(north) * dz + abs(up) * dy) / strength + to_mpf(lean, ctx) * (abs(y) + dy + abs(z) + dz)
+    dp = (abs(north) * dz + abs(up) * dy) / strength + to_mpf(lean, ctx) * (
+        abs(y) + dy + abs(z) + dz
+    )
     wide, drop = ctx.hypot(x, p), start.k.length - (north * y + up * z) / strength
     return Seen(ctx.atan2(p, x), ctx.hypot(dx, dp), wide, ctx.hypot(wide, drop))
 

@@ -23,7 +23,11 @@ from .ranges import Intervals, Ranges
 from .request import requested_scene
 from .solution import exact_decimals, separated
 
-UNCERTAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in (*SITE, "inverse_flattening"))]
+UNCERTAIN = [
+    "pendulum.length",
+    "pendulum.drag",
+    *(f"site.{name}" for name in (*SITE, "inverse_flattening")),
+]
 UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
 EXAMPLE = "half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001"
 MOST_DECIMALS = 20  # of an end of an interval
@@ -42,23 +46,34 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
     have = scene.exact.by_name
     for word, text in uncertain.items():
         name = full_name(str(word))
-        field_name = f"{'uncertain.' if scene.uncertain.get(word) == text else '--uncertain '}{word}"
+        field_name = (
+            f"{'uncertain.' if scene.uncertain.get(word) == text else '--uncertain '}{word}"
+        )
         if name not in UNCERTAIN:
-            raise unknown(field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES)
+            raise unknown(
+                field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES
+            )
         if name not in have:
-            raise InputError(field_name, text, "an input that this scene has", f"It has {', '.join(have)}.")
+            raise InputError(
+                field_name, text, "an input that this scene has", f"It has {', '.join(have)}."
+            )
         if name in widths:
             raise InputError(field_name, text, f"{name} once", "Give one width for each input.")
         try:
-            widths[name] = Fraction(checked_value("site.altitude", without_sign(str(text)), "decimal"))
+            widths[name] = Fraction(
+                checked_value("site.altitude", without_sign(str(text)), "decimal")
+            )
         except InputError:
             raise InputError(field_name, text, EXAMPLE) from None
         if widths[name] <= 0:
-            raise InputError(field_name, text, "a width above 0", "Leave out an input that is certain.")
+            raise InputError(
+                field_name, text, "a width above 0", "Leave out an input that is certain."
+            )
     if not widths:
         raise InputError("--uncertain", "nothing", "an input with its width, length=±0.001", _NAMES)
     low, high = (
-        {name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)
+        {name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()}
+        for side in (-1, 1)
     )
     for name, half in widths.items():
         for end in (low[name], high[name]):
@@ -66,12 +81,16 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
                 checked_value(name, decimal(end), "decimal")
             except InputError as error:
                 reached = f"±{decimal(half)}, up to {decimal(end)}"
-                raise InputError(f"--uncertain {name}", reached, error.expected, "Take a smaller width.") from None
+                raise InputError(
+                    f"--uncertain {name}", reached, error.expected, "Take a smaller width."
+                ) from None
     if scene.exact.position:
         far = [max(abs(low[name]), abs(high[name])) for name in ("release.x", "release.y")]
         if far[0] ** 2 + far[1] ** 2 >= low["pendulum.length"] ** 2:
             reached = f"x up to {decimal(far[0])}, y up to {decimal(far[1])}"
-            raise InputError("--uncertain", reached, "a release below the suspension", "Take smaller widths.")
+            raise InputError(
+                "--uncertain", reached, "a release below the suspension", "Take smaller widths."
+            )
     return widths
 
 
@@ -81,7 +100,9 @@ _NAMES = f"Inputs are {', '.join(UNCERTAIN)}."
 def decimal(value: Fraction) -> str:
     """Return a number with its decimals, 20 at most."""
     whole = value * 10**MOST_DECIMALS
-    return fixed_decimal(value, exact_decimals((value,)) if whole.denominator == 1 else MOST_DECIMALS)
+    return fixed_decimal(
+        value, exact_decimals((value,)) if whole.denominator == 1 else MOST_DECIMALS
+    )
 
 
 def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
@@ -157,7 +178,9 @@ def prove_ranges(
 
     try:
         tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(box, list(times), approximant, scene.run.zeros, tell, halves, derivatives)
+        proof = enclose_box(
+            box, list(times), approximant, scene.run.zeros, tell, halves, derivatives
+        )
     finally:
         for feed in feeds:
             feed.stop()
@@ -167,7 +190,10 @@ def prove_ranges(
         texts,
         tuple(times),
         Intervals(STATE, proof.proved.states),
-        {word: separated(zeros, word, end, Intervals) for word, zeros in proof.proved.zeros.items()},
+        {
+            word: separated(zeros, word, end, Intervals)
+            for word, zeros in proof.proved.zeros.items()
+        },
         feeds[-1].begun,
         proof,
         derivatives,

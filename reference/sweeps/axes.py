@@ -27,13 +27,24 @@ from ..system.imports import needed
 from .parquet import read_columns
 
 TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
-_FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits", "run.sections")
+_FIXED = (
+    "id",
+    "title",
+    "source",
+    "flags",
+    "run.grid_step",
+    "run.digits",
+    "run.level",
+    "run.transits",
+    "run.sections",
+)
 MOST_ROWS = 10**8
 MOST_VALUES = 10**7  # of a field: they are held as text
 MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
 FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
 PARQUET = (".parquet", ".pq")
-_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")  # thousands, or a decimal comma before three digits
+# thousands, or a decimal comma before three digits
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
@@ -51,18 +62,28 @@ class AxisTable:
     typed: dict[str, str] | None = None
 
     @classmethod
-    def of(cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading) -> AxisTable:
+    def of(
+        cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading
+    ) -> AxisTable:
         """Return the rows of which `typed` and `stored` are written down."""
         values = {key: tuple(texts) for key, texts in stored.items()}
         if typed is None:
             return cls(values)
-        return cls({key: values.get(key) or axis(f"{key}={word}", reading)[-1] for key, word in typed.items()}, typed)
+        return cls(
+            {
+                key: values.get(key) or axis(f"{key}={word}", reading)[-1]
+                for key, word in typed.items()
+            },
+            typed,
+        )
 
     @property
     def stored(self) -> dict[str, tuple[str, ...]]:
         """The values that do not follow from what was typed: those that come from a file."""
         return {
-            key: texts for key, texts in self.values.items() if self.typed is None or self.typed[key].startswith("@")
+            key: texts
+            for key, texts in self.values.items()
+            if self.typed is None or self.typed[key].startswith("@")
         }
 
     @cached_property
@@ -92,7 +113,11 @@ class AxisTable:
 
     def words(self, rows: Any) -> dict[str, list[str]]:
         """Return the values of rows by field, those that are words."""
-        return {key: [texts[place] for place in places] for key, texts, places in self._placed(rows) if key in TEXTS}
+        return {
+            key: [texts[place] for place in places]
+            for key, texts, places in self._placed(rows)
+            if key in TEXTS
+        }
 
     def wrong(self, rows: Iterable[int], reading: Reading) -> dict[int, str]:
         """Return what is wrong with rows of a list, where one of the values is wrong by itself.
@@ -122,7 +147,10 @@ def _numbers(texts: Sequence[str], reading: Reading) -> DoubleDouble:
         low = [0.0] * len(high)
     else:
         pairs = zip(texts, high, strict=True)
-        low = [float(_EXACT.subtract(Decimal(text), Decimal(h))) if math.isfinite(h) else 0.0 for text, h in pairs]
+        low = [
+            float(_EXACT.subtract(Decimal(text), Decimal(h))) if math.isfinite(h) else 0.0
+            for text, h in pairs
+        ]
     return DoubleDouble(np.array(high), np.array(low))
 
 
@@ -142,7 +170,13 @@ def varied_names() -> list[str]:
 def _check_key(option: str, key: str) -> None:
     """Raise InputError for what is no field of a scene, or none that a sweep can vary."""
     if full_name(key) not in varied_names():
-        raise unknown(option, key, "a field that a sweep can vary", varied_names(), "`foucault show SCENE` lists them.")
+        raise unknown(
+            option,
+            key,
+            "a field that a sweep can vary",
+            varied_names(),
+            "`foucault show SCENE` lists them.",
+        )
 
 
 def grid(words: Iterable[str], reading: Reading) -> AxisTable:
@@ -180,7 +214,9 @@ def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
         for text in (texts[0], texts[-1]):
             checked_value(key, text, reading)  # between these lie the others
         return key, typed, texts
-    listed: Iterable[str] = _column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
+    listed: Iterable[str] = (
+        _column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
+    )
     texts = tuple(text.strip() for text in listed)
     seen = set()
     for text in texts:
@@ -227,7 +263,11 @@ def listed(path: Path) -> AxisTable:
     Raises:
         InputError: it cannot be read, has no rows, or a column is no field that can be varied.
     """
-    columns = _columns_of_parquet(path) if path.suffix.lower() in PARQUET else _columns_of_csv("--rows", path)
+    columns = (
+        _columns_of_parquet(path)
+        if path.suffix.lower() in PARQUET
+        else _columns_of_csv("--rows", path)
+    )
     names = [name for name, _ in columns]
     for name in names:
         if names.count(name) > 1:
@@ -281,7 +321,9 @@ def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]
         names, below = names[1:], [line[1:] for line in below]
     if separator != ",":
         below = [[_with_point(option, cell) for cell in line] for line in below]
-    return [(full_name(name), tuple(line[i].strip() for line in below)) for i, name in enumerate(names)]
+    return [
+        (full_name(name), tuple(line[i].strip() for line in below)) for i, name in enumerate(names)
+    ]
 
 
 def _with_point(option: str, cell: str) -> str:
@@ -291,7 +333,9 @@ def _with_point(option: str, cell: str) -> str:
         InputError: its comma may separate thousands.
     """
     if _GROUPED.fullmatch(cell.strip()):
-        raise InputError(option, cell, "a point for the decimal mark", "Does its comma separate thousands?")
+        raise InputError(
+            option, cell, "a point for the decimal mark", "Does its comma separate thousands?"
+        )
     return cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell.strip()) else cell
 
 
@@ -306,7 +350,9 @@ def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
         if name == key:
             return values
     if len(columns) > 1:
-        raise InputError("--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(dict(columns))}.")
+        raise InputError(
+            "--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(dict(columns))}."
+        )
     return (columns[0][0], *columns[0][1])
 
 

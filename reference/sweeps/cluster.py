@@ -31,7 +31,8 @@ from .request import Request, request_of
 
 LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
-PACKAGES = ("foucault-reference", "heyoka", "numba", "numpy", "python-flint", "mpmath", "pyarrow")  # alike everywhere
+# alike everywhere
+PACKAGES = ("foucault-reference", "heyoka", "numba", "numpy", "python-flint", "mpmath", "pyarrow")
 WAIT_S = 10.0  # for an answer of the scheduler
 FOREVER_S = 1e7
 RETRIES = 3  # of a part that raised an error which is none of this project's
@@ -59,7 +60,9 @@ class Scheduler:
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call on some worker; its future may raise `WorkerDied` or `ClusterError`."""
         future: Future[Any] = Future()
-        dask_future = self.client.submit(_called, self.versions, function, *arguments, pure=False, retries=RETRIES)
+        dask_future = self.client.submit(
+            _called, self.versions, function, *arguments, pure=False, retries=RETRIES
+        )
         dask_future.add_done_callback(partial(_settle, future))
         return future
 
@@ -84,7 +87,8 @@ def scheduler_at(address: str) -> Iterator[Scheduler]:
     Raises:
         InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
     """
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
+    # a lost scheduler is told in one line
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         client = _connected(address, stack)
         try:
@@ -121,27 +125,40 @@ def _connected(address: str, stack: ExitStack) -> Any:
                     threads_per_worker=1,
                     dashboard_address=None,
                     silence_logs=50,
-                    scheduler_kwargs={"dashboard_address": ":0"},  # any port: dask warns where another has its own
+                    # any port: dask warns where another has its own
+                    scheduler_kwargs={"dashboard_address": ":0"},
                 )
             except RuntimeError as error:
-                raise InputError("--cluster", address, "processes that dask can start here", f"{error}") from None
+                raise InputError(
+                    "--cluster", address, "processes that dask can start here", f"{error}"
+                ) from None
             return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
     if not address.startswith(SCHEMES):
-        raise InputError("--cluster", address, "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N")
+        raise InputError(
+            "--cluster",
+            address,
+            "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N",
+        )
     try:
         return stack.enter_context(distributed.Client(address, timeout=WAIT_S))
     except (OSError, ValueError):
         advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
-        raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
+        raise InputError(
+            "--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice
+        ) from None
     except TypeError as error:  # of tls:// without certificates
-        raise InputError("--cluster", address, "certificates in dask's configuration", f"{error}.") from None
+        raise InputError(
+            "--cluster", address, "certificates in dask's configuration", f"{error}."
+        ) from None
 
 
 def _check_versions(there: dict[str, Any], here: dict[str, Any], worker: str) -> None:
     for name in PACKAGES:
         if (got := there[name]) != here[name]:
             advice = "Install the same versions everywhere."
-            raise InputError("--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice)
+            raise InputError(
+                "--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice
+            )
 
 
 def _called(versions: dict[str, Any], function: Callable[..., Any], *arguments: Any) -> Any:
@@ -173,7 +190,11 @@ def on_cluster(request: Request, folder: Path | None, address: str) -> Iterator[
     """
     with scheduler_at(address) as scheduler:
         compile_s = max(scheduler.client.run(_prepare, request.text).values())
-        shared = folder.resolve() if folder is not None and _is_seen(folder.resolve(), scheduler) else None
+        shared = (
+            folder.resolve()
+            if folder is not None and _is_seen(folder.resolve(), scheduler)
+            else None
+        )
         yield Executor(
             scheduler.workers,
             lambda rows: scheduler.submit(compute, request.text, rows, shared),

@@ -72,7 +72,9 @@ def drive(
     """
     total, died = Tally(), list[range]()
     at_once = PER_WORKER * executor.workers
-    for rows, future in as_done(executor.begin, map(request.rows_of, parts), at_once, executor.check):
+    for rows, future in as_done(
+        executor.begin, map(request.rows_of, parts), at_once, executor.check
+    ):
         try:
             solved = future.result()
         except WorkerDied:
@@ -84,7 +86,9 @@ def drive(
         report(len(rows))
     for rows in died:
         alone = []
-        for row, future in as_done(executor.begin, (range(number, number + 1) for number in rows), 1, executor.check):
+        for row, future in as_done(
+            executor.begin, (range(number, number + 1) for number in rows), 1, executor.check
+        ):
             try:
                 alone.append(future.result())
             except WorkerDied as death:
@@ -106,7 +110,11 @@ def _crashed(request: Request, rows: range, reason: str) -> Part:
 
 
 def solve_and_save(
-    request: Request, rows: range, folder: Path | None, promote: Promote = promoted, stop: threading.Event | None = None
+    request: Request,
+    rows: range,
+    folder: Path | None,
+    promote: Promote = promoted,
+    stop: threading.Event | None = None,
 ) -> Part:
     """Return rows solved; where they are a whole part and there is a folder, save them and return their tally alone.
 
@@ -149,7 +157,9 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
         took_s = prepared(request)  # before the sum is read, to which other threads add meanwhile
         executor.compile_s += took_s
 
-    executor = Executor(workers, lambda rows: threads.submit(solve_and_save, request, rows, folder, promote, stop))
+    executor = Executor(
+        workers, lambda rows: threads.submit(solve_and_save, request, rows, folder, promote, stop)
+    )
     stop = threading.Event()
     threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=prepare)
     try:

@@ -22,7 +22,14 @@ import numpy as np
 from ..engines.batch_interface import OK, STOPPED, XDOT, Batch, Outcomes, Rows, RunOptions
 from ..model.sections import direction_of
 from ..numbers.precision import Array
-from .highest_points import DEGREES_PER_HOUR, LATE, errors_of_swing, fastest_of, swing_and_precession, unsure_of_highest
+from .highest_points import (
+    DEGREES_PER_HOUR,
+    LATE,
+    errors_of_swing,
+    fastest_of,
+    swing_and_precession,
+    unsure_of_highest,
+)
 from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
 
 FACTOR = 16.0
@@ -74,10 +81,15 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     back = engine.solve(rows[grown], MOVED_BACK)
     rate, state = rows.rate[grown, None], moved.state.copy()
     gaps = [np.abs(other - run.state[grown]) for other in (state[grown], back.state)]
-    near, far = (np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1) for gap in gaps)
+    near, far = (
+        np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1)
+        for gap in gaps
+    )
     state[grown[far > near]] = back.state[far > near]
     stopped[grown] |= back.fate == STOPPED
-    return errors(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)), stopped
+    return errors(
+        rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)
+    ), stopped
 
 
 def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
@@ -89,8 +101,12 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
     speed = np.linalg.norm(run.state[:, 3:], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         # where a swing is late its position tells at the lowest point, its velocity at the highest
-        position = factor * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
-        velocity = factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
+        position = factor * np.fmax(
+            position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp)
+        )
+        velocity = factor * np.fmax(
+            velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed))
+        )
         transit, undecided = _of_zeros(rows, run, position, velocity)
         span = run.t_last - run.t_first
         share = (run.transits - 1) * transit / span
@@ -103,7 +119,9 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         swing=swing,
         precession=precession,
         # the height, which rounds to about an ulp, tells little of an angle next to the top
-        angle=np.degrees(position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))),
+        angle=np.degrees(
+            position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))
+        ),
         undecided=undecided,
         unsure_of_highest=unsure_of_highest(rows, run, position, velocity),
     )
@@ -127,12 +145,18 @@ def _of_zeros(
     """
     length, speed = rows.length[:, 0], np.linalg.norm(run.state[:, 3:], axis=1)
     form, state = rows.form[..., 0], run.state
-    value = (form[:, :3] * state[:, :3]).sum(axis=1) + (form[:, 3:6] * state[:, 3:]).sum(axis=1) - form[:, 6] * length
+    value = (
+        (form[:, :3] * state[:, :3]).sum(axis=1)
+        + (form[:, 3:6] * state[:, 3:]).sum(axis=1)
+        - form[:, 6] * length
+    )
     of_place, of_velocity = (np.linalg.norm(part, axis=1) for part in (form[:, :3], form[:, 3:6]))
     fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
     sine = np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
     off, bend = of_place * position + of_velocity * velocity, fastest**2 * length * sine
-    bend = np.fmin(bend * (of_place + of_velocity * fastest), bend_of_pairs(rows, run.largest_angle))
+    bend = np.fmin(
+        bend * (of_place + of_velocity * fastest), bend_of_pairs(rows, run.largest_angle)
+    )
     if vertical:
         passing = fastest_of(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
         off, bend = of_velocity * (sine * velocity + passing * position), 8 * sine * bend
@@ -150,22 +174,36 @@ def bend_of_pairs(rows: Rows, angle: Array) -> Array:
     most come from M itself, and the rest is the Coriolis force's: M < 16 Ω ω² l sin θ.
     """
     turn = np.linalg.norm(rows.turn[..., 0], axis=1)
-    known = (rows.form[..., 0] == XDOT).all(axis=1) & (angle < np.pi / 6) & (rows.rate > 30 * (turn + rows.drag[:, 0]))
+    known = (
+        (rows.form[..., 0] == XDOT).all(axis=1)
+        & (angle < np.pi / 6)
+        & (rows.rate > 30 * (turn + rows.drag[:, 0]))
+    )
     return np.where(known, 16 * turn * rows.rate**2 * rows.length[:, 0] * np.sin(angle), np.nan)
 
 
-def passages(engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
+def passages(
+    engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors
+) -> tuple[dict[str, Any], Any]:
     """Return the columns of a section by its engine, and in which rows its passages are not decided.
 
     The rows are those with its form; run and errors are of those without.
     """
     zeros = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
-    error, undecided = _of_zeros(rows, zeros, errors.position, errors.velocity, direction_of(word) != 0)
-    columns, unknown = passages_listed(word, error, zeros.transit_row, zeros.transit_t, zeros.transit_direction)
-    return columns, (zeros.fate != OK) | ~np.isfinite(rows.form).all(axis=(1, 2)) | undecided | unknown
+    error, undecided = _of_zeros(
+        rows, zeros, errors.position, errors.velocity, direction_of(word) != 0
+    )
+    columns, unknown = passages_listed(
+        word, error, zeros.transit_row, zeros.transit_t, zeros.transit_direction
+    )
+    return columns, (zeros.fate != OK) | ~np.isfinite(rows.form).all(
+        axis=(1, 2)
+    ) | undecided | unknown
 
 
-def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any) -> tuple[dict[str, Any], Any]:
+def passages_listed(
+    word: str, error: Array, row: Any, t: Array, direction: Any
+) -> tuple[dict[str, Any], Any]:
     """Return the columns of a section, and where a number has no error, from the error of each row's times.
 
     `row`, `t` and `direction` are those of every zero of its form, ordered by row and time.
@@ -182,7 +220,9 @@ def passages_listed(word: str, error: Array, row: Any, t: Array, direction: Any)
         interval = np.where(alike > 1, (end - start) / (alike - 1), np.nan)
         apart = np.where(error < LATE * interval / 2, 2 * error / (alike - 1), np.nan)
         columns, arrays = section_columns([word]), (count, start, error, interval, apart)
-        return _stated({column.name: values for column, values in zip(columns, arrays, strict=True)}, columns)
+        return _stated(
+            {column.name: values for column, values in zip(columns, arrays, strict=True)}, columns
+        )
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
@@ -220,7 +260,9 @@ def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[
     unknown: Any = False
     for error_name in {column.error for column in described if column.error}:
         names = [column.name for column in described if column.error == error_name]
-        error = columns[error_name] + np.spacing(np.max(np.abs([columns[name] for name in names]), axis=0))
+        error = columns[error_name] + np.spacing(
+            np.max(np.abs([columns[name] for name in names]), axis=0)
+        )
         none = ~np.isfinite(error)
         unknown = unknown | none & np.isfinite([columns[name] for name in names]).any(axis=0)
         columns |= {name: np.where(none, np.nan, columns[name]) for name in names}

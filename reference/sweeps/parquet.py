@@ -18,9 +18,16 @@ import numpy as np
 from ..numbers.columns import POSITION, VELOCITY
 from ..system.documents import texts_of
 
-FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
+FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = (
+    "frequency",
+    "precession",
+    "transits",
+    "state",
+    "amplitude",
+)
 TIMES = "transit-times"
-WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)  # what `all` means; the times of the transits are more
+# what `all` means; the times of the transits are more
+WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)
 WORDS = "dictionary"  # the kind of a column of words that repeat
 
 _PART, _SEAL = "foucault.part", "foucault.seal"  # keys of a file's metadata
@@ -46,7 +53,8 @@ class Column:
 STATE_COLUMNS = tuple([f"{name}_m" for name in POSITION] + [f"{name}_m_s" for name in VELOCITY])
 
 COLUMNS, TRANSIT_COLUMNS, _OF_SECTION = (
-    tuple(Column(name, *described) for name, described in table.items()) for table in texts_of(__file__).values()
+    tuple(Column(name, *described) for name, described in table.items())
+    for table in texts_of(__file__).values()
 )
 
 
@@ -57,7 +65,9 @@ def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
     of the highest or the lowest points.
     """
     return tuple(
-        replace(column, name=f"{word}: {column.name}", error=column.error and f"{word}: {column.error}")
+        replace(
+            column, name=f"{word}: {column.name}", error=column.error and f"{word}: {column.error}"
+        )
         for word in words
         for column in _OF_SECTION
     )
@@ -70,7 +80,11 @@ def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> byt
 
     fields = []
     for column in columns:
-        kind = pa.dictionary(pa.int32(), pa.string()) if column.kind == WORDS else getattr(pa, column.kind)()
+        kind = (
+            pa.dictionary(pa.int32(), pa.string())
+            if column.kind == WORDS
+            else getattr(pa, column.kind)()
+        )
         fields.append(pa.field(column.name, kind, metadata={"meaning": column.meaning}))
     table = pa.table(values, schema=pa.schema(fields, metadata={_PART: part}))
     words = [field.name for field in fields if pa.types.is_dictionary(field.type)]
@@ -137,5 +151,7 @@ def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, A
     columns = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         words = pa.types.is_dictionary(column.type)
-        columns[name] = (column.cast(pa.string()) if words else column).to_numpy(zero_copy_only=False)
+        columns[name] = (column.cast(pa.string()) if words else column).to_numpy(
+            zero_copy_only=False
+        )
     return columns

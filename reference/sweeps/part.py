@@ -74,7 +74,9 @@ class Part:
         """Return rows of which nothing is known but their values; those with a wrong value have failed."""
         table, inputs = request.table, request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
-        failing = (column for column in request.columns if column.name not in (*_KNOWN, *table.values))
+        failing = (
+            column for column in request.columns if column.name not in (*_KNOWN, *table.values)
+        )
         part.nothing = {column.name: column.empty(1)[0] for column in failing}
         part.fill(slice(None), {"row": numbers, "level": "computed", **table.words(numbers)})
         for row, reason in table.wrong(numbers, inputs).items():
@@ -94,15 +96,24 @@ class Part:
     def joined(cls, pieces: Sequence[Part]) -> Part:
         """Return the rows of several pieces, in order."""
         return cls(
-            {name: np.concatenate([piece.columns[name] for piece in pieces]) for name in pieces[0].columns},
-            {name: np.concatenate([piece.transits[name] for piece in pieces]) for name in pieces[0].transits},
+            {
+                name: np.concatenate([piece.columns[name] for piece in pieces])
+                for name in pieces[0].columns
+            },
+            {
+                name: np.concatenate([piece.transits[name] for piece in pieces])
+                for name in pieces[0].transits
+            },
             sum((piece.tally for piece in pieces), Tally()),
         )
 
     @property
     def unknown(self) -> Any:
         """The places of rows that have no status yet."""
-        return np.array([place for place, status in enumerate(self.columns["status"]) if status is None], np.int64)
+        return np.array(
+            [place for place, status in enumerate(self.columns["status"]) if status is None],
+            np.int64,
+        )
 
     def fill(self, places: Any, values: dict[str, Any]) -> None:
         """Put values into those columns that there are, at one place or several."""
@@ -114,7 +125,9 @@ class Part:
         """Say why a row failed, and take its numbers away."""
         self.fill(place, {**self.nothing, "status": status.value, "reason": reason})
 
-    def list_transits(self, replaced: Iterable[int], rows: Any, times: Any, directions: Any) -> None:
+    def list_transits(
+        self, replaced: Iterable[int], rows: Any, times: Any, directions: Any
+    ) -> None:
         """List transits in the order of their rows, in place of those that are listed for some rows."""
         stays = ~np.isin(self.transits["row"], list(replaced))
         added = dict(zip(self.transits, (rows, times, directions), strict=True))
@@ -235,11 +248,17 @@ def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
 def highest_on_one_side(request: Request) -> bool:
     """Return whether two highest points of the first row that follow one another lie on one side, as over the top."""
     rows = engine_rows(request.scene, request.table, range(1))
-    runs = [engine.solve(rows[chosen], request.run_options) for engine, chosen in _shared(request.engine, rows)]
+    runs = [
+        engine.solve(rows[chosen], request.run_options)
+        for engine, chosen in _shared(request.engine, rows)
+    ]
     return any(run.same_side.any() for run in runs)
 
 
 def _finite(rows: Rows) -> Any:
-    numbers = (getattr(rows, name).reshape(len(rows), -1) for name in ("length", "drag", "turn", "pull", "n", "V"))
+    numbers = (
+        getattr(rows, name).reshape(len(rows), -1)
+        for name in ("length", "drag", "turn", "pull", "n", "V")
+    )
     sound = np.isfinite(np.concatenate(list(numbers), axis=1)).all(axis=1)
     return sound & (rows.n[:, :, 0] != 0).any(axis=1)

@@ -31,7 +31,8 @@ from .row_constants import engine_rows
 LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
 DIGITS = 17  # that show a double
 AUDIT_DIGITS = 28  # at about 110 bits
-MORE_DIGITS = 11  # for highest points, whose height is of second order, also after a swing has died down
+# for highest points, whose height is of second order, also after a swing has died down
+MORE_DIGITS = 11
 
 
 def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
@@ -49,7 +50,9 @@ def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
             transit = float(max(transits.bound("t"))) + np.spacing(run.t_last)
             frequency = np.where(len(t) > 1, (len(t) - 1) * transit / (t[-1] - t[0]) ** 2, np.nan)
     none = np.zeros(1, bool)
-    return run, Errors(position, velocity, transit, frequency, swing, precession, np.degrees(angle), none, none)
+    return run, Errors(
+        position, velocity, transit, frequency, swing, precession, np.degrees(angle), none, none
+    )
 
 
 def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:
@@ -70,7 +73,12 @@ class Promoted:
 
 
 def promoted(
-    request: Request, row: int, *, doubtful: bool, level: Level | None = None, digits: int | None = None
+    request: Request,
+    row: int,
+    *,
+    doubtful: bool,
+    level: Level | None = None,
+    digits: int | None = None,
 ) -> Promoted:
     """Return a row solved by itself.
 
@@ -87,12 +95,18 @@ def promoted(
     digits = digits or request.digits or DIGITS
     try:
         settings = {"run.level": level, "run.transits": request.run_options.transits}
-        solution = _solved(request.scene_of(row).with_values(settings), digits, request.run_options.apsides)
+        solution = _solved(
+            request.scene_of(row).with_values(settings), digits, request.run_options.apsides
+        )
     except FoucaultError as error:
         return Promoted({}, ([], []), str(error))
     undecided = [word for word in request.sections if solution.sections[word].possible]
     if undecided:
-        return Promoted({}, ([], []), f"{', '.join(undecided)}: the proof does not decide how many passages there are.")
+        return Promoted(
+            {},
+            ([], []),
+            f"{', '.join(undecided)}: the proof does not decide how many passages there are.",
+        )
     times = [float(t) for t in solution.transits.exact("t")]
     return Promoted(_values(request, row, solution), (times, list(solution.directions)))
 
@@ -117,9 +131,14 @@ def _values(request: Request, row: int, solution: Solution) -> dict[str, Any]:
     rows = engine_rows(request.scene, request.table, [row])
     columns, _ = columns_of(rows, *outcomes_of(solution, rows))
     for word in request.sections:
-        table, directions = solution.sections[word].table, np.array(solution.sections[word].directions, int)
+        table, directions = (
+            solution.sections[word].table,
+            np.array(solution.sections[word].directions, int),
+        )
         t = table["t"]
-        error = np.array([float(max(table.bound("t"), default=np.nan)) + np.spacing(np.max(t, initial=0))])
+        error = np.array(
+            [float(max(table.bound("t"), default=np.nan)) + np.spacing(np.max(t, initial=0))]
+        )
         columns |= passages_listed(word, error, np.zeros(len(t), int), t, directions)[0]
     return {name: values[0] for name, values in columns.items()} | {
         "level": solution.level,
@@ -153,7 +172,10 @@ def audited(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit
     for part, numbers in groupby(sample(request), request.part_of):
         columns = read(part)
         for number in numbers:
-            row = {name: values[number - part * request.rows_per_part] for name, values in columns.items()}
+            row = {
+                name: values[number - part * request.rows_per_part]
+                for name, values in columns.items()
+            }
             if row["status"] == Status.OK.value and row["level"] == "computed":
                 ratios[number] = worst_ratio(request, number, row)
     refused = tuple(number for number, ratio in ratios.items() if ratio is None)

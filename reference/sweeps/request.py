@@ -46,11 +46,13 @@ from .row_constants import ANGLES, POSITION
 SCHEMA = 2
 PART_S = 10.0  # CPU seconds of a part, by the cost model
 LEAST_PART, MOST_PART = 8, 65_536  # rows
-SETTINGS = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")  # as they are
+# as they are
+SETTINGS = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")
 ALL = "all"
 PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
 ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
-WORTH_A_LINE_S = 1.0  # CPU seconds of rows, above which it is told that a compiled engine would be cheaper
+# CPU seconds of rows, above which it is told that a compiled engine would be cheaper
+WORTH_A_LINE_S = 1.0
 
 
 @checked(frozen=True)
@@ -110,10 +112,16 @@ class Request:
     def columns(self) -> tuple[Column, ...]:
         """The columns of a row: its number, one for each field that is varied, those that are wanted, of sections."""
         varied = [
-            Column(key, WORDS if key in TEXTS else "float64", f"{key} of the scene, the nearest double")
+            Column(
+                key, WORDS if key in TEXTS else "float64", f"{key} of the scene, the nearest double"
+            )
             for key in self.table.values
         ]
-        results = [column for column in COLUMNS[1:] if not column.wants or set(column.wants) & set(self.want)]
+        results = [
+            column
+            for column in COLUMNS[1:]
+            if not column.wants or set(column.wants) & set(self.want)
+        ]
         return (COLUMNS[0], *varied, *results, *section_columns(self.sections))
 
     @property
@@ -137,7 +145,9 @@ class Request:
             InputError: the combination of its values is wrong.
         """
         texts = self.table.texts(row)
-        return self.scene.with_values(texts | {"run.grid_step": texts.get("run.t_end", self.scene.run.t_end)})
+        return self.scene.with_values(
+            texts | {"run.grid_step": texts.get("run.t_end", self.scene.run.t_end)}
+        )
 
     def document(self) -> dict[str, Any]:
         """Return the request as JSON, all that decides the digits."""
@@ -166,7 +176,9 @@ class Request:
     def hash(self) -> str:
         """The sha256 of `document` and of the columns, which every part carries."""
         columns = [(column.name, column.kind) for column in (*self.columns, *TRANSIT_COLUMNS)]
-        return hashlib.sha256(json.dumps([self.document(), columns], sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(
+            json.dumps([self.document(), columns], sort_keys=True).encode()
+        ).hexdigest()
 
 
 @lru_cache(maxsize=1)
@@ -193,7 +205,9 @@ def request(
         InputError: a wrong axis, option or value.
     """
     if level not in LEVELS:
-        raise unknown("--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}.")
+        raise unknown(
+            "--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}."
+        )
     if level == "enclosed":
         needed("flint", "enclose", "--level", "the level enclosed")
     if digits is not None:
@@ -204,7 +218,12 @@ def request(
         check_whole("--audit", audit, 0, "a number of rows from 0")
     words = list(over)
     if bool(words) == (rows is not None):
-        raise InputError("--over", " ".join(words) or "nothing", "--over KEY=…, or --rows FILE", "Give one of the two.")
+        raise InputError(
+            "--over",
+            " ".join(words) or "nothing",
+            "--over KEY=…, or --rows FILE",
+            "Give one of the two.",
+        )
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
     table = listed(rows) if rows else grid(words, scene.inputs)
     _check_release(scene, table.values)
@@ -219,7 +238,9 @@ def request(
         tolerance=tolerance,
         engine=chosen.name,
         identity=chosen.identity,
-        rows_per_part=min(max(1 << round(math.log2(max(PART_S / row_s, 1))), LEAST_PART), MOST_PART),
+        rows_per_part=min(
+            max(1 << round(math.log2(max(PART_S / row_s, 1))), LEAST_PART), MOST_PART
+        ),
         audit=min(audit or 0, table.count),
     )
 
@@ -237,8 +258,12 @@ def _quantities(words: Sequence[str]) -> tuple[str, ...]:
     known = (*WANTS, TIMES, ALL)
     for word in words:
         if word not in known:
-            raise unknown("--want", word, "a quantity of a sweep", known, f"There are {', '.join(WANTS)}.")
-    return tuple(word for word in (*WANTS, TIMES) if word in words or (ALL in words and word in WANTS))
+            raise unknown(
+                "--want", word, "a quantity of a sweep", known, f"There are {', '.join(WANTS)}."
+            )
+    return tuple(
+        word for word in (*WANTS, TIMES) if word in words or (ALL in words and word in WANTS)
+    )
 
 
 def _row_s(engine: Batch, scene: Scene) -> float:
@@ -256,7 +281,10 @@ def worth_compiling(request: Request) -> str:
     if request.promotes or row_s * request.table.count < WORTH_A_LINE_S:
         return ""
     for other in batches().values():
-        once_s, gained_s = other.compiling_s(bool(request.sections)), row_s - _row_s(other, request.scene)
+        once_s, gained_s = (
+            other.compiling_s(bool(request.sections)),
+            row_s - _row_s(other, request.scene),
+        )
         drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
         if once_s and gained_s > 0 and other.installed and (other.drag or not drag):
             rows = float(f"{once_s / gained_s:.1g}")
@@ -275,12 +303,25 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
     """
     engines = batches()
     if name == AUTO:
-        serving = [engine for engine in engines.values() if engine.installed and (engine.drag or not scene.exact.drag)]
+        serving = [
+            engine
+            for engine in engines.values()
+            if engine.installed and (engine.drag or not scene.exact.drag)
+        ]
         sections = bool(scene.run.sections)
         return min(
-            serving, key=lambda engine: engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
+            serving,
+            key=lambda engine: (
+                engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
+            ),
         )
     if name not in engines:
-        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), f"There are {', '.join(engines)}.")
+        raise unknown(
+            "--engine",
+            name,
+            "an engine for many rows",
+            (AUTO, *engines),
+            f"There are {', '.join(engines)}.",
+        )
     engines[name].check_installed()
     return engines[name]

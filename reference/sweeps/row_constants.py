@@ -25,7 +25,16 @@ from .axes import AxisTable
 
 Columns = Mapping[str, DoubleDouble]
 
-SITE = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
+SITE = (
+    "length",
+    "drag",
+    "latitude",
+    "altitude",
+    "gravity",
+    "rotation_rate",
+    "equatorial_radius",
+    "flattening",
+)
 POSITION, ANGLES = RELEASES.values()
 _SAME = 2.0**-94  # of the parts of a sum: if it is less, it is zero
 _NEWTON_STEPS, _CLOSE = 8, 2.0**-94  # to a rest position, in rad: the last step is at most as long
@@ -36,7 +45,9 @@ _EVEN = 0.5  # of |c|: where Ω² is less, there is one rest position near the p
 def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
     """Return a scene's numbers as columns of one row, by the names of `SITE`, `POSITION` or `ANGLES`, and t_end."""
     named = {name: getattr(inputs, name) for name in (*SITE, "t_end")}
-    named |= dict(zip(POSITION, inputs.position, strict=True)) if inputs.position is not None else {}
+    named |= (
+        dict(zip(POSITION, inputs.position, strict=True)) if inputs.position is not None else {}
+    )
     named |= dict(zip(ANGLES, inputs.angles, strict=True)) if inputs.angles is not None else {}
     return {name: DoubleDouble.of([value]) for name, value in named.items()}
 
@@ -89,7 +100,9 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
     if gravity_is == "ellipsoid":
         earth = columns["equatorial_radius"], columns["flattening"], columns["altitude"]
         distance = axis_distance(*earth, sin, cos, square_root)
-    north, up, pull_north, pull_up = turn_and_pull(length, columns["gravity"], rate, distance, sin, cos)
+    north, up, pull_north, pull_up = turn_and_pull(
+        length, columns["gravity"], rate, distance, sin, cos
+    )
     n, v = _release(columns)
     k = Constants(
         turn=(0, north, up),
@@ -101,7 +114,11 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
     falls = pull_north * v[1], pull_up * v[2]  # along c
     fall, size = (falls[0] + falls[1]).high, abs(falls[0].high) + abs(falls[1].high)
     still = at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes
-    form, multiplicity, leaves = [_ZERO + part for part in XDOT], _zeros_at_release(n, v, k), np.zeros(1)
+    form, multiplicity, leaves = (
+        [_ZERO + part for part in XDOT],
+        _zeros_at_release(n, v, k),
+        np.zeros(1),
+    )
     if section:
         form, multiplicity, leaves = _of_section(section, n, v, k)
     return Rows(
@@ -115,7 +132,9 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
         form=_stacked(form, count),
         zeros_at_release=np.full(count, multiplicity),
         leaves=np.full(count, leaves),
-        rising=np.full(count, np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64)),
+        rising=np.full(
+            count, np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64)
+        ),
         still=np.full(count, still & (section == "")),
     )
 
@@ -133,7 +152,11 @@ def _release(columns: Columns) -> tuple[Vector, Vector]:
 
 def _zeros_at_release(n: Vector, v: Vector, k: Constants) -> Any:
     """Return the multiplicities of xdot's zeros at t = 0: see `model.start.zero_at_release`."""
-    at_pole, in_meridian, (_, north, up) = k.turn[1].vanishes & k.pull[1].vanishes, n[0].vanishes, k.turn
+    at_pole, in_meridian, (_, north, up) = (
+        k.turn[1].vanishes & k.pull[1].vanishes,
+        n[0].vanishes,
+        k.turn,
+    )
     falls = n[2].vanishes & (at_pole | n[1].vanishes)
     square = np.where(_cancel(north * n[1], up * n[2]), 4, 2)
     at_rest = np.where(in_meridian, square, np.where(falls, 3, 1))
@@ -146,7 +169,9 @@ def _cancel(a: DoubleDouble, b: DoubleDouble) -> Any:
     return np.abs((a + b).high) <= _SAME * (np.abs(a.high) + np.abs(b.high))
 
 
-def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> tuple[list[DoubleDouble], Any, Any]:
+def _of_section(
+    word: str, n: Vector, v: Vector, k: Constants
+) -> tuple[list[DoubleDouble], Any, Any]:
     """Return a section's form, the multiplicity of its zero at t = 0, and its sign just after.
 
     Of a velocity three derivatives are looked at, of a position four. Where all vanish, the multiplicity is as many at
@@ -162,8 +187,13 @@ def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> tuple[list[Dou
     is_gate, d, vanish = word.startswith("gate"), numbers[6], np.ones(1, bool)
     multiplicity, leaves = np.zeros(1, np.int64), np.full(1, np.nan)
     for vector in (n, v, rate, jerk) if is_gate else (v, rate, jerk):
-        parts = [p * q for p, q in zip(numbers[:3] if is_gate else numbers[3:6], vector, strict=True)]
-        value, size = (parts[0] + parts[1] + parts[2] - d).high, sum(np.abs(part.high) for part in (*parts, d))
+        parts = [
+            p * q for p, q in zip(numbers[:3] if is_gate else numbers[3:6], vector, strict=True)
+        ]
+        value, size = (
+            (parts[0] + parts[1] + parts[2] - d).high,
+            sum(np.abs(part.high) for part in (*parts, d)),
+        )
         is_none = np.abs(value) <= _SAME * size
         leaves = np.where(vanish & ~is_none, np.sign(value), leaves)
         vanish, d = vanish & is_none, _ZERO
@@ -182,7 +212,9 @@ def _rest_position(k: Constants) -> Vector:
         north, up = north + step * along[1], up + step * along[2]
         size = square_root(north * north + up * up)
         north, up = north / size, up / size
-    even = np.abs(k.centrifugal[0].high) < _EVEN * np.sqrt(k.pull[1].high ** 2 + k.pull[2].high ** 2)
+    even = np.abs(k.centrifugal[0].high) < _EVEN * np.sqrt(
+        k.pull[1].high ** 2 + k.pull[2].high ** 2
+    )
     settled = even & (np.abs(step.high) <= _CLOSE)
     return 0, north + np.where(settled, 0.0, np.nan), up
 

@@ -79,7 +79,9 @@ def swing(scene: AnyScene) -> EstimatedSwing:
 
     seconds = float(scene.run.t_end)
     smallest_angle = 2 * math.sin(math.radians(float(row["max_angle_deg"])) / 2)
-    smallest_m = float(start.k.length) * smallest_angle * math.exp(-float(start.k.drag) * seconds / 2)
+    smallest_m = (
+        float(start.k.length) * smallest_angle * math.exp(-float(start.k.drag) * seconds / 2)
+    )
     off = offset(start, smallest_m)
     if off > 1:
         raise UnreachableError(LEAN)

@@ -58,15 +58,21 @@ class Store:
         else:
             needed(*PARQUET)
             if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
-                raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
+                raise InputError(
+                    "--out", str(folder), "a new or empty folder, or that of this sweep"
+                )
             store = cls(folder, request, version("pyarrow"))
         with usable("--out", folder):
             for kind in store._kinds:
                 (folder / kind).mkdir(parents=True, exist_ok=True)
-                clear(folder / kind)  # a part that is there is not written again, which would clear it
+                # a part that is there is not written again, which would clear it
+                clear(folder / kind)
             clear(folder)
         if not (folder / PLAN).exists():
-            write_json(folder / PLAN, {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()})
+            write_json(
+                folder / PLAN,
+                {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()},
+            )
         return store
 
     @classmethod
@@ -83,11 +89,15 @@ class Store:
             unchanged = request.hash == document["hash"]
         except FileNotFoundError:
             advice = "Give a scene and --over to begin one."
-            raise InputError("--out", str(folder), f"a folder of a sweep, with {PLAN}", advice) from None
+            raise InputError(
+                "--out", str(folder), f"a folder of a sweep, with {PLAN}", advice
+            ) from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
             unchanged = False
         if not unchanged:
-            raise InputError("--out", str(folder), f"a {PLAN} as this version writes it", "Sweep anew.")
+            raise InputError(
+                "--out", str(folder), f"a {PLAN} as this version writes it", "Sweep anew."
+            )
         return cls(folder, request, str(document.get("pyarrow")))
 
     def _check_same(self, request: Request) -> None:
@@ -102,7 +112,10 @@ class Store:
         if differing:
             expected = f"the sweep that is there, which differs in {', '.join(differing)}"
             raise InputError("--out", str(self.folder), expected, "Take another folder.")
-        versions = {request.identity: self.request.identity, f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}"}
+        versions = {
+            request.identity: self.request.identity,
+            f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}",
+        }
         for got, expected in versions.items():
             if got != expected:
                 advice = "Install the versions that the sweep was begun with, or begin it anew in another folder."
@@ -118,7 +131,11 @@ class Store:
 
     def missing(self) -> list[int]:
         """Return the parts that are not there yet, were damaged, or are others of this plan or of another."""
-        return [part for part in range(self.request.parts) if not all(self._sound(part, kind) for kind in self._kinds)]
+        return [
+            part
+            for part in range(self.request.parts)
+            if not all(self._sound(part, kind) for kind in self._kinds)
+        ]
 
     def _sound(self, part: int, kind: str) -> bool:
         with (
@@ -138,7 +155,10 @@ class Store:
         Raises:
             InputError: it cannot be written.
         """
-        tables = {ROWS: (self.request.columns, solved.columns), TRANSITS: (TRANSIT_COLUMNS, solved.transits)}
+        tables = {
+            ROWS: (self.request.columns, solved.columns),
+            TRANSITS: (TRANSIT_COLUMNS, solved.transits),
+        }
         for kind in self._kinds:
             _write(self.path(part, kind), parquet(*tables[kind], self._named(part, kind)))
 
@@ -157,7 +177,9 @@ class Store:
 
         Those whose names begin with a dot are left out, as they are by programs that read Parquet.
         """
-        parts = {self.path(part, kind) for kind in self._kinds for part in range(self.request.parts)}
+        parts = {
+            self.path(part, kind) for kind in self._kinds for part in range(self.request.parts)
+        }
         found = {path for kind in (ROWS, TRANSITS) for path in (self.folder / kind).glob("[!.]*")}
         return sorted(str(path.relative_to(self.folder)) for path in found - parts)
 
@@ -174,7 +196,9 @@ class Store:
             return arrays([self.path(part, kind) for part in chosen], names)
         except OSError as error:
             advice = f"{error.strerror or error}. Go on with `foucault sweep --out {self.folder}`."
-            raise InputError("sweep", str(self.folder), "parts as they were written", advice) from None
+            raise InputError(
+                "sweep", str(self.folder), "parts as they were written", advice
+            ) from None
 
 
 def _foreign(path: Path) -> bool:

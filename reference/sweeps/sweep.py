@@ -24,7 +24,8 @@ from .swept import Swept
 MOST_IN_MEMORY = 100_000  # rows
 PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
 ROWS_OF_FRAME = "Of a data frame write rows.to_csv(FILE, index=False), and give FILE."
-LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # audited rows: at least, at most, else one in AUDITED
+# audited rows: at least, at most, else one in AUDITED
+LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000
 
 Report = Callable[[int], None]
 
@@ -73,20 +74,34 @@ def sweep(
     Raises:
         InputError: a wrong axis, option or folder; before any work.
     """
-    file = None if rows is None else checked_path("rows", rows, "a CSV or Parquet file", ROWS_OF_FRAME)
+    file = (
+        None if rows is None else checked_path("rows", rows, "a CSV or Parquet file", ROWS_OF_FRAME)
+    )
     folder = None if out is None else checked_path("out", out, "a folder")
     if workers is not None:
         check_whole("workers", workers, words="a whole number from 1, or None for one a core")
     quantities = want.split(",") if isinstance(want, str) else words_of(want)
-    options = {"want": quantities, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
+    options = {
+        "want": quantities,
+        "level": level,
+        "digits": digits,
+        "tolerance": tolerance,
+        "engine": engine,
+    }
     run_values = {"run.t_end": t_end, "run.sections": sections}
-    scene = as_scene(scene).with_values({key: value for key, value in run_values.items() if value is not None})
+    scene = as_scene(scene).with_values(
+        {key: value for key, value in run_values.items() if value is not None}
+    )
     request = asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options)
     return run(request, folder, workers, cluster, report)
 
 
 def asked_for(
-    scene: Scene, over: Iterable[str] = (), rows: Path | None = None, out: Path | None = None, **options: Any
+    scene: Scene,
+    over: Iterable[str] = (),
+    rows: Path | None = None,
+    out: Path | None = None,
+    **options: Any,
 ) -> Request:
     """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `request.request`.
 
@@ -99,8 +114,15 @@ def asked_for(
     count = checked.table.count
     if out is None:
         if count > MOST_IN_MEMORY:
-            raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
-        return replace(checked, rows_per_part=min(checked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
+            raise InputError(
+                "--out",
+                "nothing",
+                f"a folder, for more than {MOST_IN_MEMORY:,} rows",
+                "Give --out DIR.",
+            )
+        return replace(
+            checked, rows_per_part=min(checked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES)))
+        )
     if options.get("audit") is None:
         return replace(checked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
     return checked
@@ -143,7 +165,9 @@ def run(
         compile_s = executor.compile_s
     audit, audit_from = None, time.process_time()
     if request.audit:
-        audit = audited(request, lambda part: store.read(parts=[part]) if store else in_memory[part].columns)
+        audit = audited(
+            request, lambda part: store.read(parts=[part]) if store else in_memory[part].columns
+        )
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
     audit_s, wall_s = time.process_time() - audit_from, time.perf_counter() - started
     swept = Swept(request, store, solved, tally, audit, compile_s, audit_s, wall_s)

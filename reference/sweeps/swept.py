@@ -112,7 +112,10 @@ class Swept(Framed):
             return values
         import xarray
 
-        coords = {key: list(texts) if key in TEXTS else np.array(texts, float) for key, texts in table.values.items()}
+        coords = {
+            key: list(texts) if key in TEXTS else np.array(texts, float)
+            for key, texts in table.values.items()
+        }
         return xarray.DataArray(values, coords=coords, dims=list(coords), name=name)
 
     def transits(self) -> dict[str, Any]:
@@ -122,11 +125,20 @@ class Swept(Framed):
             InputError: they were not.
         """
         if not self.request.run_options.times:
-            raise unknown("transits", "transits", "a sweep with --want transit-times", (), "Sweep again with it.")
+            raise unknown(
+                "transits",
+                "transits",
+                "a sweep with --want transit-times",
+                (),
+                "Sweep again with it.",
+            )
         return self.store.read(kind=TRANSITS) if self.store is not None else self.solved.transits
 
     def rows(self, most: int | None = None) -> Iterator[dict[str, Any]]:
         """Yield the first rows, each as a mapping from column to Python value; None where there is no number."""
         columns = {name: values[:most].tolist() for name, values in self.columns().items()}
         for row in zip(*columns.values(), strict=True):
-            yield {name: None if value != value else value for name, value in zip(columns, row, strict=True)}
+            yield {
+                name: None if value != value else value
+                for name, value in zip(columns, row, strict=True)
+            }

@@ -22,14 +22,20 @@ def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:
     missing = store.missing()
     if missing:
         first = store.path(missing[0]).name
-        begin = f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {first}"
+        begin = (
+            f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {first}"
+        )
         problems.append(f"{begin}; `foucault sweep --out {folder}` makes them again")
     for name in store.foreign():
-        problems.append(f"{name} is no part of this sweep: remove it, as whoever reads the folder would take its rows")
+        problems.append(
+            f"{name} is no part of this sweep: remove it, as whoever reads the folder would take its rows"
+        )
     try:
         problems += check_sums(folder)
     except FileNotFoundError:
-        undecided.append(f"{SUMMARY}, as there is no {SUMS}; `foucault sweep --out {folder}` writes it")
+        undecided.append(
+            f"{SUMMARY}, as there is no {SUMS}; `foucault sweep --out {folder}` writes it"
+        )
     if not problems:
         problems += _summary_problems(store)
     return problems, undecided

@@ -34,7 +34,9 @@ def root() -> Path:
     Raises:
         RuntimeError: this user has no home folder.
     """
-    return Path(os.environ.get("FOUCAULT_CACHE") or user_cache_path("foucault", appauthor=False)).expanduser()
+    return Path(
+        os.environ.get("FOUCAULT_CACHE") or user_cache_path("foucault", appauthor=False)
+    ).expanduser()
 
 
 def entry(kind: str, name: str) -> Path | None:
@@ -77,7 +79,9 @@ def check() -> None:
 
     So only one line says so, they compile once for all, and leave nothing where they are killed.
     """
-    path = store("generated", ".room", lambda path: replace_file(path, lambda stream: stream.write(_ROOM)))
+    path = store(
+        "generated", ".room", lambda path: replace_file(path, lambda stream: stream.write(_ROOM))
+    )
     if path is not None:
         discard(path)
     else:
@@ -149,10 +153,16 @@ def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[s
         discard(path)
     made = make()
     path = store(
-        kind, name, lambda path: replace_file(path, lambda stream: np.savez(stream, allow_pickle=False, **made))
+        kind,
+        name,
+        lambda path: replace_file(
+            path, lambda stream: np.savez(stream, allow_pickle=False, **made)
+        ),
     )
     if path is not None:
         with contextlib.suppress(OSError):  # another process may be deleting as well
-            for old in sorted(path.parent.glob("[!.]*"), key=lambda path: path.stat().st_mtime)[:-KEEP]:
+            for old in sorted(path.parent.glob("[!.]*"), key=lambda path: path.stat().st_mtime)[
+                :-KEEP
+            ]:
                 old.unlink()
     return made

@@ -29,7 +29,9 @@ def sums_text(files: Mapping[str, bytes]) -> str:
 
 def sealed_line(record: Mapping[str, Any]) -> dict[str, Any]:
     """Return the record of a line of a journal with its seal."""
-    text = json.dumps({name: value for name, value in record.items() if name != SEAL}, sort_keys=True)
+    text = json.dumps(
+        {name: value for name, value in record.items() if name != SEAL}, sort_keys=True
+    )
     return {**record, SEAL: sha256(text.encode()).hexdigest()[:_SEAL_HEX]}
 
 
@@ -91,10 +93,15 @@ def _check_journal(path: Path) -> tuple[list[str], list[str]]:
             damaged.append(number)
         elif SEAL not in record:
             unsealed += 1
-    problems = [f"{path.name}: line {number} is not as it was written, and not used: delete it" for number in damaged]
+    problems = [
+        f"{path.name}: line {number} is not as it was written, and not used: delete it"
+        for number in damaged
+    ]
     undecided = []
     if cut_short:
-        undecided.append(f"{path.name}: lines that were cut short, as by a kill, and are not used: {cut_short}")
+        undecided.append(
+            f"{path.name}: lines that were cut short, as by a kill, and are not used: {cut_short}"
+        )
     if unsealed:
         undecided.append(f"{path.name}: results without a seal, of an earlier version: {unsealed}")
     return problems, undecided

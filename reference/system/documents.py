@@ -18,7 +18,8 @@ from ..errors import InputError
 
 MAX_BYTES = 1 << 16  # of a TOML file
 MAX_JSON_BYTES = 1 << 30  # the plan of a sweep may list millions of rows
-MAX_DEPTH = 32  # words of a dotted key; a scene has two. The parser's time and memory grow with the square
+# words of a dotted key; a scene has two. The parser's time and memory grow with the square
+MAX_DEPTH = 32
 _QUOTED = 200  # characters of the parser's message that are quoted
 
 _WORD = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')"""
@@ -52,7 +53,9 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
     try:
         text = data.decode("utf-8-sig")  # some editors write a byte order mark
         if _DEEP_KEY.search(text):
-            raise InputError(field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words")
+            raise InputError(
+                field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words"
+            )
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(field, str(path), "a TOML file", _reason(error)) from None
@@ -106,7 +109,9 @@ def regular(path: Path, field: str, most: int, expected: str) -> Iterator[Binary
         with open_at_once(path) as stream:
             status = os.fstat(stream.fileno())
             if not stat.S_ISREG(status.st_mode):
-                raise InputError(field, str(path), "a regular file", "Pipes and devices are not read.")
+                raise InputError(
+                    field, str(path), "a regular file", "Pipes and devices are not read."
+                )
             if status.st_size > most:
                 raise InputError(field, str(path), f"{expected} of at most {most} bytes")
             yield stream

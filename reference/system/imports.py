@@ -34,7 +34,9 @@ def lazy(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], l
         raise no_attribute(f"module {package!r}", name, homes)
 
     def names() -> list[str]:
-        return sorted({*homes, *(name for name in vars(sys.modules[package]) if name.startswith("__"))})
+        return sorted(
+            {*homes, *(name for name in vars(sys.modules[package]) if name.startswith("__"))}
+        )
 
     return attribute, names, sorted(homes)
 
@@ -66,9 +68,13 @@ class Registry(UserDict[str, D]):
     @cached_property
     def data(self) -> dict[str, D]:  # type: ignore[override]
         """The declarations, imported at the first look."""
-        names = sorted(module.name for module in iter_modules(import_module(self._package).__path__))
+        names = sorted(
+            module.name for module in iter_modules(import_module(self._package).__path__)
+        )
         modules = [import_module(f"{self._package}.{name}") for name in names]
-        declared: list[D] = [entry for module in modules for entry in getattr(module, self._variable, ())]
+        declared: list[D] = [
+            entry for module in modules for entry in getattr(module, self._variable, ())
+        ]
         by_id = {entry.id: entry for entry in sorted(declared, key=self._group)}
         if len(by_id) < len(declared):
             raise ValueError(f"two files of {self._package} declare the same id")
@@ -105,7 +111,9 @@ def needed(module: str, extra: str, field: str, purpose: str, instead: str = "")
 def switched_off(modules: Iterable[str]) -> str | None:
     """Return the environment variable that stops one of the modules from compiling, or None."""
     variable = "NUMBA_DISABLE_JIT"
-    return variable if "numba" in modules and os.environ.get(variable, "0") not in ("", "0") else None
+    return (
+        variable if "numba" in modules and os.environ.get(variable, "0") not in ("", "0") else None
+    )
 
 
 def _installed(module: str) -> bool:

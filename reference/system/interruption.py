@@ -16,11 +16,15 @@ AGAIN_S = 0.25  # seconds between two looks whether the exception of a signal wa
 
 
 @contextmanager
-def _replaced(handler: Callable[..., object], chosen: Callable[[Any], bool]) -> Iterator[dict[int, Any]]:
+def _replaced(
+    handler: Callable[..., object], chosen: Callable[[Any], bool]
+) -> Iterator[dict[int, Any]]:
     """Replace those handlers that are chosen meanwhile, in the main thread; yield them by their signals' numbers."""
     main = threading.current_thread() is threading.main_thread()
     numbers = [*SIGNALS, signal.SIGALRM] if main else []
-    before: dict[int, Any] = {number: usual for number in numbers if chosen(usual := signal.getsignal(number))}
+    before: dict[int, Any] = {
+        number: usual for number in numbers if chosen(usual := signal.getsignal(number))
+    }
     try:
         for number in before:
             signal.signal(number, handler)
@@ -68,10 +72,14 @@ def terminable() -> Iterator[list[int]]:
         if not _ends(sys.exc_info()[1]):  # else what was begun is being cleared away
             if signal.getsignal(signal.SIGALRM) is stop:
                 signal.setitimer(signal.ITIMER_REAL, AGAIN_S, AGAIN_S)
-            raise KeyboardInterrupt if received[0] == signal.SIGINT else SystemExit(128 + received[0])
+            raise (
+                KeyboardInterrupt if received[0] == signal.SIGINT else SystemExit(128 + received[0])
+            )
 
     usual_hook = sys.unraisablehook
-    sys.unraisablehook = lambda lost: None if received and _ends(lost.exc_value) else usual_hook(lost)
+    sys.unraisablehook = lambda lost: (
+        None if received and _ends(lost.exc_value) else usual_hook(lost)
+    )
     with _replaced(stop, (signal.SIG_DFL, signal.default_int_handler).__contains__):
         try:
             yield received

@@ -36,7 +36,9 @@ def announce(what: str, seconds: int) -> None:
     """Tell the last listener, once in a process, that `what` is compiled, and that this takes about `seconds`."""
     if what not in _announced and _listeners:
         _announced.add(what)
-        _listeners[-1](f"First use on this machine: {what} are compiled, once, for about {seconds} seconds.")
+        _listeners[-1](
+            f"First use on this machine: {what} are compiled, once, for about {seconds} seconds."
+        )
 
 
 def folder_of(sources: Iterable[Path]) -> Path | None:
@@ -80,7 +82,8 @@ def kept(*sources: Path, **options: Any) -> Callable[[Function], Function]:
                     compiled = njit(cache=True, **options)(function)
                 finally:
                     config.CACHE_DIR = before
-                if Path(compiled.stats.cache_path).is_relative_to(folder):  # else numba chose one for any age
+                # else numba chose one for any age
+                if Path(compiled.stats.cache_path).is_relative_to(folder):
                     return compiled
         return njit(**options)(function)
 
@@ -106,7 +109,10 @@ def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
         announce(what, seconds)
     with ExitStack() as turn:
         if folder is not None:
-            with suppress(OSError):  # it takes too long, or the disk has no locks: then it is compiled twice
-                turn.enter_context(FileLock(Path(folder, f"{function.__name__}.lock"), timeout=PATIENCE_S))
+            # it takes too long, or the disk has no locks: then it is compiled twice
+            with suppress(OSError):
+                turn.enter_context(
+                    FileLock(Path(folder, f"{function.__name__}.lock"), timeout=PATIENCE_S)
+                )
         with suppress(OSError):  # the disk is full: it is compiled, and not kept
             function.compile(types)

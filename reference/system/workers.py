@@ -55,7 +55,9 @@ class Worker:
         env: variables of its environment besides this process's own, or instead of them.
     """
 
-    def __init__(self, function: Callable[..., None], *arguments: Any, env: dict[str, str] | None = None) -> None:
+    def __init__(
+        self, function: Callable[..., None], *arguments: Any, env: dict[str, str] | None = None
+    ) -> None:
         self._connection, theirs = Pipe()
         line = theirs.fileno()
         with held(), theirs:
@@ -86,7 +88,9 @@ class Worker:
             in_time = self._connection.poll(timeout_s)
             item = self._connection.recv() if in_time else None
         except (EOFError, OSError, pickle.UnpicklingError):
-            raise IntegrationError("a child process of the solver ended without a result.") from None
+            raise IntegrationError(
+                "a child process of the solver ended without a result."
+            ) from None
         if not in_time:
             raise TimeoutError
         if isinstance(item, BaseException):
@@ -102,8 +106,12 @@ class Worker:
         """Leave the process, which ends it if it is still at work, and wait for its end; kill it after `GRACE_S`."""
         if self._connection.closed:
             return
-        with socket.socket(fileno=os.dup(self._connection.fileno())) as line, contextlib.suppress(OSError):
-            line.shutdown(socket.SHUT_RDWR)  # unlike closing, this wakes a thread that waits for a result
+        with (
+            socket.socket(fileno=os.dup(self._connection.fileno())) as line,
+            contextlib.suppress(OSError),
+        ):
+            # unlike closing, this wakes a thread that waits for a result
+            line.shutdown(socket.SHUT_RDWR)
         try:
             self._process.wait(GRACE_S)
         except subprocess.TimeoutExpired:
@@ -129,13 +137,16 @@ class Pool:
     """
 
     def __init__(self, workers: int) -> None:
-        self._processes, self._ended = dict[int, Worker](), threading.Event()  # by the thread that each works for
+        # by the thread that each works for
+        self._processes, self._ended = dict[int, Worker](), threading.Event()
         self._threads = ThreadPoolExecutor(workers, thread_name_prefix="pool")
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, *_: TracebackType | BaseException | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, *_: TracebackType | BaseException | None
+    ) -> None:
         """Wait for what is begun; after an exception, end it."""
         with held():
             if kind:
@@ -178,7 +189,10 @@ class Pool:
 
 
 def as_done(
-    begin: Callable[[Item], Future[Any]], items: Iterable[Item], at_once: int, check: Callable[[], None] | None = None
+    begin: Callable[[Item], Future[Any]],
+    items: Iterable[Item],
+    at_once: int,
+    check: Callable[[], None] | None = None,
 ) -> Iterator[tuple[Item, Future[Any]]]:
     """Begin items, and yield each with its future when it is done.
 
@@ -262,7 +276,8 @@ def _leave_ending_to_parent() -> threading.Event:
     """
     ended = threading.Event()
     usual = sys.unraisablehook
-    sys.unraisablehook = lambda lost: None if ended.is_set() else usual(lost)  # the exception met a finaliser
+    # the exception met a finaliser
+    sys.unraisablehook = lambda lost: None if ended.is_set() else usual(lost)
 
     def take(*_: object) -> None:
         if ended.is_set():
@@ -274,7 +289,9 @@ def _leave_ending_to_parent() -> threading.Event:
     return ended
 
 
-def _receive(connection: Connection, received: queue.SimpleQueue[Any], ended: threading.Event) -> None:
+def _receive(
+    connection: Connection, received: queue.SimpleQueue[Any], ended: threading.Event
+) -> None:
     """Take what the parent sends; leave with the parent, which has ended or left when there is no more."""
     with contextlib.suppress(EOFError, OSError):
         while True:

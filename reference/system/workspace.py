@@ -32,7 +32,8 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
     Raises:
         OSError: `parent` cannot be written.
     """
-    from filelock import FileLock, Timeout  # here, as its import takes longer than the rest of a short command
+    # here, as its import takes longer than the rest of a short command
+    from filelock import FileLock, Timeout
 
     clear(parent, name)
     while True:

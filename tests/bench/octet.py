@@ -46,11 +46,15 @@ class ScalarLoop:
         _, v = MOMENTUM.cartesian(state, k, hy)
         found = [hy.nt_event(v[0], lambda _, t, direction: self.times.append(t))] if events else []
         equations = list(zip(state, MOMENTUM.derivatives(state, k, hy), strict=True))
-        self.integrator: Any = hy.taylor_adaptive(equations, [0.0] * 6, pars=[0.0] * 4, nt_events=found)
+        self.integrator: Any = hy.taylor_adaptive(
+            equations, [0.0] * 6, pars=[0.0] * 4, nt_events=found
+        )
 
     def solve(self, rows: Rows) -> None:
         """Solve rows."""
-        for n, inertial, turn, pull in zip(*(a[..., 0] for a in (rows.n, rows.V, rows.turn, rows.pull)), strict=True):
+        for n, inertial, turn, pull in zip(
+            *(a[..., 0] for a in (rows.n, rows.V, rows.turn, rows.pull)), strict=True
+        ):
             self.times.clear()
             self.integrator.time = 0.0
             self.integrator.state[:] = [*n, *np.cross(n, inertial)]
@@ -72,12 +76,16 @@ def cpu_s(work: Callable[[], object]) -> float:
     return time.process_time() - start
 
 
-def show(name: str, over: Callable[[], object], under: Callable[[], object], pairs: int, demand: str) -> None:
+def show(
+    name: str, over: Callable[[], object], under: Callable[[], object], pairs: int, demand: str
+) -> None:
     """Print the median of the ratios of two calls that take turns."""
     found = [(cpu_s(over), cpu_s(under)) for _ in range(pairs)]
     ratios = sorted(a / b for a, b in found)
     spread = f"{ratios[0]:.2f} … {ratios[-1]:.2f}"
-    ms = "ms {:8.1f} over {:8.1f}".format(*(1e3 * statistics.median(side) for side in zip(*found, strict=True)))
+    ms = "ms {:8.1f} over {:8.1f}".format(
+        *(1e3 * statistics.median(side) for side in zip(*found, strict=True))
+    )
     print(f"{name:66} {statistics.median(ratios):7.2f}   ({spread}; {ms})   {demand}", flush=True)
 
 
@@ -125,19 +133,48 @@ def main(count: int = 181, pairs: int = 5) -> None:
     def with_events() -> None:
         located.solve(rows)
 
-    show("heyoka's scalar loop with events / octet, all transits", with_events, octet(transits), pairs, ">= 9.5")
-    show("heyoka's scalar loop with events / octet, with precession", with_events, octet(whole), pairs, ">= 6.5")
-    show("heyoka's scalar loop / octet, no events", lambda: silent.solve(rows), octet(bare), pairs, ">= 6.5")
+    show(
+        "heyoka's scalar loop with events / octet, all transits",
+        with_events,
+        octet(transits),
+        pairs,
+        ">= 9.5",
+    )
+    show(
+        "heyoka's scalar loop with events / octet, with precession",
+        with_events,
+        octet(whole),
+        pairs,
+        ">= 6.5",
+    )
+    show(
+        "heyoka's scalar loop / octet, no events",
+        lambda: silent.solve(rows),
+        octet(bare),
+        pairs,
+        ">= 6.5",
+    )
     show("the engine heyoka / octet, no events", heyoka(bare), octet(bare), pairs, "")
     show("the engine heyoka / octet, all transits", heyoka(transits), octet(transits), pairs, "")
     show("the engine heyoka / octet, with precession", heyoka(whole), octet(whole), pairs, "")
-    show("octet, default row (with its error) / bare row", default(OCTET), octet(whole), pairs, "<= 1.7")
+    show(
+        "octet, default row (with its error) / bare row",
+        default(OCTET),
+        octet(whole),
+        pairs,
+        "<= 1.7",
+    )
     if 180 % (count - 1) == 0:
-        scene, over = load_scene("paris", [f"run.t_end={SPAN}"]), [f"site.latitude=-90:90:{180 // (count - 1)}"]
+        scene, over = (
+            load_scene("paris", [f"run.t_end={SPAN}"]),
+            [f"site.latitude=-90:90:{180 // (count - 1)}"],
+        )
         sweeps = [request(scene, over, engine=name) for name in ("heyoka", "octet")]
         sides = [lambda sweep=sweep: solve_part(sweep, range(count)) for sweep in sweeps]
         show("sweep in one process, default rows: heyoka / octet", *sides, pairs, ">= 3")
-    print(f"{'all but the integration of a default row':66} {not_integration(8192):7.2f} us a row   <= 10")
+    print(
+        f"{'all but the integration of a default row':66} {not_integration(8192):7.2f} us a row   <= 10"
+    )
 
 
 if __name__ == "__main__":

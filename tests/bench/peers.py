@@ -65,7 +65,9 @@ def truth(count: int) -> Any:
     limbs, paris = engines()["limbs"], load_scene("paris").exact
     found = []
     for i in range(count):
-        inputs = replace(paris, t_end=Fraction(SPAN), latitude=Fraction(-90) + Fraction(180 * i, count - 1))
+        inputs = replace(
+            paris, t_end=Fraction(SPAN), latitude=Fraction(-90) + Fraction(180 * i, count - 1)
+        )
         run = limbs.run(limbs.plan(inputs, 110, (Fraction(0), Fraction(SPAN))))
         found.append([float(run.grid[name][-1]) for name in ("x", "y", "z")])
     return np.array(found)
@@ -77,15 +79,24 @@ def boost(rows: Rows, folder: str) -> list[Peer]:
     if words is None or BOOST.missing:
         return []
     program, source = Path(folder) / "peers", Path(__file__).with_suffix(".cpp")
-    subprocess.run([*words, "-O3", "-march=native", "-I", str(BOOST.folder), source, "-o", program], check=True)
+    subprocess.run(
+        [*words, "-O3", "-march=native", "-I", str(BOOST.folder), source, "-o", program], check=True
+    )
     table = "\n".join(" ".join(map(repr, row)) for row in numbers_of(rows).tolist())
 
     def work(tolerance: float) -> tuple[float, Any]:
         text = f"{tolerance} {SPAN}\n{table}"
-        lines = subprocess.run([program], check=True, input=text, capture_output=True, text=True).stdout.splitlines()
-        return float(lines[0]), rows.length[:, :1] * np.array([line.split() for line in lines[1:]], dtype=float)
+        lines = subprocess.run(
+            [program], check=True, input=text, capture_output=True, text=True
+        ).stdout.splitlines()
+        return float(lines[0]), rows.length[:, :1] * np.array(
+            [line.split() for line in lines[1:]], dtype=float
+        )
 
-    return [Peer(f"Boost odeint, RKF78, tolerance {one:g}", "none", lambda one=one: work(one)) for one in TOLERANCES]
+    return [
+        Peer(f"Boost odeint, RKF78, tolerance {one:g}", "none", lambda one=one: work(one))
+        for one in TOLERANCES
+    ]
 
 
 def numbalsoda(rows: Rows) -> list[Peer]:
@@ -129,14 +140,20 @@ def numbalsoda(rows: Rows) -> list[Peer]:
         return timed(lambda: run(numbers, tolerance))
 
     return [
-        Peer(f"numbalsoda, {word}, tolerance {one:g}", "none", lambda run=run, one=one: work(run, one))
+        Peer(
+            f"numbalsoda, {word}, tolerance {one:g}",
+            "none",
+            lambda run=run, one=one: work(run, one),
+        )
         for word, run, one in runs
     ]
 
 
 def diffrax(rows: Rows) -> list[Peer]:
     """Return diffrax's Dopri8 over all rows at once by vmap, on one thread, at several tolerances."""
-    os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
+    os.environ.setdefault(
+        "XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+    )
     os.environ.setdefault("JAX_PLATFORMS", "cpu")
     try:
         import diffrax as dfx
@@ -149,7 +166,11 @@ def diffrax(rows: Rows) -> list[Peer]:
     def rates(_: Any, s: Any, k: Any) -> Any:
         x, y, z, hx, hy_, hz = s
         wy, wz = hy_ - k[0], hz - k[1]
-        turned = y * k[3] - z * k[2] + hy_ * k[1] - hz * k[0], -x * k[3] - hx * k[1], x * k[2] + hx * k[0]
+        turned = (
+            y * k[3] - z * k[2] + hy_ * k[1] - hz * k[0],
+            -x * k[3] - hx * k[1],
+            x * k[2] + hx * k[0],
+        )
         return jnp.stack([wy * z - wz * y, wz * x - hx * z, hx * y - wy * x, *turned])
 
     def run(numbers: Any, tolerance: Any) -> Any:
@@ -171,7 +192,10 @@ def diffrax(rows: Rows) -> list[Peer]:
     def work(tolerance: float) -> tuple[float, Any]:
         return timed(lambda: np.array(compiled(numbers, tolerance)) * rows.length[:, :1])
 
-    return [Peer(f"diffrax vmap, Dopri8, tolerance {one:g}", "none", lambda one=one: work(one)) for one in TOLERANCES]
+    return [
+        Peer(f"diffrax vmap, Dopri8, tolerance {one:g}", "none", lambda one=one: work(one))
+        for one in TOLERANCES
+    ]
 
 
 def ensemble(rows: Rows, loop: ScalarLoop) -> None:
@@ -189,7 +213,12 @@ def ensemble(rows: Rows, loop: ScalarLoop) -> None:
 def own(rows: Rows) -> list[Peer]:
     """Return octet, and heyoka in all its forms."""
     OCTET.prepare(RunOptions())
-    silent, located, whole, bare = ScalarLoop(False), ScalarLoop(True), RunOptions(), RunOptions(False, False)
+    silent, located, whole, bare = (
+        ScalarLoop(False),
+        ScalarLoop(True),
+        RunOptions(),
+        RunOptions(False, False),
+    )
     for options in (bare, whole):
         HEYOKA.solve(rows[:8], options)
 
@@ -201,7 +230,11 @@ def own(rows: Rows) -> list[Peer]:
         Peer("octet, all wanted", "all located", lambda: batch(OCTET, whole)),
         Peer("the engine heyoka, all wanted", "all located", lambda: batch(HEYOKA, whole)),
         Peer("the engine heyoka, states alone", "none", lambda: batch(HEYOKA, bare)),
-        Peer("heyoka, scalar loop with events", "all located", lambda: timed(lambda: located.solve(rows))),
+        Peer(
+            "heyoka, scalar loop with events",
+            "all located",
+            lambda: timed(lambda: located.solve(rows)),
+        ),
         Peer("heyoka, scalar loop", "none", lambda: timed(lambda: silent.solve(rows))),
         Peer("heyoka, ensemble, one thread", "none", lambda: timed(lambda: ensemble(rows, silent))),
     ]
@@ -216,14 +249,18 @@ def main(count: int = 181) -> None:
         for _ in range(ROUNDS):
             rounds.append([peer.work() for peer in peers])
             loads.append(os.getloadavg()[0])
-    print("| | ms a row | error at the end, m | transits | octet's speed over it |\n| --- | --- | --- | --- | --- |")
+    print(
+        "| | ms a row | error at the end, m | transits | octet's speed over it |\n| --- | --- | --- | --- | --- |"
+    )
     for i, peer in enumerate(peers):
         seconds = statistics.median(one[i][0] for one in rounds)
         ratios = sorted(one[i][0] / one[0][0] for one in rounds)
         ends = rounds[0][i][1]
         error = "" if ends is None else f"{np.linalg.norm(ends - exact, axis=1).max():.1e}"
         spread = f"{statistics.median(ratios):.1f} ({ratios[0]:.1f} to {ratios[-1]:.1f})"
-        print(f"| {peer.name} | {seconds / count * 1e3:.2f} | {error} | {peer.transits} | {spread} |")
+        print(
+            f"| {peer.name} | {seconds / count * 1e3:.2f} | {error} | {peer.transits} | {spread} |"
+        )
     print(f"\n{ROUNDS} rounds, load {min(loads):.1f} to {max(loads):.1f} on {os.cpu_count()} cores")
 
 

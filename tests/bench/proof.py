@@ -41,7 +41,9 @@ def load() -> str:
 def proved(t_end: str, engine: str = "auto") -> tuple[float, float, reference.Solution]:
     """Return the CPU and wall seconds of a proof, all in all and of all processes, and the solution."""
     cpu, wall = cpu_s(), time.perf_counter()
-    solution = reference.solve(reference.load_scene("paris"), level="enclosed", t_end=t_end, engine=engine)
+    solution = reference.solve(
+        reference.load_scene("paris"), level="enclosed", t_end=t_end, engine=engine
+    )
     return cpu_s() - cpu, time.perf_counter() - wall, solution
 
 
@@ -52,17 +54,24 @@ def proof(t_end: str, pairs: int) -> None:
     scene, bits = solution.scene, solution.proof.enclosure.bits
     plan = Plan(scene.exact, "momentum", real(bits), solution.times, ("xdot",))
     run(Plan(scene.exact, "momentum", real(bits), solution.times[:2], ("xdot",)))  # compiles
-    print(f"paris, {t_end} s, {bits} bits, {len(solution.directions)} transits, {solution.proof.enclosure.steps} steps")
+    print(
+        f"paris, {t_end} s, {bits} bits, {len(solution.directions)} transits, {solution.proof.enclosure.steps} steps"
+    )
     ratios = []
     for _ in range(pairs):
         cpu, _, solution = proved(t_end)
         plain = run(plan).cpu_s
         ratios.append(cpu / plain)
         own = f"{solution.proof.enclosure.cpu_s:.2f} without the approximant"
-        print(f"  proof {cpu:.2f} s ({own}), unproven {plain:.2f} s: {cpu / plain:.2f}; {load()}", flush=True)
+        print(
+            f"  proof {cpu:.2f} s ({own}), unproven {plain:.2f} s: {cpu / plain:.2f}; {load()}",
+            flush=True,
+        )
     print(f"enclosed over unproven: median of {pairs}: {median(ratios):.2f}")
     cpu, wall, _ = proved(t_end, "heyoka")
-    print(f"heyoka's approximant, in a process of its own: wall {wall / cpu:.2f} of the CPU time; {load()}")
+    print(
+        f"heyoka's approximant, in a process of its own: wall {wall / cpu:.2f} of the CPU time; {load()}"
+    )
 
 
 def limbs(t_end: str, pairs: int) -> None:
@@ -72,10 +81,15 @@ def limbs(t_end: str, pairs: int) -> None:
     pilot = run_pilot(scene.exact, times)
     for digits in DIGITS:
         prec = pilot.bits_for(digits, times[-1], checked=False)
-        ours, theirs = (engines()[name].plan(scene.exact, prec, times, ("xdot",)) for name in ("limbs", "heyoka"))
+        ours, theirs = (
+            engines()[name].plan(scene.exact, prec, times, ("xdot",))
+            for name in ("limbs", "heyoka")
+        )
         run(ours), run(theirs)  # compile
         ratios = [run(theirs).cpu_s / run(ours).cpu_s for _ in range(pairs)]
-        print(f"limbs, {digits} digits, {prec} bits: heyoka takes {median(ratios):.0f} times as long; {load()}")
+        print(
+            f"limbs, {digits} digits, {prec} bits: heyoka takes {median(ratios):.0f} times as long; {load()}"
+        )
 
 
 def pilot(t_end: str, pairs: int) -> None:
@@ -84,18 +98,30 @@ def pilot(t_end: str, pairs: int) -> None:
     for _ in range(pairs + 1):
         solution = reference.solve(scene, t_end=t_end, digits=DIGITS[0], level="computed")
         shares.append(solution.pilot_s / (solution.pilot_s + solution.run.cpu_s))
-    print(f"the pilot's share of a computed run of {DIGITS[0]} digits: {median(shares[1:]):.2f}; {load()}")
+    print(
+        f"the pilot's share of a computed run of {DIGITS[0]} digits: {median(shares[1:]):.2f}; {load()}"
+    )
 
 
 def latency(t_end: str, pairs: int) -> None:
     """Print the CPU and wall seconds of a warm `generate` of a minute at 10 digits, and of the imports alone."""
     with tempfile.TemporaryDirectory() as folder:
         # as on a user's machine: Python keeps what it compiles
-        kept = {name: text for name, text in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+        kept = {
+            name: text for name, text in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"
+        }
         kept |= {"PYTHONPYCACHEPREFIX": folder}
         commands = {
             "imports": ["-c", "import reference"],
-            "generate": ["-m", "foucault", "generate", "paris", *SHORT, "--out", str(Path(folder) / "paris")],
+            "generate": [
+                "-m",
+                "foucault",
+                "generate",
+                "paris",
+                *SHORT,
+                "--out",
+                str(Path(folder) / "paris"),
+            ],
         }
         for name, words in commands.items():
             seconds = []
@@ -107,7 +133,12 @@ def latency(t_end: str, pairs: int) -> None:
             print(f"{name}: CPU {cpu:.2f} s, wall {wall:.2f} s; {load()}", flush=True)
 
 
-PARTS: dict[str, Callable[[str, int], None]] = {"latency": latency, "pilot": pilot, "limbs": limbs, "proof": proof}
+PARTS: dict[str, Callable[[str, int], None]] = {
+    "latency": latency,
+    "pilot": pilot,
+    "limbs": limbs,
+    "proof": proof,
+}
 
 
 def main() -> None:

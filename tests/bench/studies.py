@@ -23,7 +23,16 @@ from compare.studies.campaign import JUDGED
 ROOT = Path(__file__).resolve().parents[2]
 KEPT, PAGE, WORK = ROOT / "docs/studies", ROOT / "docs/studies.md", ROOT / "build/studies"
 LEFT_OUT = {
-    *("compile_s", "steps", "rhs_evaluations", "h_drift", "reached_t", "end_error_m", "wrong_from_s", "t"),
+    *(
+        "compile_s",
+        "steps",
+        "rhs_evaluations",
+        "h_drift",
+        "reached_t",
+        "end_error_m",
+        "wrong_from_s",
+        "t",
+    ),
     *("reason", "transit_error_s", "transit_floor_s"),
 }  # of kept rows
 DIGITS = 4  # significant ones of kept numbers
@@ -33,12 +42,18 @@ def main() -> None:
     """Run what was asked for, keep the results, write the page."""
     commands = studies_page.COMMANDS
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(commands)}; all if none is given")
-    parser.add_argument("--page", action="store_true", help="only write the page, from the kept files")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"of {', '.join(commands)}; all if none is given"
+    )
+    parser.add_argument(
+        "--page", action="store_true", help="only write the page, from the kept files"
+    )
     chosen = parser.parse_args()
     unknown = set(chosen.names) - set(commands)
     if unknown or (chosen.page and chosen.names):
-        parser.error(f"{', '.join(unknown) or '--page'}: expected names of {', '.join(commands)}, or --page alone")
+        parser.error(
+            f"{', '.join(unknown) or '--page'}: expected names of {', '.join(commands)}, or --page alone"
+        )
     for name in [] if chosen.page else chosen.names or commands:
         keep(name, run(name, commands[name]))
     PAGE.write_text(studies_page.page(kept()), encoding="utf-8")
@@ -53,12 +68,16 @@ def run(name: str, command: str) -> dict[str, Any]:
     """Run a command of the page, and return its JSON document; with the same folder it goes on where it stopped."""
     print(command, flush=True)
     words = [sys.executable, "-m", *shlex.split(command), "--json", "--out", str(WORK / name)]
-    return dict(json.loads(subprocess.run(words, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout))
+    return dict(
+        json.loads(subprocess.run(words, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
+    )
 
 
 def keep(name: str, document: dict[str, Any]) -> None:
     """Write what the page needs of a document: rounded numbers, one row a line."""
-    short = {key: _short(value) for key, value in document.items() if key not in ("rows", "long_runs")}
+    short = {
+        key: _short(value) for key, value in document.items() if key not in ("rows", "long_runs")
+    }
     short["judged"] = JUDGED
     for part in ("rows", "long_runs"):
         short[part] = [_row(row) for row in document.get(part, [])]
@@ -69,12 +88,20 @@ def keep(name: str, document: dict[str, Any]) -> None:
 
 def kept() -> dict[str, dict[str, Any]]:
     """Return the kept documents by their names."""
-    return {name: json.loads((KEPT / f"{name}.json").read_text(encoding="utf-8")) for name in studies_page.COMMANDS}
+    return {
+        name: json.loads((KEPT / f"{name}.json").read_text(encoding="utf-8"))
+        for name in studies_page.COMMANDS
+    }
 
 
 def _row(row: dict[str, Any]) -> dict[str, Any]:
-    row = row | ({"error_m": row["error_m"][-1]} if row.get("t") else {})  # a long run's error at its end
-    return {key: _short(value) for key, value in row.items() if key not in LEFT_OUT and value not in (None, "", [])}
+    # a long run's error at its end
+    row = row | ({"error_m": row["error_m"][-1]} if row.get("t") else {})
+    return {
+        key: _short(value)
+        for key, value in row.items()
+        if key not in LEFT_OUT and value not in (None, "", [])
+    }
 
 
 def _short(value: Any) -> Any:

@@ -13,7 +13,17 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from compare.methods import METHODS
-from compare.report.pareto import TARGETS_M, Curve, cost_at, cost_of, curves, rows_of, seconds, sentences, tidy
+from compare.report.pareto import (
+    TARGETS_M,
+    Curve,
+    cost_at,
+    cost_of,
+    curves,
+    rows_of,
+    seconds,
+    sentences,
+    tidy,
+)
 from compare.report.stability_page import headlines
 from compare.report.study_tables import busy, setting
 from compare.studies.campaign import JUDGED
@@ -86,7 +96,8 @@ def _wrapped(line: str) -> str:
         return line
     indent = "  " if line.startswith("- ") else ""
     return "\n".join(
-        wrap(line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False) or [""]
+        wrap(line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+        or [""]
     )
 
 
@@ -109,7 +120,10 @@ def _choice(kept: Documents) -> Iterator[str]:
         found = [_reaching(rows, names, error_m) for names in KINDS.values()]
         yield f"| {tidy(error_m)} m | {' | '.join(_taken(row) if row else '–' for row in found)} |"
     yield ""
-    best = {name: _best(_ladders(kept["paris"])[name]) for name in ("heyoka_long_double", "heyoka_real128")}
+    best = {
+        name: _best(_ladders(kept["paris"])[name])
+        for name in ("heyoka_long_double", "heyoka_real128")
+    }
     yield (
         "Each entry is the cheapest setting that was measured and reached the error; in brackets are the equations "
         "that were integrated, [by their variables](format.md#equations). Double precision ends near "
@@ -119,10 +133,15 @@ def _choice(kept: Documents) -> Iterator[str]:
         "multistep methods, and this project's own `limbs`."
     )
     yield ""
-    wrong = Counter(cell.method for cell in cells(kept["stability"]) if cell.status == Status.SILENTLY_WRONG)
+    wrong = Counter(
+        cell.method for cell in cells(kept["stability"]) if cell.status == Status.SILENTLY_WRONG
+    )
     yield so(
-        wrong["cvode_bdf"] + wrong["scipy_bdf"] > 10 * (wrong["scipy_radau"] + wrong["gauss_legendre"]),
-        "Two warnings. On [difficult scenes](#" + STIFF_ANCHOR.format(count=len(_scenes(kept))) + ") the multistep "
+        wrong["cvode_bdf"] + wrong["scipy_bdf"]
+        > 10 * (wrong["scipy_radau"] + wrong["gauss_legendre"]),
+        "Two warnings. On [difficult scenes](#"
+        + STIFF_ANCHOR.format(count=len(_scenes(kept)))
+        + ") the multistep "
         "methods (BDF, Adams, LSODA) often report success and are wrong: check them before you trust them. Where drag "
         "makes the motion stiff, take an implicit method such as SciPy's Radau.",
     )
@@ -135,7 +154,11 @@ def _scenes(kept: Documents) -> set[str]:
 
 def _reaching(rows: Sequence[Row], names: Sequence[str], error_m: float) -> Row | None:
     """Return the cheapest row of some methods whose error is no larger than one, or None."""
-    found = [row for row in rows if row.method in names and row.error_m is not None and row.error_m <= error_m]
+    found = [
+        row
+        for row in rows
+        if row.method in names and row.error_m is not None and row.error_m <= error_m
+    ]
     return min(found, key=cost_of, default=None)
 
 
@@ -178,9 +201,26 @@ def _head(kept: Documents) -> Iterator[str]:
 def _where(document: Document) -> str:
     """Return the machine and the versions of a study, and whether it has to be made again."""
     machine = document["machine"]
-    libraries = ("python", "heyoka", "numba", "scipy", "numbalsoda", "rebound", "diffrax", "Boost", "GSL", "SUNDIALS")
-    versions = ", ".join(f"{name} {machine[name]}" for name in libraries if machine[name][0].isdigit())
-    old = "" if document["judged"] == JUDGED else ", by an earlier version, whose tolerances of z were those of x"
+    libraries = (
+        "python",
+        "heyoka",
+        "numba",
+        "scipy",
+        "numbalsoda",
+        "rebound",
+        "diffrax",
+        "Boost",
+        "GSL",
+        "SUNDIALS",
+    )
+    versions = ", ".join(
+        f"{name} {machine[name]}" for name in libraries if machine[name][0].isdigit()
+    )
+    old = (
+        ""
+        if document["judged"] == JUDGED
+        else ", by an earlier version, whose tolerances of z were those of x"
+    )
     return f"on {machine['processor']}, {machine['system']}, {versions}{old}"
 
 
@@ -209,7 +249,9 @@ def cells(document: Document) -> list[Cell]:
 def _paris(kept: Documents) -> Iterator[str]:
     document = kept["paris"]
     ladders = _ladders(document)
-    yield from _section(f"## Error against run time: Paris, {document['t_end'] / 3600:g} h", "paris")
+    yield from _section(
+        f"## Error against run time: Paris, {document['t_end'] / 3600:g} h", "paris"
+    )
     yield from _table(document)
     momentum, space = ladders["heyoka_double (momentum)"], ladders["heyoka_double"]
     ratio = _cost(ladders["rk4"], 1e-9) / _cost(momentum, 1e-9)
@@ -219,7 +261,11 @@ def _paris(kept: Documents) -> Iterator[str]:
     )
     yield ""
     coarse = (1e-3, 1e-6, 1e-9)
-    others = [curve for label, curve in ladders.items() if label.startswith("heyoka_double") and curve != momentum]
+    others = [
+        curve
+        for label, curve in ladders.items()
+        if label.startswith("heyoka_double") and curve != momentum
+    ]
     angles = [_cost(ladders["heyoka_double (angles)"], at) / _cost(momentum, at) for at in coarse]
     yield so(
         all(_cost(momentum, at) <= _cost(one, at) for one in others for at in coarse)
@@ -252,7 +298,9 @@ def _paris(kept: Documents) -> Iterator[str]:
         f"tolerance of {tidy(native.setting)} takes {seconds(cost_of(native))} in C and {seconds(cost_of(wrapped))} "
         "through scikit-sundae.",
     )
-    compiled = [_cost(ladders[name], 1e-6) for name in ("odeint_rkf78", "gsl_rk8pd", "numbalsoda_dop853")]
+    compiled = [
+        _cost(ladders[name], 1e-6) for name in ("odeint_rkf78", "gsl_rk8pd", "numbalsoda_dop853")
+    ]
     yield so(
         max(compiled) < 1.5 * min(compiled),
         "- Compiled throughout, an explicit method of order 8 costs about the same from every library: at 1e-6 m "
@@ -281,9 +329,13 @@ def _table(document: Document) -> Iterator[str]:
     yield "|---|" + "---|" * (len(TARGETS_M) + 2)
     bound_m = document["reference"]["bound_m"]
     orders = {(order["method"], order["formulation"]): order for order in document["orders"]}
-    yield from sorted((_costs(curve, bound_m, orders) for curve in _ladders(document).values()), key=_least)
+    yield from sorted(
+        (_costs(curve, bound_m, orders) for curve in _ladders(document).values()), key=_least
+    )
     yield ""
-    beyond = [curve for curve in curves(rows_of(document)) if not curve.measured and _cheapest(curve)]
+    beyond = [
+        curve for curve in curves(rows_of(document)) if not curve.measured and _cheapest(curve)
+    ]
     if beyond:
         costs = ", ".join(f"`{curve.label}` ({_short(_cheapest(curve))}~ s)" for curve in beyond)
         yield f"At every setting beyond {document['limit_s']:g} CPU s, and so without an error: {costs}."
@@ -324,8 +376,13 @@ def _hard(kept: Documents) -> Iterator[str]:
     yield f"A swing takes {swing:.3g} s. Runs fail here:"
     yield ""
     for curve in curves(rows_of(document)):
-        failed = [row for row in curve.rows if not row.measured and row.status != Status.NOT_INSTALLED]
-        words = [f"{row.status.words} at {', '.join(setting(one) for one in same)}" for row, same in _grouped(failed)]
+        failed = [
+            row for row in curve.rows if not row.measured and row.status != Status.NOT_INSTALLED
+        ]
+        words = [
+            f"{row.status.words} at {', '.join(setting(one) for one in same)}"
+            for row, same in _grouped(failed)
+        ]
         if words:
             yield f"- {curve.label}: {'; '.join(words)}."
     yield ""
@@ -348,10 +405,16 @@ def _pantheon(kept: Documents) -> Iterator[str]:
 
 def _precisions(kept: Documents) -> Iterator[str]:
     document = kept["precisions"]
-    costs_s = {(row.method, row.setting): row.cpu_s for row in rows_of(document) if row.measured and row.cpu_s}
+    costs_s = {
+        (row.method, row.setting): row.cpu_s
+        for row in rows_of(document)
+        if row.measured and row.cpu_s
+    }
     yield from _section(f"## What a digit costs: Paris, {document['t_end']:g} s", "precisions")
     yield from (f"- {sentence}" for sentence in sentences(document))
-    bits = [prec for method, prec in costs_s if method == "limbs" and ("heyoka_real", prec) in costs_s]
+    bits = [
+        prec for method, prec in costs_s if method == "limbs" and ("heyoka_real", prec) in costs_s
+    ]
     ratios = {prec: costs_s["heyoka_real", prec] / costs_s["limbs", prec] for prec in bits}
     yield so(
         min(ratios.values()) > 1,
@@ -364,7 +427,9 @@ def _precisions(kept: Documents) -> Iterator[str]:
 
 def _stability(kept: Documents) -> Iterator[str]:
     found = cells(kept["stability"])
-    yield from _section(f"## Stiff and extreme: {len({cell.scene for cell in found})} scenes", "stability")
+    yield from _section(
+        f"## Stiff and extreme: {len({cell.scene for cell in found})} scenes", "stability"
+    )
     yield (
         f"Each method is asked for the same number of digits on every scene, over at most {SWINGS} small swings. A run "
         f"is *silently wrong* if it reports success with an error above {WRONG} times what was asked for, and above "
@@ -380,7 +445,9 @@ def _stability(kept: Documents) -> Iterator[str]:
     groups: dict[tuple[str, str], list[Cell]] = {}
     for cell in found:
         groups.setdefault((cell.method, cell.precision), []).append(cell)
-    yield from sorted((_counted(own) for own in groups.values()), key=lambda line: -int(line.split("|")[4]))
+    yield from sorted(
+        (_counted(own) for own in groups.values()), key=lambda line: -int(line.split("|")[4])
+    )
     yield ""
     yield from _what_breaks(found)
 
@@ -388,15 +455,23 @@ def _stability(kept: Documents) -> Iterator[str]:
 def _counted(own: Sequence[Cell]) -> str:
     count = Counter(cell.status for cell in own)
     first = next((cell for cell in own if cell.setting is not None), own[0])
-    asked = f"1/{1 / METHODS[first.method].stability[0][1]:.0f}" if first.kind == "step" else setting(first)
-    right, wrong, ill = (count[one] for one in (Status.OK, Status.SILENTLY_WRONG, Status.ILL_CONDITIONED))
+    asked = (
+        f"1/{1 / METHODS[first.method].stability[0][1]:.0f}"
+        if first.kind == "step"
+        else setting(first)
+    )
+    right, wrong, ill = (
+        count[one] for one in (Status.OK, Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
+    )
     figures = (asked, f"{first.asked:.1f}", right, wrong, ill, len(own) - right - wrong - ill)
     return f"| {first.method}, {first.precision} | {' | '.join(map(str, figures))} |"
 
 
 def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     status = {(cell.method, cell.precision, cell.scene): cell.status for cell in found}
-    wrong = Counter((cell.method, cell.precision) for cell in found if cell.status == Status.SILENTLY_WRONG)
+    wrong = Counter(
+        (cell.method, cell.precision) for cell in found if cell.status == Status.SILENTLY_WRONG
+    )
     multistep = {name for name in METHODS if name.endswith(("_bdf", "_adams"))}
     top = wrong.most_common(len(multistep))
     yield so(
@@ -415,15 +490,25 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
         status["heyoka_double", "double, plane", "above_horizontal"] != Status.OK,
         "- `plane` does not know on which side of the horizontal it is, and fails on `above_horizontal`.",
     )
-    kept = {cell.method for cell in found if cell.scene == "separatrix" and cell.status == Status.OK}
+    kept = {
+        cell.method for cell in found if cell.scene == "separatrix" and cell.status == Status.OK
+    }
     yield so(
         not kept,
         "- `separatrix`, which ends on top of the rod, defeats every method: the motion magnifies an error more than "
         "any tolerance allows for.",
     )
-    stiff = [name for name in dict.fromkeys(cell.scene for cell in found) if "stiff" in load_scene(name).flags]
+    stiff = [
+        name
+        for name in dict.fromkeys(cell.scene for cell in found)
+        if "stiff" in load_scene(name).flags
+    ]
     yield so(
-        all(cell.status == Status.OK for cell in found if cell.method == "scipy_radau" and cell.scene in stiff),
+        all(
+            cell.status == Status.OK
+            for cell in found
+            if cell.method == "scipy_radau" and cell.scene in stiff
+        ),
         f"- Where drag makes the motion stiff ({', '.join(f'`{name}`' for name in stiff)}) SciPy's Radau is right "
         "everywhere.",
     )
@@ -433,7 +518,9 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
 def _long(kept: Documents) -> Iterator[str]:
     runs = [run for run in kept["long"]["long_runs"] if run["status"] == Status.OK]
     others = [
-        name for name, method in METHODS.items() if method.long_runs and name not in {run["method"] for run in runs}
+        name
+        for name, method in METHODS.items()
+        if method.long_runs and name not in {run["method"] for run in runs}
     ]
     left_out = ", ".join(f"`{name}`" for name in others)
     span_s = float(load_scene(SCENE).exact.t_end)

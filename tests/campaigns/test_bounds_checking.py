@@ -14,7 +14,16 @@ from places import ROOT
 def test_no_index_of_the_sums_of_digits_is_out_of_range(tmp_path):
     pytest.importorskip("numba")
     environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
-    words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/reference/enclosure/test_digits.py"]
+    words = [
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "tests/reference/enclosure/test_digits.py",
+    ]
     command = [sys.executable, *words]
-    done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, env=environment, cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout[-3000:]

@@ -55,7 +55,9 @@ def damaged(path: Path, kind: str, chance: random.Random) -> bool:
     return path.read_bytes() != data
 
 
-def test_damage_of_every_kind_to_every_file_is_told_or_changes_no_number(made, tmp_path, size, tally):
+def test_damage_of_every_kind_to_every_file_is_told_or_changes_no_number(
+    made, tmp_path, size, tally
+):
     chance, folder, counts = random.Random(SEED), tmp_path / "damaged", Counter()
     for _ in range(size(1, 5)):
         for kind in DAMAGE:
@@ -77,7 +79,9 @@ def test_the_same_command_makes_it_whole_or_says_why_not(made, tmp_path, size, t
 
 
 @pytest.mark.parametrize("made", ["sweep"], indirect=True)
-def test_a_part_that_is_damaged_after_its_seal_was_checked_is_refused_or_the_same(made, tmp_path, size, tally):
+def test_a_part_that_is_damaged_after_its_seal_was_checked_is_refused_or_the_same(
+    made, tmp_path, size, tally
+):
     """Columns are read when they are asked for; the pages of Parquet have checksums of their own."""
     chance, right, counts = random.Random(SEED), made.format.read(made.whole), Counter()
     for _ in range(size(30, 300)):

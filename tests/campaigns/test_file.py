@@ -66,7 +66,9 @@ def test_a_file_that_is_none_of_its_folder_is_told(made, tmp_path, size, tally):
     tally(f"files of a {made.format.name}: {dict(counts)}")
 
 
-def test_the_same_command_makes_a_file_again_or_says_what_is_in_the_way(made, tmp_path, size, tally):
+def test_the_same_command_makes_a_file_again_or_says_what_is_in_the_way(
+    made, tmp_path, size, tally
+):
     chance, folder, counts = random.Random(SEED), tmp_path / "damaged", Counter()
     cases = [(name, fault) for name in files_of(made.whole) for fault in FAULTS]
     for name, fault in chance.sample(cases, min(size(1, 20), len(cases))):

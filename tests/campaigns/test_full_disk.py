@@ -30,7 +30,11 @@ def test_what_is_there_stays_and_with_room_the_same_command_goes_on(made, disk, 
         if status == 0:
             break
         message = err.splitlines()[-1]
-        assert status == 2 and message.startswith("foucault: --out: ") and "No space left on device" in message
+        assert (
+            status == 2
+            and message.startswith("foucault: --out: ")
+            and "No space left on device" in message
+        )
         assert litter(folder.parent) == []
         counts[made.is_nothing_half(folder)] += 1
     (disk / "filler").unlink()

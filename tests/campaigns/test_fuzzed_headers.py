@@ -56,9 +56,15 @@ def drawn(random: Random) -> tuple[bytes, dict[str, list[float]]]:
     spaced = not separator.strip() and "\t" not in separator
     names = {}
     for column in columns:
-        choices = [word for word in SPELLED[column] if not (spaced and " " in word.replace(" (", "").replace(" [", ""))]
+        choices = [
+            word
+            for word in SPELLED[column]
+            if not (spaced and " " in word.replace(" (", "").replace(" [", ""))
+        ]
         names[column] = random.choice(choices)
-    extra = [word for word in random.sample(OTHERS, random.randint(0, 3)) if not (spaced and " " in word)]
+    extra = [
+        word for word in random.sample(OTHERS, random.randint(0, 3)) if not (spaced and " " in word)
+    ]
     if names["t"] in ("T", "t", "Time [s]"):  # T [K] beside T would be two names of t
         extra = [word for word in extra if not word.startswith("T ") or names["t"] == "t"]
     elif "T [K]" in extra:
@@ -76,16 +82,23 @@ def drawn(random: Random) -> tuple[bytes, dict[str, list[float]]]:
     trailing = separator if separator.strip() and random.random() < 0.1 else ""
     lines = [f"# {line}" for line in random.sample(PREAMBLES, random.randint(0, 2))]
     lines += random.sample(PREAMBLES[:2], 1) if random.random() < 0.2 and mark == "" else []
-    lines.append(mark + separator.join(f"{quote}{names.get(word, word)}{quote}" for word in order) + trailing)
+    lines.append(
+        mark + separator.join(f"{quote}{names.get(word, word)}{quote}" for word in order) + trailing
+    )
 
     def spelled(value: float) -> str:
         text = f"{value:.16e}" if fortran else repr(value)
         text = text.replace("e", "D") if fortran else text
         return text.replace(".", ",") if comma else text
 
-    lines += [separator.join(spelled(numbers[word][i]) for word in order) + trailing for i in range(rows)]
+    lines += [
+        separator.join(spelled(numbers[word][i]) for word in order) + trailing for i in range(rows)
+    ]
     mark_of_order = "\ufeff" if random.random() < 0.1 else ""
-    expected = {column: [value * SPELLED[column][names[column]] for value in numbers[column]] for column in columns}
+    expected = {
+        column: [value * SPELLED[column][names[column]] for value in numbers[column]]
+        for column in columns
+    }
     return (mark_of_order + end.join(lines) + end).encode(), expected
 
 

@@ -22,7 +22,8 @@ from reference.commands.show import command as show
 from reference.errors import FoucaultError, UnreachableError
 from reference.scenes.scene import load_scene
 
-KINDS = {  # what makes an input, what takes it from a file or as it is, and how many in a short run, in a long one
+# what makes an input, what takes it from a file or as it is, and how many in a short run, in a long one
+KINDS = {
     "scene": (a_scene, lambda path: examine(str(path)), 40, 3000),
     "--set": (an_assignment, lambda word: examine("paris", word), 40, 2000),
     "candidate": (a_candidate, read, 50, 3000),
@@ -61,7 +62,9 @@ def test_every_input_is_read_or_refused(kind, size, tally, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(size, foucault, monkeypatch, tmp_path):
+def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(
+    size, foucault, monkeypatch, tmp_path
+):
     def stop(*_, **__):
         raise UnreachableError("Nothing is solved here.")
 
@@ -75,10 +78,15 @@ def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(size, foucault,
         "reference.dataset.ranges.prove_ranges",
         "reference.dataset.verify.solve",
         "reference.solver.uncertain.prove_ranges",
-        "reference.solver.solve.solve",  # last: the others would keep what stands here when they are imported
+        # last: the others would keep what stands here when they are imported
+        "reference.solver.solve.solve",
     ):
         monkeypatch.setattr(place, stop)
     for i in range(size(40, 1000)):
         words = a_command_line(Chance(f"1 command line {i}"), tmp_path / "input")
         status, out, err = foucault(*words)
-        assert status in (0, 1, 2, 3) and "\x1b" not in out + err and "Traceback" not in err, (i, words, err[-1000:])
+        assert status in (0, 1, 2, 3) and "\x1b" not in out + err and "Traceback" not in err, (
+            i,
+            words,
+            err[-1000:],
+        )

@@ -90,7 +90,17 @@ def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(
     (tmp_path / "program.py").write_text(program)
     command, env = [sys.executable, "-m", "program"], os.environ | {"PYTHONPATH": str(ROOT)}
     ended = subprocess.run(
-        command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False, timeout=PATIENCE_S
+        command,
+        cwd=tmp_path,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE_S,
     )
     output = "cleared away\n" * ("cleared" in body)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, output, "foucault: stopped\n")
+    assert (ended.returncode, ended.stdout, ended.stderr) == (
+        128 + number,
+        output,
+        "foucault: stopped\n",
+    )

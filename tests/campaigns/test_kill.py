@@ -26,7 +26,9 @@ from places import ROOT
 
 from reference.scenes.shipped import golden_root
 
-pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
+pytestmark = pytest.mark.skipif(
+    not Path("/proc/self/stat").exists(), reason="counts processes in /proc"
+)
 
 ORPHANS_END_S = 10.0
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -35,7 +37,12 @@ OFTEN = {
     ("sweep", signal.SIGINT),
 }
 ENDS = [
-    pytest.param(name, number, id=f"{name} {number.name}", marks=[] if (name, number) in OFTEN else pytest.mark.long)
+    pytest.param(
+        name,
+        number,
+        id=f"{name} {number.name}",
+        marks=[] if (name, number) in OFTEN else pytest.mark.long,
+    )
     for name in [*FORMATS, "sweep in processes"]
     for number in SIGNALS
 ]
@@ -45,11 +52,15 @@ MOVED_ASIDE = 1  # of the renames of a dataset: the old one was moved, the new o
 def ended_once_stored(words: list[str], folder: Path, number: signal.Signals) -> Ended:
     """Run a command, and end it once it has stored something."""
     group = number != signal.SIGKILL
-    status, err, pid = interrupted(words, lambda *_: bool(stored(folder)), number, whole_group=group)
+    status, err, pid = interrupted(
+        words, lambda *_: bool(stored(folder)), number, whole_group=group
+    )
     return Ended(status, "", err.decode(), pid)
 
 
-def stops(made: Made, words: list[str], folder: Path, number: signal.Signals, note: Path, long: bool):
+def stops(
+    made: Made, words: list[str], folder: Path, number: signal.Signals, note: Path, long: bool
+):
     """Return what runs the command and ends it, once for each moment."""
     if not long and made.format.resumes:
         return [lambda: ended_once_stored(words, folder, number)]
@@ -57,7 +68,10 @@ def stops(made: Made, words: list[str], folder: Path, number: signal.Signals, no
         return [lambda: ended_at(MOVED_ASIDE, number, words, "os.rename")]
     _, times = undisturbed(note, words)
     last = [len(times) - 1 - 4 * k for k in range(3)]
-    return [lambda event=event: ended_at(event, number, words) for event in [*chosen(times, 4, 1), *last]]
+    return [
+        lambda event=event: ended_at(event, number, words)
+        for event in [*chosen(times, 4, 1), *last]
+    ]
 
 
 def well_ended(ended: Ended, number: signal.Signals, folder: Path, threads: bool = False) -> None:
@@ -69,7 +83,11 @@ def well_ended(ended: Ended, number: signal.Signals, folder: Path, threads: bool
     assert "Traceback" not in ended.err
     assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
     assert len(litter(folder.parent)) <= (threads or number == signal.SIGKILL)
-    messages = [line for line in ended.err.splitlines() if line.startswith("foucault: ") and ": about " not in line]
+    messages = [
+        line
+        for line in ended.err.splitlines()
+        if line.startswith("foucault: ") and ": about " not in line
+    ]
     assert len(messages) <= 1 and all("stopped" in message for message in messages), ended.err
     assert messages or number != signal.SIGINT or ended.status in (0, -number), ended.err
 
@@ -102,13 +120,23 @@ def test_a_score_after_a_kill_is_the_same(tmp_path, monkeypatch, foucault):
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
     candidate = tmp_path / "mine.csv"
     candidate.write_text("t,x,y\n0,0.3,0.4\n30,0.1,0.1\n60,0.2,-0.3\n")
-    words = ["score", "paris", str(candidate), "--set", "site.latitude=40", "--set", "run.t_end=60", "--json"]
+    words = [
+        "score",
+        "paris",
+        str(candidate),
+        "--set",
+        "site.latitude=40",
+        "--set",
+        "run.t_end=60",
+        "--json",
+    ]
     words += ["--tolerance", "1e-15", "--no-diagnosis"]
     status, whole, _ = foucault(*words)
     shutil.rmtree(tmp_path / "cache" / "golden")
     kept = (tmp_path / "cache").glob
     interrupted(words, lambda *_: any(kept("golden/*")), signal.SIGKILL)
-    again = ended_at(-1, signal.SIGKILL, words)  # in another process: this one knows the truth, and reads no cache
+    # in another process: this one knows the truth, and reads no cache
+    again = ended_at(-1, signal.SIGKILL, words)
     assert (again.status, json.loads(again.out)) == (status, json.loads(whole))
     assert litter(tmp_path / "cache") == []
 
@@ -146,10 +174,16 @@ def test_each_page_of_an_atlas_is_the_old_or_the_new_one(number, tmp_path, monke
 
 def children(parent: int) -> list[int]:
     """Return the processes that a process has started."""
-    return [int(word) for path in Path(f"/proc/{parent}/task").glob("*/children") for word in path.read_text().split()]
+    return [
+        int(word)
+        for path in Path(f"/proc/{parent}/task").glob("*/children")
+        for word in path.read_text().split()
+    ]
 
 
-@pytest.mark.skipif(not Path(f"/proc/self/task/{os.getpid()}/children").exists(), reason="lists processes in /proc")
+@pytest.mark.skipif(
+    not Path(f"/proc/self/task/{os.getpid()}/children").exists(), reason="lists processes in /proc"
+)
 @pytest.mark.long
 @pytest.mark.parametrize("made", ["sweep in processes"], indirect=True)
 def test_a_worker_that_is_killed_at_work_costs_no_row_and_no_byte(made, tmp_path):
@@ -157,7 +191,16 @@ def test_a_worker_that_is_killed_at_work_costs_no_row_and_no_byte(made, tmp_path
     for number in range(5):
         folder = tmp_path / str(number)
         made.format.prepare(folder)
-        command = [sys.executable, "-m", "foucault", "sweep", "--workers", "2", "--out", str(folder)]
+        command = [
+            sys.executable,
+            "-m",
+            "foucault",
+            "sweep",
+            "--workers",
+            "2",
+            "--out",
+            str(folder),
+        ]
         at_work = source.randrange(3)
         with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL) as process:
             while process.poll() is None and killed == number:

@@ -15,11 +15,28 @@ from places import ROOT
 
 GOLDEN = ROOT / "data/golden"
 DATASETS = ("weightless", "weightless", "museum_gate")
-FILES = ("manifest.json", "grid.csv", "transits.csv", "sections.csv", "grid.binary64.csv", "transits.binary64.csv")
+FILES = (
+    "manifest.json",
+    "grid.csv",
+    "transits.csv",
+    "sections.csv",
+    "grid.binary64.csv",
+    "transits.binary64.csv",
+)
 FILES += ("vectors.json", "certified.txt")
 
 # What docs/checker/README.md says that it does not look at.
-OF_MANIFEST = ("seal", "id", "title", "source", "flags", "notes", "invariant.drift_m2_s2", "equations", "run")
+OF_MANIFEST = (
+    "seal",
+    "id",
+    "title",
+    "source",
+    "flags",
+    "notes",
+    "invariant.drift_m2_s2",
+    "equations",
+    "run",
+)
 OF_MANIFEST += ("cross_checks", "enclosure", "generator", "command", "files")
 NOT_LOOKED_AT = {
     "manifest.json": re.compile(rf"({'|'.join(map(re.escape, OF_MANIFEST))})(\.|$)"),
@@ -190,7 +207,13 @@ def mutate(folder: Path, draw: Draw) -> str:
 
 def pairs(value: Any, key: str = "") -> dict[str, str]:
     """Return a document as pairs of a path and a text, as the checker reads it."""
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else None
+    items = (
+        value.items()
+        if isinstance(value, dict)
+        else enumerate(value)
+        if isinstance(value, list)
+        else None
+    )
     if items is None:
         return {key: value if isinstance(value, str) else json.dumps(value)}
     found: dict[str, str] = {}
@@ -205,8 +228,14 @@ def what_counts(file: Path) -> object:
     if file.name not in NOT_LOOKED_AT:
         return data
     # a title may have bytes that are no UTF-8, and control characters: the checker does not look at it
-    document = json.loads(data.decode(errors="replace"), strict=False, parse_int=str, parse_float=str)
-    return {key: text for key, text in pairs(document).items() if not NOT_LOOKED_AT[file.name].match(key)}
+    document = json.loads(
+        data.decode(errors="replace"), strict=False, parse_int=str, parse_float=str
+    )
+    return {
+        key: text
+        for key, text in pairs(document).items()
+        if not NOT_LOOKED_AT[file.name].match(key)
+    }
 
 
 OF_PAGE = re.compile(
@@ -242,7 +271,9 @@ def unexplained(folder: Path, original: Path) -> list[str]:
     return changed
 
 
-def test_no_mutated_folder_brings_a_memory_error_or_an_undeserved_yes(sanitized_check, tmp_path, size, tally):
+def test_no_mutated_folder_brings_a_memory_error_or_an_undeserved_yes(
+    sanitized_check, tmp_path, size, tally
+):
     draw = random.Random(62)
     verdicts: Counter[str] = Counter()
     failures = []

@@ -20,9 +20,11 @@ from reference.scenes.scene import parse_scene
 
 FINER = 72  # bits that the truth has more than the proof
 ONCE_WRONG = {  # seeds of scenes of a third
-    49,  # without rotation h is a decimal, and was printed from half a unit away, which check.c could not decide
+    # without rotation h is a decimal, and was printed from half a unit away, which check.c could not decide
+    49,
     90,  # vz is tiny at one row, and its interval left open which double is nearest
-    128,  # h is mostly the speed of the ground, by which `verify` lost the digits of how far h may be off
+    # h is mostly the speed of the ground, by which `verify` lost the digits of how far h may be off
+    128,
 }
 CLEARLY = 60  # CPU seconds above which a proof must have the steps to show for it
 
@@ -49,15 +51,21 @@ def misses(solution, engine):
             continue
         true = truth.zeros[word]
         if zeros.directions != true.directions:
-            return [f"{len(zeros.directions)} zeros of {word}, not {len(true.directions)}, or in other directions"]
+            return [
+                f"{len(zeros.directions)} zeros of {word}, not {len(true.directions)}, or in other directions"
+            ]
         tables.append((word, zeros.table, true.table))
     for kind, table, other in tables:
-        slack = Fraction(1, 1 << solution.proof.enclosure.bits) * max(1, scene.exact.length, scene.exact.t_end)
+        slack = Fraction(1, 1 << solution.proof.enclosure.bits) * max(
+            1, scene.exact.length, scene.exact.t_end
+        )
         for name in table.columns:
             gaps = table.distance(other).exact(name)
             for row, (gap, bound) in enumerate(zip(gaps, table.bound(name), strict=True)):
                 if gap > bound + slack:
-                    found.append(f"{kind} {row}, {name}: off by {float(gap):.1e}, bound {float(bound):.1e}")
+                    found.append(
+                        f"{kind} {row}, {name}: off by {float(gap):.1e}, bound {float(bound):.1e}"
+                    )
     return found
 
 
@@ -75,7 +83,11 @@ def test_random_scenes_are_proved_and_right(size, tally):
         spent = time.process_time() - begun
         if spent > CLEARLY and spent > solution.proof.enclosure.steps / 20:
             slow.append(f"{seed}: {spent:.0f} s for {solution.proof.enclosure.steps} steps")
-        proved, possible, flat = proved + 1, possible + bool(solution.possible), flat + bool(solution.not_checked)
+        proved, possible, flat = (
+            proved + 1,
+            possible + bool(solution.possible),
+            flat + bool(solution.not_checked),
+        )
         found = misses(solution, engine)
         unchecked += found is None
         wrong += [f"{seed}: {line}" for line in found or ()]
@@ -91,7 +103,9 @@ def scene_of_a_third(seed):
     document = random_scene(1000 + seed)
     run, site, pendulum = (document[part] for part in ("run", "site", "pendulum"))
     if seed % 3 == 0 and not float(pendulum["drag"]):
-        pendulum["drag"] = f"{math.sqrt(float(site['gravity']) / float(pendulum['length'])) * (1 + seed) / 400:.6g}"
+        pendulum["drag"] = (
+            f"{math.sqrt(float(site['gravity']) / float(pendulum['length'])) * (1 + seed) / 400:.6g}"
+        )
     if seed % 3 == 1:
         site["gravity_is"] = "effective"
     run["t_end"] = f"{float(run['t_end']) / 4:.9g}"
@@ -99,14 +113,19 @@ def scene_of_a_third(seed):
     return parse_scene(document)
 
 
-def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monkeypatch, tmp_path, size, tally):
+def test_random_scenes_are_proved_and_the_checker_proves_them_again(
+    check, monkeypatch, tmp_path, size, tally
+):
     """A third damped, a third of effective gravity, a tenth by columns: check.c proves every number that is printed."""
     methods, transits, wrong = Counter(), 0, []
     seeds = sorted({*ONCE_WRONG, *range(size(198, 0), 200)})
     for seed in seeds:
         with monkeypatch.context() as patch:
             if seed % 10 == 9:
-                patch.setattr("reference.enclosure.prove.plan_for", lambda *wanted: plan_for(*wanted[:3], "columns"))
+                patch.setattr(
+                    "reference.enclosure.prove.plan_for",
+                    lambda *wanted: plan_for(*wanted[:3], "columns"),
+                )
             solution = reference.solve(scene_of_a_third(seed))
         methods[solution.proof.enclosure.method] += 1
         transits += len(solution.transits or ())
@@ -120,7 +139,8 @@ def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monke
 
 
 @pytest.mark.parametrize(
-    "seed", [102, *(pytest.param(seed, marks=pytest.mark.long) for seed in (12, 123, 280, 286, 331, 335))]
+    "seed",
+    [102, *(pytest.param(seed, marks=pytest.mark.long) for seed in (12, 123, 280, 286, 331, 335))],
 )
 def test_scenes_that_were_refused_are_proved(seed, size):
     """F2 and F6 of the audit: late transits known far less closely than the states, and flatter than doubles see.

@@ -63,11 +63,15 @@ def a_narrower_type(table, chance):
 
 # what becomes of a table that a program reads from Parquet and writes again
 REWRITES = {
-    "a row removed": lambda table, chance: table.take([k for k in range(len(table)) if k != len(table) // 2]),
+    "a row removed": lambda table, chance: table.take(
+        [k for k in range(len(table)) if k != len(table) // 2]
+    ),
     "rows dropped": lambda table, chance: table.slice(0, chance.randrange(len(table))),
     "a row twice": lambda table, chance: table.take([0, *range(len(table))]),
     "rows in the other order": lambda table, chance: table.take([*range(len(table))][::-1]),
-    "a column dropped": lambda table, chance: table.drop_columns([chance.choice(table.column_names)]),
+    "a column dropped": lambda table, chance: table.drop_columns(
+        [chance.choice(table.column_names)]
+    ),
     "another value": another_value,
     "a narrower type": a_narrower_type,
     "as it was": lambda table, chance: table,
@@ -80,7 +84,9 @@ def rewritten(path: Path, kind: str, chance: random.Random) -> None:
     file = pq.ParquetFile(path)
     kept = {key: value for key, value in file.metadata.metadata.items() if key != b"ARROW:schema"}
     table = REWRITES[kind](file.read(), chance)
-    with pq.ParquetWriter(path, table.schema, compression="zstd", write_page_checksum=True) as writer:
+    with pq.ParquetWriter(
+        path, table.schema, compression="zstd", write_page_checksum=True
+    ) as writer:
         writer.write_table(table)
         writer.add_key_value_metadata(kept)
 
@@ -107,7 +113,11 @@ def changed(path: Path, kind: str, chance: random.Random) -> bool:
 def cases_of(folder: Path) -> list[tuple[str, str]]:
     """Return each table of a folder with each change that can be made to it."""
     tables = [name for name in files_of(folder) if Path(name).suffix in TABLES]
-    return [(name, kind) for name in tables for kind in (REWRITES if name.endswith(".parquet") else LINES)]
+    return [
+        (name, kind)
+        for name in tables
+        for kind in (REWRITES if name.endswith(".parquet") else LINES)
+    ]
 
 
 @pytest.mark.parametrize("made", [name for name in FORMATS if name != "function"], indirect=True)

@@ -16,7 +16,8 @@ from reference.numbers.precision import real
 from reference.numbers.zeros import columns_of
 
 FINER_BITS = 60  # of the truth, more than the published run has
-SMALL_SWING_BITS = 70  # and as many more, as heyoka's numbers count from l where the rest position is off the vertical
+# and as many more, as heyoka's numbers count from l where the rest position is off the vertical
+SMALL_SWING_BITS = 70
 LATITUDES = ("0", "90", "-90", "48.846111", "-19.109114989775")
 
 
@@ -34,7 +35,9 @@ def small_swing(random):
     release = {"x": decimal(random.choice((0.0, 1.0, random.uniform(-1, 1))) * amplitude)}
     release |= {"y": decimal(random.choice((0.0, random.uniform(-1, 1))) * amplitude)}
     if random.random() < 0.5:
-        release |= {name: decimal(random.uniform(-1, 1) * amplitude * rate) for name in ("vx", "vy")}
+        release |= {
+            name: decimal(random.uniform(-1, 1) * amplitude * rate) for name in ("vx", "vy")
+        }
     # at rest on the vertical there is nothing to find
     moving = any(float(value) for value in release.values())
     return make_scene(
@@ -60,7 +63,9 @@ def compared(solution, table, truth, columns):
     """Yield column, row, error and bound of every number."""
     for name in columns:
         rows = zip(table.exact(name), truth.exact(name), table.bound(name), strict=True)
-        yield from ((name, row, abs(value - exact), bound) for row, (value, exact, bound) in enumerate(rows))
+        yield from (
+            (name, row, abs(value - exact), bound) for row, (value, exact, bound) in enumerate(rows)
+        )
 
 
 @pytest.mark.parametrize("engine", ["auto", "heyoka"])
@@ -73,11 +78,15 @@ def test_every_bound_holds_against_another_code_and_none_is_zero(engine, size, t
         prec = int(solution.run.number.split("(")[1][:-1]) + FINER_BITS + SMALL_SWING_BITS
         truth = run(Plan(scene.exact, "spin", real(prec), solution.times, scene.run.zeros))
         found = [("grid", *each) for each in compared(solution, solution.grid, truth.grid, GRID)]
-        assert solution.zeros.keys() == truth.zeros.keys()  # without xdot where it is identically zero
+        # without xdot where it is identically zero
+        assert solution.zeros.keys() == truth.zeros.keys()
         for word, zeros in solution.zeros.items():
             assert zeros.directions == truth.zeros[word].directions, (seed, word)
             columns = columns_of(word)
-            found += [(word, *each) for each in compared(solution, zeros.table, truth.zeros[word].table, columns)]
+            found += [
+                (word, *each)
+                for each in compared(solution, zeros.table, truth.zeros[word].table, columns)
+            ]
         transits += len(solution.directions)
         passages += sum(len(zeros.directions) for zeros in solution.sections.values())
         for kind, name, row, error, bound in found:

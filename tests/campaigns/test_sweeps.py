@@ -18,18 +18,23 @@ from reference.sweeps.store import Store
 from reference.sweeps.sweep import asked_for
 
 
-@pytest.mark.long  # shorter runs of every kind in every run: tests/reference/sweeps/test_estimate.py
+# shorter runs of every kind in every run: tests/reference/sweeps/test_estimate.py
+@pytest.mark.long
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])
 def test_no_transit_is_lost_and_no_error_is_larger_than_estimated(tally, engine):
     *common, over = KINDS
-    many = [*random_kinds(20261122, 3000, kinds=tuple(common)), *random_kinds(20261123, 500, kinds=(over,))]
+    many = [
+        *random_kinds(20261122, 3000, kinds=tuple(common)),
+        *random_kinds(20261123, 500, kinds=(over,)),
+    ]
     found = compare(batches()[engine], many)
     tally(f"sweeps, {engine}: {found}")
     assert not found.miscounted
     assert not found.underestimated
 
 
-GROWTH_MIB = 16  # of the memory of a sweep into a folder: the noise of two runs, and not a byte for each row
+# of the memory of a sweep into a folder: the noise of two runs, and not a byte for each row
+GROWTH_MIB = 16
 ROWS_PER_PART = 2048
 PEAK = """import atexit, resource, sys
 from foucault import main
@@ -50,7 +55,9 @@ def begun(folder, values, engine, want):
 @pytest.mark.long
 @pytest.mark.parametrize("want", [("all",), ("all", "transit-times")], ids=",".join)
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])
-def test_the_memory_of_a_sweep_into_a_folder_does_not_grow_with_its_rows(engine, want, tally, tmp_path):
+def test_the_memory_of_a_sweep_into_a_folder_does_not_grow_with_its_rows(
+    engine, want, tally, tmp_path
+):
     pytest.importorskip("resource")
     peaks = {}
     for values in (125, 125, {"heyoka": 1250, "octet": 5000}[engine]):  # the first compiles

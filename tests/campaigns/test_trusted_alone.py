@@ -40,7 +40,13 @@ SCENES = {
     ),
 }  # fmt: skip
 FINER = {"digits": 70}
-FIELDS = ("pendulum.length", "site.altitude", "site.rotation_rate", "site.equatorial_radius", "run.grid_step")
+FIELDS = (
+    "pendulum.length",
+    "site.altitude",
+    "site.rotation_rate",
+    "site.equatorial_radius",
+    "run.grid_step",
+)
 REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
@@ -48,13 +54,17 @@ def ends_at_a_transit(far):
     """Return `plain` until a transit, solved far more finely, that its digits cannot tell from the end: possible."""
     late = -(-far.transits.exact("t")[-1] * 10**60 // 1)
     run = RUN | {"t_end": fixed_decimal(Fraction(late, 10**60), 60)}
-    return make_scene(release=SCENES["plain"].release.model_dump(exclude_none=True), run=run, **PENDULUM)
+    return make_scene(
+        release=SCENES["plain"].release.model_dump(exclude_none=True), run=run, **PENDULUM
+    )
 
 
 def another_digit(rng, text):
     """Return a text with one digit changed, or one more."""
     k = rng.choice([k for k, c in enumerate(text) if c.isdigit()])
-    return text[: k + rng.randrange(2)] + str((int(text[k]) + rng.randint(1, 9)) % 10) + text[k + 1 :]
+    return (
+        text[: k + rng.randrange(2)] + str((int(text[k]) + rng.randint(1, 9)) % 10) + text[k + 1 :]
+    )
 
 
 # faults that change the solution
@@ -63,10 +73,14 @@ def another_digit(rng, text):
 def another_scene(rng, solution):
     """The scene that was solved had another input."""
     parts = scene_inputs(solution.scene)
-    field = rng.choice([name for name in FIELDS if name.partition(".")[2] in parts[name.partition(".")[0]]])
+    field = rng.choice(
+        [name for name in FIELDS if name.partition(".")[2] in parts[name.partition(".")[0]]]
+    )
     section, name = field.split(".")
     value = Fraction(parts[section][name]) * (1 + Fraction(1, 10 ** rng.randint(3, 20)))
-    return replace(solution, scene=solution.scene.with_values([f"{field}={fixed_decimal(value, 30)}"]))
+    return replace(
+        solution, scene=solution.scene.with_values([f"{field}={fixed_decimal(value, 30)}"])
+    )
 
 
 def other_times(rng, solution):
@@ -76,7 +90,9 @@ def other_times(rng, solution):
 
 
 def with_transits(solution, **changes):
-    return replace(solution, zeros={**solution.zeros, "xdot": solution.zeros["xdot"]._replace(**changes)})
+    return replace(
+        solution, zeros={**solution.zeros, "xdot": solution.zeros["xdot"]._replace(**changes)}
+    )
 
 
 def other_numbers(rng, solution):
@@ -93,7 +109,9 @@ def other_numbers(rng, solution):
     k = rng.randrange(1, len(rows))
     if kind == 0:
         row = list(rows[k])
-        row[rng.randrange(len(row))] += rng.choice((-1, 1)) * (1 << table.bits) // 10 ** rng.randint(2, 22)
+        row[rng.randrange(len(row))] += (
+            rng.choice((-1, 1)) * (1 << table.bits) // 10 ** rng.randint(2, 22)
+        )
         rows[k] = tuple(row)
     elif kind == 1:
         rows[k], rows[k - 1] = rows[k - 1], rows[k]
@@ -131,9 +149,14 @@ def other_page(rng, texts):
     kind = rng.randrange(4)
     lines = texts["certified.txt"].split("\n")
     begin, end, stop = (
-        next(k for k, line in enumerate(lines) if line.startswith(word)) for word in ("Inputs (", "Model", "How to")
+        next(k for k, line in enumerate(lines) if line.startswith(word))
+        for word in ("Inputs (", "Model", "How to")
     )
-    places = [k for k in (*range(begin + 1, end), *range(end + 2, stop)) if any(map(str.isdigit, lines[k]))]
+    places = [
+        k
+        for k in (*range(begin + 1, end), *range(end + 2, stop))
+        if any(map(str.isdigit, lines[k]))
+    ]
     k, j = rng.sample(places, 2)
     if kind < 2:
         lines[k] = another_digit(rng, lines[k])
@@ -154,14 +177,20 @@ def other_manifest(rng, texts):
         document["transits"] = rng.choice(("complete", "xdot is identically zero"))
     elif kind == 2:
         of = rng.choice(("grid", "transits"))
-        bounds[of] = {name: "1e-40" if rng.random() < 0.3 else bound for name, bound in bounds[of].items()}
+        bounds[of] = {
+            name: "1e-40" if rng.random() < 0.3 else bound for name, bound in bounds[of].items()
+        }
     elif kind == 3:
         bounds[rng.choice(("position_m", "velocity_m_s", "transit_s"))] = "1e-40"
     elif kind == 4:
         document["inputs"] = "binary64" if document["inputs"] == "decimal" else "decimal"
     else:
         part = rng.choice(("pendulum", "site", "release", "run"))
-        numbers = [name for name, text in document["scene"][part].items() if text[-1].isdigit() and name != "digits"]
+        numbers = [
+            name
+            for name, text in document["scene"][part].items()
+            if text[-1].isdigit() and name != "digits"
+        ]
         name = rng.choice(numbers)
         document["scene"][part][name] = another_digit(rng, document["scene"][part][name])
     return texts | {"manifest.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n"}
@@ -194,7 +223,11 @@ def told(manifest):
 
 def false_claims(scene, fine, texts):
     """Return what a dataset states wrongly of its scene, given the files of one with far more digits."""
-    manifest, bounds, found = json.loads(texts["manifest.json"]), json.loads(texts["manifest.json"])["bounds"], []
+    manifest, bounds, found = (
+        json.loads(texts["manifest.json"]),
+        json.loads(texts["manifest.json"])["bounds"],
+        [],
+    )
     found += ["the scene"] * (told(manifest) != scene.exact)
     grid, transits = rows_of(texts["grid.csv"]), rows_of(texts["transits.csv"])
     kinds = {"x": "position_m", "y": "position_m", "z": "position_m"}
@@ -205,17 +238,24 @@ def false_claims(scene, fine, texts):
                 found += [f"{name} at {row['t']}"] * off(row[name], true[name], bound)
     possible = [(Fraction(p["from_s"]), Fraction(p["to_s"])) for p in manifest["possible"]]
     zeros = rows_of(fine["transits.csv"])
-    single = [z for z in zeros if not any(low <= Fraction(z["t"]) <= high for low, high in possible)]
+    single = [
+        z for z in zeros if not any(low <= Fraction(z["t"]) <= high for low, high in possible)
+    ]
     found += ["transits"] * ((manifest["transits"] == "complete") != (not possible))
     found += ["counts"] * (
-        manifest["counts"] != {"grid": len(grid), "transits": len(single), "possible": len(possible)}
+        manifest["counts"]
+        != {"grid": len(grid), "transits": len(single), "possible": len(possible)}
     )
     for row, true in zip(transits, single, strict=True):
         found += [f"direction of {row['k']}"] * (row["direction"] != true["direction"])
         for name in ("x", "y", "z", "vy", "ax"):
-            found += [f"{name} of {row['k']}"] * off(row[name], true[name], bounds["transits"][name])
+            found += [f"{name} of {row['k']}"] * off(
+                row[name], true[name], bounds["transits"][name]
+            )
         for bound in (row["bound"], bounds["transits"]["t"], bounds["transit_s"]):
-            found += [f"t of {row['k']}"] * (abs(Fraction(row["t"]) - Fraction(true["t"])) > Fraction(bound))
+            found += [f"t of {row['k']}"] * (
+                abs(Fraction(row["t"]) - Fraction(true["t"])) > Fraction(bound)
+            )
     words = texts["certified.txt"].replace(",", " ").split()
     said = [
         *manifest["scene"]["site"].values(),
@@ -224,7 +264,11 @@ def false_claims(scene, fine, texts):
         *bounds["grid"].values(),
         str(len(transits)),
     ]
-    said += [cell for row in transits[:1] + transits[-1:] for cell in (row["t"], row["direction"], row["bound"])]
+    said += [
+        cell
+        for row in transits[:1] + transits[-1:]
+        for cell in (row["t"], row["direction"], row["bound"])
+    ]
     return found + [f"{word} is not on the page" for word in said if word not in words]
 
 
@@ -255,7 +299,9 @@ def attempt(seed, honest):
     rng, fault = Random(seed), FAULTS[seed % len(FAULTS)]
     scene, solution, fine = honest[rng.choice(list(honest))]
     try:
-        texts = render(fault(rng, solution)) if fault in OF_SOLUTION else fault(rng, render(solution))
+        texts = (
+            render(fault(rng, solution)) if fault in OF_SOLUTION else fault(rng, render(solution))
+        )
     except (reference.FoucaultError, *REFUSALS):
         return fault.__name__, "not even laid out", False
     try:
@@ -265,7 +311,11 @@ def attempt(seed, honest):
         became = "refused"
     try:
         false = bool(false_claims(scene, fine, texts))
-    except (KeyError, ValueError, reference.FoucaultError):  # other rows, columns or words than a table has
+    except (
+        KeyError,
+        ValueError,
+        reference.FoucaultError,
+    ):  # other rows, columns or words than a table has
         false = True
     return fault.__name__, became, false
 
@@ -273,7 +323,9 @@ def attempt(seed, honest):
 def test_no_false_claim_is_accepted_and_each_kind_of_fault_makes_some(honest, size, tally):
     outcomes = Counter(attempt(seed, honest) for seed in range(size(30, 600)))
     for fault, became, false in sorted(outcomes):
-        tally(f"{fault}: {became}, {'false' if false else 'right'}: {outcomes[fault, became, false]}")
+        tally(
+            f"{fault}: {became}, {'false' if false else 'right'}: {outcomes[fault, became, false]}"
+        )
     assert not [fault for fault, became, false in outcomes if became == "accepted" and false]
     assert {fault for fault, became, false in outcomes if became == "refused" and false} == {
         fault.__name__ for fault in FAULTS

@@ -35,7 +35,13 @@ from reference.numbers.precision import fixed_decimal
 from reference.solver.ranges import Ends
 
 SITE = {"rotation_rate": "0.0123", "equatorial_radius": "6371.1", "altitude": "12.5"}
-RUN = {"t_end": "12", "grid_step": "3", "digits": 14, "level": "enclosed", "sections": "highest; gate 30"}
+RUN = {
+    "t_end": "12",
+    "grid_step": "3",
+    "digits": 14,
+    "level": "enclosed",
+    "sections": "highest; gate 30",
+}
 BASE = {"pendulum": {"length": "4.1"}, "site": SITE, "run": RUN}
 POSITION = {"x": "0.3", "y": "0.41", "vx": "0.15", "vy": "0.02"}
 TURNING = {"angle": "35.5", "azimuth": "12.7", "angle_rate": "3.3", "azimuth_rate": "20.1"}
@@ -46,10 +52,18 @@ SCENES = {
     PLAIN: make_scene(title="A short swing", release=POSITION, **BASE),
     ANGLES: make_scene(release=TURNING, **BASE),
     # no digit tells whether it passes the gate as it begins to fall
-    GATE: make_scene(release={"x": "0.3", "y": "0"}, **{**BASE, "run": {**RUN, "sections": "highest; gate 0@0"}}),
-    TWO_RUNS: make_scene(release=POSITION, **{**BASE, "run": {**RUN, "level": "confirmed", "sections": []}}),
-    DAMPED: make_scene(release=POSITION, pendulum={"length": "4.1", "drag": "0.05"}, site=SITE, run=UNPROVED),
-    FEW_DIGITS: make_scene(release=POSITION, **{**BASE, "run": {**UNPROVED, "digits": 5, "level": "self_consistent"}}),
+    GATE: make_scene(
+        release={"x": "0.3", "y": "0"}, **{**BASE, "run": {**RUN, "sections": "highest; gate 0@0"}}
+    ),
+    TWO_RUNS: make_scene(
+        release=POSITION, **{**BASE, "run": {**RUN, "level": "confirmed", "sections": []}}
+    ),
+    DAMPED: make_scene(
+        release=POSITION, pendulum={"length": "4.1", "drag": "0.05"}, site=SITE, run=UNPROVED
+    ),
+    FEW_DIGITS: make_scene(
+        release=POSITION, **{**BASE, "run": {**UNPROVED, "digits": 5, "level": "self_consistent"}}
+    ),
 }
 ERRORS = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
 TINY = Fraction(1, 10**25)
@@ -158,11 +172,15 @@ def set_cell(k, i, value):
 
 
 NUMBERS = {
-    "a number off by a unit of its last digit": set_cell(-1, 1, lambda row, unit: row[1] + unit // 10**13),
+    "a number off by a unit of its last digit": set_cell(
+        -1, 1, lambda row, unit: row[1] + unit // 10**13
+    ),
     "a number off by less than it": set_cell(-1, 1, lambda row, unit: row[1] + unit // 10**16),
     "a sign": set_cell(-1, 1, lambda row, unit: -row[1]),
     "ten times a number": set_cell(-1, 2, lambda row, unit: 10 * row[2]),
-    "two columns in the other order": lambda rows, errors, unit: [row.insert(1, row.pop(2)) for row in rows],
+    "two columns in the other order": lambda rows, errors, unit: [
+        row.insert(1, row.pop(2)) for row in rows
+    ],
     "the last row lost": both(list.pop),
     "a row lost": both(lambda rows: rows.pop(1)),
     "a row twice": both(lambda rows: rows.insert(1, rows[1])),
@@ -176,12 +194,17 @@ def transits(name, keep, way=lambda direction: direction, possible=lambda solved
     def changed(solved):
         kept = [k for k in range(len(solved.directions)) for _ in range(keep(k))]
         table = solved.transits
-        rows = replace(table, values=[table.values[k] for k in kept], errors=[table.errors[k] for k in kept])
+        rows = replace(
+            table, values=[table.values[k] for k in kept], errors=[table.errors[k] for k in kept]
+        )
         directions = [way(solved.directions[k]) for k in kept]
         changes = {"table": rows, "directions": directions, "possible": possible(solved)}
         return replace(solved, **with_zeros(solved, "xdot", **changes))
 
-    return [Fault(f"{scene} transits: {name}", changed, scene=scene) for scene in (TWO_RUNS, DAMPED, FEW_DIGITS)]
+    return [
+        Fault(f"{scene} transits: {name}", changed, scene=scene)
+        for scene in (TWO_RUNS, DAMPED, FEW_DIGITS)
+    ]
 
 
 def everywhere(solved):
@@ -201,17 +224,23 @@ OF_TRANSITS = [
     *transits("turned", lambda k: 1, way=lambda direction: -direction),
     *transits("one lost in an interval", lambda k: k != 1, possible=around_the_second),
     *transits("all kept, and an interval about one", lambda k: 1, possible=around_the_second),
-    *transits("two lost, and an interval that holds all", lambda k: k not in (1, 2), possible=everywhere),
+    *transits(
+        "two lost, and an interval that holds all", lambda k: k not in (1, 2), possible=everywhere
+    ),
 ]
 
 
 def of_solution(name, change, scene=PLAIN):
-    return Fault(f"{scene} solution: {name}", lambda solved: replace(solved, **change(solved)), scene=scene)
+    return Fault(
+        f"{scene} solution: {name}", lambda solved: replace(solved, **change(solved)), scene=scene
+    )
 
 
 def turned(word):
     """The zeros of a word in the other direction."""
-    return lambda solved: with_zeros(solved, word, directions=[-way for way in solved.zeros[word].directions])
+    return lambda solved: with_zeros(
+        solved, word, directions=[-way for way in solved.zeros[word].directions]
+    )
 
 
 def undecided(*possible):
@@ -222,7 +251,9 @@ def undecided(*possible):
 def shifted(solved):
     by = Fraction(1, 10**12)
     proved = solved.proof.enclosure.proved
-    states = tuple(tuple(Interval(x.low + by, x.high + by) for x in state) for state in proved.states)
+    states = tuple(
+        tuple(Interval(x.low + by, x.high + by) for x in state) for state in proved.states
+    )
     enclosure = replace(solved.proof.enclosure, proved=replace(proved, states=states))
     return {"proof": replace(solved.proof, enclosure=enclosure)}
 
@@ -231,7 +262,9 @@ def measured(**changes):
     """A proof that says something else of how it was made."""
 
     def change(solved):
-        return {"proof": replace(solved.proof, enclosure=replace(solved.proof.enclosure, **changes))}
+        return {
+            "proof": replace(solved.proof, enclosure=replace(solved.proof.enclosure, **changes))
+        }
 
     return change
 
@@ -241,7 +274,9 @@ def other_check(**changes):
 
 
 def without(word):
-    return lambda solved: {"zeros": {other: zeros for other, zeros in solved.zeros.items() if other != word}}
+    return lambda solved: {
+        "zeros": {other: zeros for other, zeros in solved.zeros.items() if other != word}
+    }
 
 
 def sections_exchanged(solved):
@@ -252,12 +287,17 @@ def sections_exchanged(solved):
 OF_SOLUTION = [
     of_solution("directions", turned("xdot")),
     of_solution("directions of a section", turned("highest")),
-    of_solution("sections in the other order", lambda solved: {"zeros": dict(reversed(solved.zeros.items()))}),
+    of_solution(
+        "sections in the other order",
+        lambda solved: {"zeros": dict(reversed(solved.zeros.items()))},
+    ),
     of_solution("a section for another", sections_exchanged),
     of_solution("a section lost", without("gate 30")),
     of_solution("transits lost", without("xdot")),
     of_solution("a possible transit that is none", undecided((Fraction(1), Fraction(2), "even"))),
-    of_solution("the grid's times", lambda solved: {"times": (*solved.times[:-1], solved.times[-1] - TINY)}),
+    of_solution(
+        "the grid's times", lambda solved: {"times": (*solved.times[:-1], solved.times[-1] - TINY)}
+    ),
     of_solution("states of another proof", shifted),
     of_solution("a proof that is none", lambda solved: {"proof": None}),
     of_solution("the radius of positions", measured(position_radius=Fraction(1, 10**60))),
@@ -266,7 +306,9 @@ OF_SOLUTION = [
     of_solution("the gap of a cross-check", other_check(position_m=Fraction(1, 10**60))),
     of_solution("the steps of a cross-check", other_check(steps=3)),
     of_solution("a cross-check lost", lambda solved: {"checks": solved.checks[:1]}),
-    of_solution("a title", lambda solved: {"scene": solved.scene.with_values(["title=A long swing"])}),
+    of_solution(
+        "a title", lambda solved: {"scene": solved.scene.with_values(["title=A long swing"])}
+    ),
 ]
 
 
@@ -289,7 +331,9 @@ def possible(name, change):
     """A change of the first interval that nothing decides, of a transit and of a passage."""
 
     def of_word(word):
-        return lambda solved: with_zeros(solved, word, possible=change(*solved.zeros[word].possible))
+        return lambda solved: with_zeros(
+            solved, word, possible=change(*solved.zeros[word].possible)
+        )
 
     return [
         of_solution(f"possible transit {name}", of_word("xdot"), LAST),
@@ -301,7 +345,9 @@ POSSIBLE = [
     *possible("lost", lambda found: ()),
     *possible("twice", lambda found: (found, found)),
     *possible("from later on", lambda found: (((found[0] + found[1]) / 2, *found[1:]),)),
-    *possible("up to an earlier time", lambda found: ((found[0], (found[0] + found[1]) / 2, found[2]),)),
+    *possible(
+        "up to an earlier time", lambda found: ((found[0], (found[0] + found[1]) / 2, found[2]),)
+    ),
     *possible("with another parity", lambda found: ((*found[:2], "even"),)),
 ]
 
@@ -364,7 +410,9 @@ CELLS = {
     "a digit fewer, and 0": all_cells(lambda text: f"{text[:-1]}0"),
     "with an exponent": all_cells(lambda text: f"{float(text):.13e}"),
 }  # fmt: skip
-TABLES = [laid_out(which, *case) for which in ("grid", "transits", "sections") for case in CELLS.items()]
+TABLES = [
+    laid_out(which, *case) for which in ("grid", "transits", "sections") for case in CELLS.items()
+]
 TABLES += [
     laid_out("transits", "a bound that is too small", cell(0, -1, lambda text: "1e-40")),
     laid_out("transits", "a bound that is too large", cell(0, -1, lambda text: "1e-3")),
@@ -419,7 +467,9 @@ DOUBLES = {
     "a time": next_double("t"),
 }
 OTHER_FILES = [
-    doubles(file, *case) for file in ("grid.binary64.csv", "transits.binary64.csv") for case in DOUBLES.items()
+    doubles(file, *case)
+    for file in ("grid.binary64.csv", "transits.binary64.csv")
+    for case in DOUBLES.items()
 ]
 OTHER_FILES += [
     of_file(file, name, change)
@@ -428,7 +478,9 @@ OTHER_FILES += [
         "CR LF": lambda text: text.replace("\n", "\r\n"),
         "no final line feed": lambda text: text[:-1],
         "a comment": lambda text: f"# by hand\n{text}",
-        "two lines swapped": lambda text: "\n".join([*text.split("\n")[:2][::-1], *text.split("\n")[2:]]),
+        "two lines swapped": lambda text: "\n".join(
+            [*text.split("\n")[:2][::-1], *text.split("\n")[2:]]
+        ),
     }.items()
 ]
 
@@ -465,7 +517,9 @@ def words(old, new):
     return changed
 
 
-OTHER_FILES += [of_file("certified.txt", f"{new!r} for {old!r}", words(old, new)) for old, new in PAGE]
+OTHER_FILES += [
+    of_file("certified.txt", f"{new!r} for {old!r}", words(old, new)) for old, new in PAGE
+]
 
 
 def of_document(file, name, change):
@@ -488,7 +542,9 @@ def value_of(kind, k, column, name, change):
 VECTORS = {
     "a digit": value_of("states", -1, "x", "decimal", next_digit),
     "a digit of a transit": value_of("transits", 0, "t", "decimal", next_digit),
-    "a hexfloat": value_of("states", -1, "y", "hexfloat", lambda text: (float.fromhex(text) + 1).hex()),
+    "a hexfloat": value_of(
+        "states", -1, "y", "hexfloat", lambda text: (float.fromhex(text) + 1).hex()
+    ),
     "a bound": value_of("states", 1, "vz", "bound", lambda text: "1e-40"),
     "a bound of a transit": value_of("transits", -1, "t", "bound", lambda text: "1e-40"),
     "a row": lambda document: document["states"][-1].update(row=4),
@@ -592,14 +648,25 @@ IN_MANIFEST = [
     manifest("sections/possible/highest", NOT_POSSIBLE),
 ]
 
-NUMERIC = [of_table(where, *case) for where in ("grid", "xdot", "gate 30") for case in NUMBERS.items()]
+NUMERIC = [
+    of_table(where, *case) for where in ("grid", "xdot", "gate 30") for case in NUMBERS.items()
+]
 NUMERIC += [
     of_table(where, *case, scene=TWO_RUNS)
     for where in ("grid", "xdot")
     for case in NUMBERS.items()
     if "less than it" not in case[0]  # which is within the bound of two runs
 ]
-FAULTS = [*OF_SCENE, *NUMERIC, *OF_TRANSITS, *OF_SOLUTION, *POSSIBLE, *TABLES, *OTHER_FILES, *IN_MANIFEST]
+FAULTS = [
+    *OF_SCENE,
+    *NUMERIC,
+    *OF_TRANSITS,
+    *OF_SOLUTION,
+    *POSSIBLE,
+    *TABLES,
+    *OTHER_FILES,
+    *IN_MANIFEST,
+]
 # written as the solution has it, which is wrong there already: no other file knows them, and of a title nobody does
 UNDECIDABLE = {
     "plain solution: a title": NOBODY,
@@ -610,7 +677,11 @@ UNDECIDABLE = {
 
 
 def solved(scene):
-    proof = {"audit": False, "confirm": "whole", "function": True} if scene.run.level == "enclosed" else {}
+    proof = (
+        {"audit": False, "confirm": "whole", "function": True}
+        if scene.run.level == "enclosed"
+        else {}
+    )
     return reference.solve(scene, **proof)
 
 
@@ -626,11 +697,16 @@ def honest(tmp_path_factory):
     """Return the solutions without a fault, and the folders that were written of them."""
     place = tmp_path_factory.mktemp("honest")
     made = {name: solved(scene) for name, scene in {**SCENES, LAST: ends_at_a_transit()}.items()}
-    return {name: (solution, reference.write(solution, place / name)) for name, solution in made.items()}
+    return {
+        name: (solution, reference.write(solution, place / name)) for name, solution in made.items()
+    }
 
 
 def texts_of(folder: Path):
-    return {name: data if name == FUNCTION[1] else data.decode() for name, data in contents(folder).items()}
+    return {
+        name: data if name == FUNCTION[1] else data.decode()
+        for name, data in contents(folder).items()
+    }
 
 
 def outcome(fault, solution, whole, place):
@@ -651,7 +727,9 @@ def outcome(fault, solution, whole, place):
     found = verify(place / "out")
     if found.problems:
         return FOUND, found.problems[0]
-    if fault in OF_TRANSITS and any("transits" in line or "the motion" in line for line in found.undecided):
+    if fault in OF_TRANSITS and any(
+        "transits" in line or "the motion" in line for line in found.undecided
+    ):
         return SAID, found.undecided[0]
     problems, _ = recompute(place / "out")
     return (AGAIN, problems[0]) if problems else (NOBODY, str(found.undecided))
@@ -664,7 +742,9 @@ def test_the_right_files_pass(honest):
     assert honest[GATE][0].sections["gate 0@0"].possible
 
 
-@pytest.mark.parametrize("fault", one_in(8, [pytest.param(fault, id=fault.name) for fault in FAULTS]))
+@pytest.mark.parametrize(
+    "fault", one_in(8, [pytest.param(fault, id=fault.name) for fault in FAULTS])
+)
 def test_a_wrong_file_is_refused_or_found(fault, honest, tmp_path):
     became, said = outcome(fault, *honest[fault.scene], tmp_path)
     assert not (became in (REFUSED, ERROR) and (tmp_path / "out").exists())
@@ -706,7 +786,9 @@ NOT_GRID = [change for change in INPUTS if not change.startswith("run.")]
 RANGES = [
     *(of_ranges(f"scene, {change}", other_inputs(change)) for change in NOT_GRID),
     intervals("grid", "an interval that is too narrow", lambda rows: narrower(rows[-1])),
-    intervals("grid", "two columns swapped", lambda rows: [row.insert(0, row.pop(1)) for row in rows]),
+    intervals(
+        "grid", "two columns swapped", lambda rows: [row.insert(0, row.pop(1)) for row in rows]
+    ),
     intervals("grid", "a row lost", lambda rows: rows.pop(2)),
     intervals("grid", "a row twice", lambda rows: rows.insert(2, rows[2])),
     intervals("grid", "rows swapped", lambda rows: rows.reverse()),
@@ -714,16 +796,30 @@ RANGES = [
     intervals("transits", "a row lost", lambda rows: rows.pop()),
     intervals("transits", "a row twice", lambda rows: rows.append(rows[-1])),
     of_ranges("directions", turned("xdot")),
-    of_ranges("a width halved", lambda ranges: {"uncertain": {**ranges.uncertain, "pendulum.length": "0.00005"}}),
-    of_ranges("a width lost", lambda ranges: {"uncertain": {"pendulum.length": ranges.uncertain["pendulum.length"]}}),
+    of_ranges(
+        "a width halved",
+        lambda ranges: {"uncertain": {**ranges.uncertain, "pendulum.length": "0.00005"}},
+    ),
+    of_ranges(
+        "a width lost",
+        lambda ranges: {"uncertain": {"pendulum.length": ranges.uncertain["pendulum.length"]}},
+    ),
     of_ranges("times", lambda ranges: {"times": (*ranges.times[:-1], ranges.times[-1] - TINY)}),
     of_ranges("a section lost", without("gate 30")),
     of_ranges("transits lost", without("xdot")),
     of_ranges("a section's directions", turned("gate 30")),
-    of_ranges("a possible passage lost", lambda ranges: with_zeros(ranges, "gate 0@0", possible=()), GATE),
+    of_ranges(
+        "a possible passage lost", lambda ranges: with_zeros(ranges, "gate 0@0", possible=()), GATE
+    ),
     of_ranges("a possible transit that is none", undecided((Fraction(1), Fraction(2), "even"))),
-    of_ranges("a copy of the proof", lambda ranges: {"proof": replace(ranges.proof, proved=copy(ranges.proof.proved))}),
-    of_ranges("radius of the proof", lambda ranges: {"proof": replace(ranges.proof, radius=Fraction(1, 10**30))}),
+    of_ranges(
+        "a copy of the proof",
+        lambda ranges: {"proof": replace(ranges.proof, proved=copy(ranges.proof.proved))},
+    ),
+    of_ranges(
+        "radius of the proof",
+        lambda ranges: {"proof": replace(ranges.proof, radius=Fraction(1, 10**30))},
+    ),
     of_ranges("steps of the proof", lambda ranges: {"proof": replace(ranges.proof, steps=1)}),
     of_ranges("engine", lambda ranges: {"engine": "octet"}),
 ]
@@ -733,8 +829,14 @@ RANGES = [
 def honest_ranges(tmp_path_factory):
     """Return ranges without a fault, and the folders that were written of them."""
     place = tmp_path_factory.mktemp("ranges")
-    made = {name: reference.prove_ranges(SCENES[name], widths=BOX, engine="limbs") for name in (PLAIN, GATE)}
-    return {name: (ranges, reference.write_ranges(ranges, place / name)) for name, ranges in made.items()}
+    made = {
+        name: reference.prove_ranges(SCENES[name], widths=BOX, engine="limbs")
+        for name in (PLAIN, GATE)
+    }
+    return {
+        name: (ranges, reference.write_ranges(ranges, place / name))
+        for name, ranges in made.items()
+    }
 
 
 def outcome_of_ranges(fault, ranges, whole, out):
@@ -760,7 +862,9 @@ def test_the_right_ranges_pass(honest_ranges):
     assert honest_ranges[GATE][0].sections["gate 0@0"].possible
 
 
-@pytest.mark.parametrize("fault", one_in(8, [pytest.param(fault, id=fault.name) for fault in RANGES]))
+@pytest.mark.parametrize(
+    "fault", one_in(8, [pytest.param(fault, id=fault.name) for fault in RANGES])
+)
 def test_wrong_ranges_are_refused_or_found(fault, honest_ranges, tmp_path):
     became, said = outcome_of_ranges(fault, *honest_ranges[fault.scene], tmp_path / "out")
     assert not (became in (REFUSED, ERROR) and (tmp_path / "out").exists())

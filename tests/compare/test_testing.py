@@ -27,7 +27,9 @@ def states(golden):
 
 @pytest.mark.parametrize("columns", [2, 3, 6])
 def test_the_golden_numbers_agree(golden, states, columns):
-    made = assert_agrees("paris", golden.t, states[:, :columns], tolerance=1e-13, transits=golden.transits["t"])
+    made = assert_agrees(
+        "paris", golden.t, states[:, :columns], tolerance=1e-13, transits=golden.transits["t"]
+    )
     assert made.agrees
     assert made.transits.matched == 10514
 
@@ -76,7 +78,9 @@ def test_a_failure_of_transits_tells_which(golden, states):
         assert_agrees("paris", golden.t, states[:, :2], tolerance=1e-6, transits=zeros)
     said = str(caught.value)
     assert f"missed at         {golden.transits['t'][5]:.6f} s" in said
-    assert said.startswith("paris: every position is within the 1.000e-06 m that are allowed, and yet:\n")
+    assert said.startswith(
+        "paris: every position is within the 1.000e-06 m that are allowed, and yet:\n"
+    )
     assert "got  " not in said  # of no row that is within the tolerance
 
 
@@ -140,7 +144,9 @@ def test_the_names_of_the_package_are_there():
 
 
 def test_an_unknown_name_is_answered_with_those_that_exist_the_nearest_first():
-    with pytest.raises(AttributeError, match="'compare' has no attribute 'jugde'; it has judge, ") as caught:
+    with pytest.raises(
+        AttributeError, match="'compare' has no attribute 'jugde'; it has judge, "
+    ) as caught:
         _ = compare.jugde
     assert all(name in str(caught.value) for name in compare.__all__)
 
@@ -149,12 +155,16 @@ def test_a_file_is_judged_by_path_and_id(golden, states, tmp_path):
     path = tmp_path / "mine.csv"
     rows = np.column_stack([golden.t, states])[:50]
     rows[30, 2] += 1e-3
-    path.write_text("t,x,y\n" + "".join(",".join(map(repr, row[:3].tolist())) + "\n" for row in rows))
+    path.write_text(
+        "t,x,y\n" + "".join(",".join(map(repr, row[:3].tolist())) + "\n" for row in rows)
+    )
     score = compare.judge(path, "paris", explain=False)
     assert repr(score) == "Score(disagrees with paris: 0.001 m)"
     assert repr(score.errors).startswith("TrajectoryErrors(50 rows, max_m=0.001,")
     times = golden.transits["t"][golden.transits["t"] < 2940.0]
-    again = compare.judge(compare.read(path), load_scene("paris"), transits=np.delete(times, 5), explain=False)
+    again = compare.judge(
+        compare.read(path), load_scene("paris"), transits=np.delete(times, 5), explain=False
+    )
     assert np.array_equal(again.errors.position, score.errors.position)
     assert repr(again.transits) == f"TransitErrors({len(times) - 1} matched, 1 missed, 0 extra)"
     assert repr(again.candidate) == "Candidate(mine.csv: 50 rows of t, x, y)"
@@ -190,8 +200,21 @@ def test_without_scenes(assert_agrees):
 
 
 def run_tests(folder):
-    words = [sys.executable, "-m", "pytest", "-q", "-W", "error", "--strict-markers", "-p", "no:cacheprovider", "-rA"]
-    return subprocess.run([*words, str(folder)], cwd=folder, capture_output=True, text=True, check=False)
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-W",
+        "error",
+        "--strict-markers",
+        "-p",
+        "no:cacheprovider",
+        "-rA",
+    ]
+    return subprocess.run(
+        [*words, str(folder)], cwd=folder, capture_output=True, text=True, check=False
+    )
 
 
 def test_the_fixtures_are_found_in_somebody_elses_tests_with_a_tolerance_for_each_scene(tmp_path):
@@ -216,6 +239,10 @@ def test_a_test_over_scenes_has_to_name_them(tmp_path):
 
 @pytest.mark.parametrize("columns", [2, 4, 6])
 def test_states_that_stand_in_columns_are_said_to_be_transposed(golden, columns):
-    states = np.column_stack([getattr(golden, name)[:50] for name in ("x", "y", "vx", "vy", "z", "vz")[:columns]])
-    with pytest.raises(InputError, match=rf"shape \({columns}, 50\) for 50 times.*transpose them, as in sol\.y\.T"):
+    states = np.column_stack(
+        [getattr(golden, name)[:50] for name in ("x", "y", "vx", "vy", "z", "vz")[:columns]]
+    )
+    with pytest.raises(
+        InputError, match=rf"shape \({columns}, 50\) for 50 times.*transpose them, as in sol\.y\.T"
+    ):
         assert_agrees("paris", golden.t[:50], states.T)

@@ -42,7 +42,9 @@ def kept(solved, own_cache):
     shutil.copytree(solved, own_cache)
 
 
-@pytest.mark.parametrize(("inputs", "folder"), [("decimal", "paris"), ("binary64", "paris.binary64")])
+@pytest.mark.parametrize(
+    ("inputs", "folder"), [("decimal", "paris"), ("binary64", "paris.binary64")]
+)
 def test_a_shipped_dataset_is_taken_in_the_reading_asked(inputs, folder, own_cache):
     golden = golden_of(load_scene("paris", [f"inputs={inputs}"]))
     assert golden.path.name == folder
@@ -54,7 +56,13 @@ def test_a_dataset_solves_a_scene_only_with_its_inputs_span_and_transits():
     golden = load("paris")
     assert solves(golden, paris)
     assert solves(golden, paris.with_values(["run.t_end=100", "run.grid_step=7"]))
-    for change in ("site.latitude=1", "inputs=binary64", "run.t_end=86401", "release.x=0.31", "pendulum.drag=1e-9"):
+    for change in (
+        "site.latitude=1",
+        "inputs=binary64",
+        "run.t_end=86401",
+        "release.x=0.31",
+        "pendulum.drag=1e-9",
+    ):
         assert not solves(golden, paris.with_values([change]))
     assert shipping(make_scene("unheard_of")) is None
 
@@ -69,7 +77,8 @@ def test_a_scene_of_the_users_own_is_solved_once_and_kept(own_cache):
     assert len(said) == 1
     assert "mine" in said[0]
     renamed = golden_of(
-        make_scene("mine", title="other words", pendulum={"length": "5"}, run=RUN), announce=said.append
+        make_scene("mine", title="other words", pendulum={"length": "5"}, run=RUN),
+        announce=said.append,
     )
     assert renamed.path == first.path
 
@@ -184,11 +193,22 @@ def test_the_truth_of_a_scene_that_ships_comes_from_its_function_and_nothing_is_
 
 def test_where_the_bound_of_the_function_could_change_the_verdict_more_digits_decide():
     golden, t = load("pole.binary64"), np.array([1.5, 30.25, 61.125])
-    fine, own = truth_at(golden_of(golden.scene.with_values(["run.t_end=72"])), t), by_function(golden, t)
-    states, apart = fine.states, np.abs((own.states - fine.states) + (own.low - fine.low)).max(axis=0)
-    assert 0 < apart[:3].max() <= own.bound_m < 2e-15  # z is 67 m, and a double of it is off by 7e-15
+    fine, own = (
+        truth_at(golden_of(golden.scene.with_values(["run.t_end=72"])), t),
+        by_function(golden, t),
+    )
+    states, apart = (
+        fine.states,
+        np.abs((own.states - fine.states) + (own.low - fine.low)).max(axis=0),
+    )
+    # z is 67 m, and a double of it is off by 7e-15
+    assert 0 < apart[:3].max() <= own.bound_m < 2e-15
     assert apart[3:].max() <= own.bound_m_s
-    for error, tolerance, alone in ((3e-13, 2e-13, True), (1e-15, 2e-15, False), (2e-15, 1e-15, False)):
+    for error, tolerance, alone in (
+        (3e-13, 2e-13, True),
+        (1e-15, 2e-15, False),
+        (2e-15, 1e-15, False),
+    ):
         columns = {"t": t, "x": states[:, 0] + error, "y": states[:, 1]}
         score = judge(columns, "pole", tolerance=tolerance, explain=False)
         assert score.golden.manifest.alone is alone
@@ -199,7 +219,10 @@ def test_where_the_bound_of_the_function_could_change_the_verdict_more_digits_de
 def test_a_new_scene_is_solved_no_further_than_the_verdict_needs(own_cache):
     scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
     t = np.array([0.5, 7.25, 19.0])
-    states, said = truth_at(golden_of(scene.with_values(["inputs=binary64"])), t).states, list[str]()
+    states, said = (
+        truth_at(golden_of(scene.with_values(["inputs=binary64"])), t).states,
+        list[str](),
+    )
     shutil.rmtree(own_cache)
     columns = {"t": t, "x": states[:, 0] + 1e-9, "y": states[:, 1]}
     score = judge(columns, scene, announce=said.append)
@@ -234,7 +257,9 @@ def test_of_a_scene_that_ships_it_is_said_why_it_is_solved(name, change, why):
         golden_of(load_scene(name, [change]), announce=stop)
 
 
-@pytest.mark.parametrize("name", ["pole", "near_inverted", "conical", "stability_below", "ten_kilometres", "museum"])
+@pytest.mark.parametrize(
+    "name", ["pole", "near_inverted", "conical", "stability_below", "ten_kilometres", "museum"]
+)
 def test_the_input_floor_of_what_ships_is_that_of_first_order(name):
     scene = load_scene(name)
     end = float(scene.exact.t_end)

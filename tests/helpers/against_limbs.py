@@ -67,7 +67,9 @@ def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Compari
     return found
 
 
-def _one(found: Comparison, rows: Rows, run: Outcomes, estimate: Errors | None, i: int, inputs: Inputs) -> None:
+def _one(
+    found: Comparison, rows: Rows, run: Outcomes, estimate: Errors | None, i: int, inputs: Inputs
+) -> None:
     swings = estimate is not None and run.apsides[i] > 1
     seen = (Fraction(run.apsis_first[i]), Fraction(run.apsis_last[i])) if swings else ()
     exact, own = truth(inputs, seen), run.transit_row == i
@@ -79,12 +81,18 @@ def _one(found: Comparison, rows: Rows, run: Outcomes, estimate: Errors | None, 
     transits = exact.transits
     times = transits["t"] if transits is not None else np.zeros(0)
     directions = np.array(exact.directions)
-    if len(times) != own.sum() or run.transits[i] != len(times) or (run.transit_direction[own] != directions).any():
+    if (
+        len(times) != own.sum()
+        or run.transits[i] != len(times)
+        or (run.transit_direction[own] != directions).any()
+    ):
         found.miscounted.append(inputs)
         return
     late = np.abs(run.transit_t[own] - times)
     if len(times):
-        found.worst_time = max(found.worst_time, float((late * np.abs(transits["ax"])).max()) / length)
+        found.worst_time = max(
+            found.worst_time, float((late * np.abs(transits["ax"])).max()) / length
+        )
     if estimate is None:
         return
     found.judge(inputs, "position", position, estimate.position[i])
@@ -101,30 +109,44 @@ def _one(found: Comparison, rows: Rows, run: Outcomes, estimate: Errors | None, 
 
 
 def _judge_swing(
-    found: Comparison, rows: Rows, run: Outcomes, estimate: Errors, i: int, inputs: Inputs, exact: Any
+    found: Comparison,
+    rows: Rows,
+    run: Outcomes,
+    estimate: Errors,
+    i: int,
+    inputs: Inputs,
+    exact: Any,
 ) -> None:
     """Judge swing frequency, precession and largest angle.
 
     Half turns and the number of highest points are the run's own; they cannot be off by one unnoticed, as the first and
     the last are judged.
     """
-    (first, start, low), (last, end, high) = (_highest(rows, i, inputs, exact, place) for place in (1, 2))
+    (first, start, low), (last, end, high) = (
+        _highest(rows, i, inputs, exact, place) for place in (1, 2)
+    )
     span, own_span = last - first, run.apsis_last[i] - run.apsis_first[i]
     gaps = run.apsides[i] - 1
-    found.judge(inputs, "swing", abs(float(gaps / (2 * span)) - gaps / (2 * own_span)), estimate.swing[i])
+    found.judge(
+        inputs, "swing", abs(float(gaps / (2 * span)) - gaps / (2 * own_span)), estimate.swing[i]
+    )
     turn = end - start + np.pi * round((run.turn[i] - (end - start)) / np.pi)
     error = abs(turn / float(span) - run.turn[i] / own_span) * DEGREES_PER_HOUR
     found.judge(inputs, "precession", error, estimate.precession[i])
     release = _angle(_exact(rows.n[i]), _exact(rows.pull[i]))
-    missed = max(low, high, release) - run.largest_angle[i]  # other points may be higher, none may be missed
+    # other points may be higher, none may be missed
+    missed = max(low, high, release) - run.largest_angle[i]
     found.judge(inputs, "angle", np.degrees(max(missed, 0.0)), estimate.angle[i])
 
 
-def _highest(rows: Rows, i: int, inputs: Inputs, exact: Any, place: int) -> tuple[Fraction, float, float]:
+def _highest(
+    rows: Rows, i: int, inputs: Inputs, exact: Any, place: int
+) -> tuple[Fraction, float, float]:
     """Return time, azimuth and angle of the highest point next to a time of the grid: one step of Newton's method."""
     grid, length = exact.grid, inputs.length
     n, velocity = (
-        tuple(grid.exact(name)[place] / length for name in names) for names in (("x", "y", "z"), ("vx", "vy", "vz"))
+        tuple(grid.exact(name)[place] / length for name in names)
+        for names in (("x", "y", "z"), ("vx", "vy", "vz"))
     )
     pull, turn = _exact(rows.pull[i]), _exact(rows.turn[i])
     inertial = add(velocity, cross(turn, n))
@@ -135,7 +157,11 @@ def _highest(rows: Rows, i: int, inputs: Inputs, exact: Any, place: int) -> tupl
     at = add(n, scale(late, velocity))
     size = np.hypot(float(pull[1]), float(pull[2]))
     meridian = float(-at[1] * pull[2] + at[2] * pull[1]) / size
-    return exact.plan.times[place] + late, float(np.arctan2(meridian, float(at[0]))), _angle(at, pull)
+    return (
+        exact.plan.times[place] + late,
+        float(np.arctan2(meridian, float(at[0]))),
+        _angle(at, pull),
+    )
 
 
 def _exact(pairs: Any) -> tuple[Fraction, ...]:

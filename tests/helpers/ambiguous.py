@@ -22,8 +22,16 @@ PLACES = (  # length, latitude, x, y, t_end, grid_step
     ("2", "-33.5", "0.06", "0.05", "60", "0.2"),
     ("27", "30", "0.7", "0.5", "200", "0.5"),
 )
-FIELDS = ("pendulum.length", "site.latitude", "release.x", "release.y", "run.t_end", "run.grid_step")
-SAME = {"gtimes": "g", "ltimes": "l", "ratetimes": "rate", "counts_ends": "fast"}  # words that change one thing
+FIELDS = (
+    "pendulum.length",
+    "site.latitude",
+    "release.x",
+    "release.y",
+    "run.t_end",
+    "run.grid_step",
+)
+# words that change one thing
+SAME = {"gtimes": "g", "ltimes": "l", "ratetimes": "rate", "counts_ends": "fast"}
 MISTAKES = (  # what is told the program after its placeholders, what is true of it, the place
     ({"fast": "1.0001"}, "clock", 0),
     ({"fast": "0.99995"}, "clock", 1),
@@ -79,7 +87,10 @@ class Ambiguous:
 
 
 def ambiguous(
-    number: int, compiled: Path, node: str, given: Sequence[tuple[dict[str, str], str, int]] = MISTAKES
+    number: int,
+    compiled: Path,
+    node: str,
+    given: Sequence[tuple[dict[str, str], str, int]] = MISTAKES,
 ) -> Ambiguous:
     """Return the program of a number, with the compiled `mistaken.c` and the path of Node.js."""
     mistakes, true, place = given[number]
@@ -92,8 +103,14 @@ def ambiguous(
     }
     values = [f"{field}={value}" for field, value in zip(FIELDS, PLACES[place], strict=True)]
     settings = [word for value in (*values, "run.transits=false") for word in ("--set", value)]
-    words = [f"{key}={value}" for key, value in (*GIVEN.items(), *mistakes.items())]  # the last of a name counts
-    return Ambiguous(language, settings, " ".join([*map(shlex.quote, runs[language]), *words]), frozenset(true.split()))
+    # the last of a name counts
+    words = [f"{key}={value}" for key, value in (*GIVEN.items(), *mistakes.items())]
+    return Ambiguous(
+        language,
+        settings,
+        " ".join([*map(shlex.quote, runs[language]), *words]),
+        frozenset(true.split()),
+    )
 
 
 def words_said(ids: set[str]) -> set[str]:
@@ -130,7 +147,9 @@ def drawn(seed: int, count: int) -> Iterator[tuple[dict[str, str], str, int]]:
         mistakes, words, used = dict[str, str](), list[str](), set[str]()
         for chosen, true in draw.sample(kinds, draw.choice((1, 1, 2))):
             touched = {
-                {"gtimes": "g", "ltimes": "l", "ratetimes": "rate", "counts_ends": "fast"}.get(key, key)
+                {"gtimes": "g", "ltimes": "l", "ratetimes": "rate", "counts_ends": "fast"}.get(
+                    key, key
+                )
                 for key in chosen
             }
             if not touched & used:

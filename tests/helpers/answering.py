@@ -39,7 +39,9 @@ class Answers(Measurement[tuple[str, str], Answer]):
             signal.pause()
         if word == "dies":
             os._exit(3)
-        return Answer(f"{word} {self.offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"])
+        return Answer(
+            f"{word} {self.offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"]
+        )
 
     def failed(self, item: tuple[str, str], status: Status, reason: str) -> Answer:
         return Answer(f"{item[-1]}: {reason}", status)

@@ -31,7 +31,9 @@ def defects_hold(module):
     for kind in range(120):
         a = unit(rng) * rng.choice([1, 0.5, 2])
         across = cross(a, unit(rng))
-        b = [across / np.linalg.norm(across), a / np.linalg.norm(a), 0 * a][kind % 3] * rng.choice([1e-3, 1])
+        b = [across / np.linalg.norm(across), a / np.linalg.norm(a), 0 * a][kind % 3] * rng.choice(
+            [1e-3, 1]
+        )
         omega, off = (
             np.array([0, 0, rng.choice([0, 1.0])]),
             np.array([0, *rng.normal(size=2)]) * rng.choice([0, 1e-3, 1]),
@@ -41,7 +43,12 @@ def defects_hold(module):
         if kind % 5 == 0:  # perpendicular to p
             off = np.array([0, -a[2], a[1]]) * rng.choice([1e-3, 1])
         if kind == 0:  # all of it is in the first term
-            a, b, omega, off = np.array([0, 0.6, 0.8]), np.array([0.05, 0, 0]), np.zeros(3), np.array([0, 6e-4, 8e-4])
+            a, b, omega, off = (
+                np.array([0, 0.6, 0.8]),
+                np.array([0.05, 0, 0]),
+                np.zeros(3),
+                np.array([0, 6e-4, 8e-4]),
+            )
         drag, more = rng.choice([0, 0.5]) * (kind > 0), rng.choice([0, 0.25]) * (kind > 0)
         d2, jump, actual, jumped = made_up(module, a, b, omega, off, drag, more, rng)
         assert actual <= d2 * SLACK, (kind, actual, d2)
@@ -52,7 +59,9 @@ def growth_holds(module):
     """Lemma 11.4 at made-up numbers: a radius is at least what its own rate makes of it, or it is refused."""
     rng, accepted = np.random.default_rng(4), 0
     for _ in range(400):
-        eta, jump, d1, d2, tau, speed, c, drag, omega, below, above = rng.uniform(size=11) * rng.choice([0, 1], size=11)
+        eta, jump, d1, d2, tau, speed, c, drag, omega, below, above = rng.uniform(
+            size=11
+        ) * rng.choice([0, 1], size=11)
         w, span, p, rate = rng.uniform(0.1, 2, size=4) * (1, 0.2, 1, rng.choice([0, 1]))
         eta += 0.1
         names = ["w", "speed", "c_size", "drag_size", "omega_size", "below", "above"]
@@ -80,7 +89,13 @@ def growth_holds(module):
 
 def parts_hold(module):
     """Parts of a step cover it, from one time to another, and are short."""
-    for begin, end in ((0, 0), (0, Fraction(1, 3)), (Fraction(1, 5), 2), (-1, Fraction(1, 7)), (1, 3)):
+    for begin, end in (
+        (0, 0),
+        (0, Fraction(1, 3)),
+        (Fraction(1, 5), 2),
+        (-1, Fraction(1, 7)),
+        (1, 3),
+    ):
         piece = SimpleNamespace(step=SimpleNamespace(centre=Fraction(1), h=Fraction(2)))
         parts = module.spread(piece, Fraction(begin), Fraction(end))
         for k in range(101):
@@ -101,7 +116,9 @@ def made_up(module, a, b, omega, off, drag, more, rng):
     balls.turning = [arb(x) + arb(0, abs(y)) for x, y in zip(omega, off, strict=True)]
     balls.damping = arb(drag) + arb(0, more)
     rows = tuple([int(x * UNIT), int(y * UNIT)] for x, y in zip(a, b, strict=True))
-    step = TaylorStep(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, (*rows, [0, 0]), EARTH)
+    step = TaylorStep(
+        Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, (*rows, [0, 0]), EARTH
+    )
     bound = module.BoxRadius(balls)
     gap = rng.normal(size=3) * rng.choice([0, 0.1])
     start = a + gap
@@ -124,8 +141,16 @@ def made_up(module, a, b, omega, off, drag, more, rng):
 SHORT_RUNS = {  # close to equality: in small steps, and early
     "length": ({"rotation_rate": "0"}, {"length": "0.1"}, 9),
     "gravity": ({"rotation_rate": "0"}, {"gravity": "0.01"}, 9),
-    "rate": ({"gravity_is": "effective", "rotation_rate": "0", "x": "20"}, {"rotation_rate": "1e-6"}, 1),
-    "latitude": ({"gravity_is": "effective", "rotation_rate": "1e-4", "x": "20"}, {"latitude": "0.01"}, 1),
+    "rate": (
+        {"gravity_is": "effective", "rotation_rate": "0", "x": "20"},
+        {"rotation_rate": "1e-6"},
+        1,
+    ),
+    "latitude": (
+        {"gravity_is": "effective", "rotation_rate": "1e-4", "x": "20"},
+        {"latitude": "0.01"},
+        1,
+    ),
     "lean": ({"rotation_rate": "0.001", "x": "0", "y": "0"}, {"latitude": "0.01"}, 9),
     "altitude": ({"rotation_rate": "0.001", "x": "0", "y": "0"}, {"altitude": "1000"}, 9),
     "radius": ({"rotation_rate": "0.001", "x": "0", "y": "0"}, {"equatorial_radius": "1000"}, 9),
@@ -138,11 +163,27 @@ SHORT_RUNS = {  # close to equality: in small steps, and early
     "angle_rate": ({"angles": ("20", "30", "1", "2")}, {"angle_rate": "0.001"}, 1),
     "azimuth_rate": ({"angles": ("20", "30", "1", "2")}, {"azimuth_rate": "0.001"}, 1),
     "large": ({"angles": ("60", "30", "20", "2")}, {"angle": "0.3"}, 3),
-    "gravity and v": ({"rotation_rate": "0", "x": "0", "y": "0", "vx": "1", "vy": "0.5"}, {"gravity": "0.1"}, 9),
-    "gravity and y": ({"rotation_rate": "0", "x": "0", "y": "1", "vx": "0.1"}, {"gravity": "0.1"}, 9),
+    "gravity and v": (
+        {"rotation_rate": "0", "x": "0", "y": "0", "vx": "1", "vy": "0.5"},
+        {"gravity": "0.1"},
+        9,
+    ),
+    "gravity and y": (
+        {"rotation_rate": "0", "x": "0", "y": "1", "vx": "0.1"},
+        {"gravity": "0.1"},
+        9,
+    ),
     "nearly upright": ({"length": "1", "angles": ("170", "30", "0", "0")}, {"angle": "1e-9"}, 2),
-    "narrow": ({"rotation_rate": "0.001", "latitude": "20", "altitude": "1000"}, {"length": "1e-9"}, 9),
-    "narrow, effective": ({"rotation_rate": "0.001", "gravity_is": "effective"}, {"length": "1e-9"}, 9),
+    "narrow": (
+        {"rotation_rate": "0.001", "latitude": "20", "altitude": "1000"},
+        {"length": "1e-9"},
+        9,
+    ),
+    "narrow, effective": (
+        {"rotation_rate": "0.001", "gravity_is": "effective"},
+        {"length": "1e-9"},
+        9,
+    ),
     "wide": derivative_truths.WIDE,
     "all of it": (
         {"rotation_rate": "0.001", "y": "0", "x": "3"},
@@ -159,7 +200,10 @@ def runs_hold(module, names=SHORT_RUNS):
     """Pendulums at the corners of a box lie inside, in states and zeros."""
     for name in names:
         changes, widths, end = SHORT_RUNS[name]
-        box = widened(scene(t_end=str(end), **{"drag": "1e-3", **changes} if name == "drag" else changes), widths)
+        box = widened(
+            scene(t_end=str(end), **{"drag": "1e-3", **changes} if name == "drag" else changes),
+            widths,
+        )
         times = [Fraction(end * k, 40) for k in range(41)]
         windows = module.Windows(box, BITS + 64, times, WORDS)
         chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), BITS, 24).chain(Fraction(1, 16)))
@@ -180,7 +224,9 @@ def runs_hold(module, names=SHORT_RUNS):
 
 def chain_rule_holds(module, names=derivative_truths.RUNS):
     """What derivatives are made of, by derivatives as they are."""
-    derivative_truths.runs_hold(reference.enclosure.trusted.derivatives, names, ("box", "point"), module.Windows)
+    derivative_truths.runs_hold(
+        reference.enclosure.trusted.derivatives, names, ("box", "point"), module.Windows
+    )
 
 
 def all_hold(module, long):

@@ -26,20 +26,42 @@ from reference.solver.proof_steps import Feed
 TRUTH_BITS = 133  # forty digits
 WORDS = (XDOT, "highest", "gate 0", "turn 100")
 ROUNDING = Fraction(1, 10**30)  # of such a run, in parts of the largest number
-NAMES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
-PLAIN = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
+NAMES = {
+    "position": ("x", "y", "vx", "vy"),
+    "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate"),
+}
+PLAIN = (
+    "length",
+    "drag",
+    "latitude",
+    "altitude",
+    "gravity",
+    "rotation_rate",
+    "equatorial_radius",
+    "flattening",
+)
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 
 # scene, end in s, halves of widths
 BOXES: dict[str, tuple[dict[str, Any], int | Fraction, dict[str, str]]] = {
     "paris": ({}, 300, {"length": "0.001", "gravity": "1e-5", "latitude": "0.001"}),
     "release": ({}, 200, {"x": "0.001", "y": "0.002", "vx": "0.0001", "vy": "0.0002"}),
-    "damped": ({"length": "10", "drag": "0.01", "x": "0.5", "y": "0.1"}, 100, {"length": "0.001", "drag": "1e-4"}),
+    "damped": (
+        {"length": "10", "drag": "0.01", "x": "0.5", "y": "0.1"},
+        100,
+        {"length": "0.001", "drag": "1e-4"},
+    ),
     "only drag": ({"length": "10", "drag": "0.02", "x": "0.3", "y": "0.1"}, 60, {"drag": "0.001"}),
     "fast": (
         {"length": "3", "angles": ("70", "30", "20", "10"), **FAST},
         2,
-        {"length": "1e-5", "gravity": "1e-5", "latitude": "1e-3", "rotation_rate": "1e-5", "angle": "1e-4"}
+        {
+            "length": "1e-5",
+            "gravity": "1e-5",
+            "latitude": "1e-3",
+            "rotation_rate": "1e-5",
+            "angle": "1e-4",
+        }
         | {"azimuth": "1e-4", "angle_rate": "1e-4", "azimuth_rate": "1e-4", "altitude": "1e-3"}
         | {"equatorial_radius": "1e-3", "flattening": "1e-5"},
     ),
@@ -48,23 +70,51 @@ BOXES: dict[str, tuple[dict[str, Any], int | Fraction, dict[str, str]]] = {
         5,
         {"length": "1e-4", "drag": "1e-5", "latitude": "1e-3", "rotation_rate": "1e-5"},
     ),
-    "latitude alone": ({"rotation_rate": "0.02", "equatorial_radius": "1000"}, 100, {"latitude": "0.02"}),
-    "rate alone": ({"rotation_rate": "0.02", "equatorial_radius": "1000"}, 100, {"rotation_rate": "1e-5"}),
-    "equator": ({"latitude": "0", "rotation_rate": "0.01", "equatorial_radius": "99"}, 100, {"latitude": "0.05"}),
+    "latitude alone": (
+        {"rotation_rate": "0.02", "equatorial_radius": "1000"},
+        100,
+        {"latitude": "0.02"},
+    ),
+    "rate alone": (
+        {"rotation_rate": "0.02", "equatorial_radius": "1000"},
+        100,
+        {"rotation_rate": "1e-5"},
+    ),
+    "equator": (
+        {"latitude": "0", "rotation_rate": "0.01", "equatorial_radius": "99"},
+        100,
+        {"latitude": "0.05"},
+    ),
     "wide": (
         {"length": "1", "angles": ("60", "30", "0", "0")},
         3,
         {"length": "1e-4", "angle": "1e-3", "gravity": "1e-4"},
     ),
-    "very wide": ({"length": "1", "angles": ("110", "30", "0", "0")}, 3, {"length": "1e-8", "angle": "1e-7"}),
-    "pole": ({"latitude": "89.9", "x": "0", "y": "1"}, 100, {"length": "0.001", "gravity": "1e-4", "latitude": "0.05"}),
+    "very wide": (
+        {"length": "1", "angles": ("110", "30", "0", "0")},
+        3,
+        {"length": "1e-8", "angle": "1e-7"},
+    ),
+    "pole": (
+        {"latitude": "89.9", "x": "0", "y": "1"},
+        100,
+        {"length": "0.001", "gravity": "1e-4", "latitude": "0.05"},
+    ),
     "along the meridian": (
         {"x": "0", "y": "0.5", "rotation_rate": "0.001"},
         60,
         {"length": "0.001", "latitude": "0.1"},
     ),
-    "south": ({"latitude": "-33.3", "vx": "0.05"}, 100, {"length": "0.01", "vx": "1e-4", "latitude": "0.1"}),
-    "effective": ({"gravity_is": "effective", "x": "1", "y": "0"}, 100, {"gravity": "1e-3", "length": "0.01"}),
+    "south": (
+        {"latitude": "-33.3", "vx": "0.05"},
+        100,
+        {"length": "0.01", "vx": "1e-4", "latitude": "0.1"},
+    ),
+    "effective": (
+        {"gravity_is": "effective", "x": "1", "y": "0"},
+        100,
+        {"gravity": "1e-3", "length": "0.01"},
+    ),
     "effective, fast": (
         {"gravity_is": "effective", "x": "1", "y": "0.3", "rotation_rate": "0.01"},
         60,
@@ -73,17 +123,39 @@ BOXES: dict[str, tuple[dict[str, Any], int | Fraction, dict[str, str]]] = {
     "no turning": ({"rotation_rate": "0"}, 100, {"length": "0.01", "rotation_rate": "1e-5"}),
     # the rest position of each pendulum, through which its gate goes, is another one
     "turning table": (
-        {"gravity_is": "effective", "length": "1", "x": "0.1", "y": "0", "vy": "0.5", "rotation_rate": "0.3"},
+        {
+            "gravity_is": "effective",
+            "length": "1",
+            "x": "0.1",
+            "y": "0",
+            "vy": "0.5",
+            "rotation_rate": "0.3",
+        },
         Fraction(3, 250),
         {"rotation_rate": "0.03"},
     ),
     "turning table, all inputs": (
-        {"length": "2", "x": "0.2", "y": "0.05", "vy": "0.3", "rotation_rate": "0.2", "equatorial_radius": "20"},
+        {
+            "length": "2",
+            "x": "0.2",
+            "y": "0.05",
+            "vy": "0.3",
+            "rotation_rate": "0.2",
+            "equatorial_radius": "20",
+        },
         2,
         {"rotation_rate": "1e-4", "latitude": "0.01", "length": "1e-4"},
     ),
-    "1 mm": ({"length": "0.001", "x": "0.0001", "y": "0.00002"}, 1, {"length": "1e-8", "x": "1e-9"}),
-    "10 km": ({"length": "10000", "x": "100", "y": "50"}, 1000, {"length": "1", "gravity": "1e-4", "vy": "0.01"}),
+    "1 mm": (
+        {"length": "0.001", "x": "0.0001", "y": "0.00002"},
+        1,
+        {"length": "1e-8", "x": "1e-9"},
+    ),
+    "10 km": (
+        {"length": "10000", "x": "100", "y": "50"},
+        1000,
+        {"length": "1", "gravity": "1e-4", "vy": "0.01"},
+    ),
     # a transit may be later than the next one of another
     "late": ({"rotation_rate": "0", "x": "0.01", "y": "0.003"}, 400, {"length": "1.5"}),
     "tiny box": ({}, 100, {"length": "1e-25", "latitude": "1e-24"}),
@@ -116,7 +188,9 @@ def proof_of(box: Box, times: list[Fraction], halves: dict[str, Fraction] | None
     def steps(bits: int, end: Fraction) -> Any:
         return Feed(box.inputs, (end,), "limbs", 1)(bits)
 
-    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None, zeros=WORDS)
+    return enclose_box(
+        box, times, steps, halves=halves, derivatives=halves is not None, zeros=WORDS
+    )
 
 
 def inputs_of(box: Box) -> dict[str, Fraction]:
@@ -140,7 +214,9 @@ def moved(inputs: Inputs, name: str, off: Fraction) -> Inputs:
     if short not in NAMES[kind]:
         return replace(inputs, **{short: getattr(inputs, short) + off})
     numbers = zip(NAMES[kind], getattr(inputs, kind), strict=True)
-    return replace(inputs, **{kind: tuple(value + off * (other == short) for other, value in numbers)})
+    return replace(
+        inputs, **{kind: tuple(value + off * (other == short) for other, value in numbers)}
+    )
 
 
 def wrong_derivatives(found: Any, inputs: Inputs, name: str) -> list[str]:
@@ -152,10 +228,13 @@ def wrong_derivatives(found: Any, inputs: Inputs, name: str) -> list[str]:
 
     def check(what: str, high: Fraction, low: Fraction, interval: Any) -> None:
         slope = (high - low) / (2 * off)
-        slack = ROUNDING * abs(slope) + Fraction(1, 10**20) * abs(slope)  # of the third derivative, too
+        # of the third derivative, too
+        slack = ROUNDING * abs(slope) + Fraction(1, 10**20) * abs(slope)
         slack += Fraction(1, 10**24)  # of runs with forty digits, over twice `off`
         if not interval.low - slack <= slope <= interval.high + slack:
-            wrong.append(f"{name}, {what}: {float(slope)} not in {float(interval.low)} to {float(interval.high)}")
+            wrong.append(
+                f"{name}, {what}: {float(slope)} not in {float(interval.low)} to {float(interval.high)}"
+            )
 
     for i, column in enumerate(GRID):
         pairs = zip(up.grid.exact(column), down.grid.exact(column), found.states, strict=True)
@@ -164,14 +243,19 @@ def wrong_derivatives(found: Any, inputs: Inputs, name: str) -> list[str]:
     for word, every in found.zeros.items():
         points = [azimuths(run, word) for run in (up, down)]
         for z, led in zip(found.proved.zeros[word], every, strict=True):
-            near = [[p for p in run if z.t.low - 1000 * off <= p[0] <= z.t.high + 1000 * off] for run in points]
+            near = [
+                [p for p in run if z.t.low - 1000 * off <= p[0] <= z.t.high + 1000 * off]
+                for run in points
+            ]
             if led.times and all(len(zeros) == 1 for zeros in near):
                 (high, turned), (low, before) = near[0][0], near[1][0]
                 check(f"{word} at {float(z.t.low)}", high, low, led.times[j])
                 if led.azimuths:
                     turn = turned - before
                     turn -= 360 * round(turn / 360)
-                    check(f"azimuth of {word} at {float(z.t.low)}", turn, Fraction(0), led.azimuths[j])
+                    check(
+                        f"azimuth of {word} at {float(z.t.low)}", turn, Fraction(0), led.azimuths[j]
+                    )
     return wrong
 
 
@@ -179,10 +263,16 @@ def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
     """Return inputs from a box, at a corner of it or from inside."""
 
     def pick(low: Fraction, high: Fraction) -> Fraction:
-        return rng.choice((low, high)) if corner else low + (high - low) * Fraction(rng.randrange(1001), 1000)
+        return (
+            rng.choice((low, high))
+            if corner
+            else low + (high - low) * Fraction(rng.randrange(1001), 1000)
+        )
 
     kind = "position" if box.inputs.position else "angles"
-    changes: dict[str, Any] = {name: pick(getattr(box.low, name), getattr(box.high, name)) for name in PLAIN}
+    changes: dict[str, Any] = {
+        name: pick(getattr(box.low, name), getattr(box.high, name)) for name in PLAIN
+    }
     changes[kind] = tuple(map(pick, getattr(box.low, kind), getattr(box.high, kind)))
     return replace(box.inputs, **changes)
 
@@ -222,14 +312,23 @@ def outside(proved: ProvedBox, run: Run) -> list[str]:
             found.append(f"{what} {float(value)} not in [{float(low)}, {float(high)}]")
 
     for i, name in enumerate(GRID):
-        for time, value, state in zip(proved.times, run.grid.exact(name), proved.states, strict=True):
+        for time, value, state in zip(
+            proved.times, run.grid.exact(name), proved.states, strict=True
+        ):
             check(f"{name} at {float(time)}:", value, state[i].low, state[i].high)
     for word, zeros in proved.zeros.items():
         columns, rows = columns_of(word), rows_of(run, word)
         directions = run.zeros[word].directions if rows else []
         # which zeros each row may be
-        near = [[z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING] for row in rows]
-        found += [f"{word} at {float(row[0])} is lost" for row, inside in zip(rows, near, strict=True) if not inside]
+        near = [
+            [z for z in zeros if z.t.low - ROUNDING <= row[0] <= z.t.high + ROUNDING]
+            for row in rows
+        ]
+        found += [
+            f"{word} at {float(row[0])} is lost"
+            for row, inside in zip(rows, near, strict=True)
+            if not inside
+        ]
 
         # each single zero has a row of its own, but for those that may come after the end
         unused = [*near]
@@ -264,7 +363,11 @@ def widths_over_hulls(proved: ProvedBox, runs: Sequence[Run]) -> dict[str, float
     for i, name in enumerate(GRID):
         columns = list(zip(*(run.grid.exact(name) for run in runs), strict=True))
         hull = max(max(values) - min(values) for values in columns)
-        ratios[name] = float(max(state[i].high - state[i].low for state in proved.states[1:]) / hull) if hull else 0.0
+        ratios[name] = (
+            float(max(state[i].high - state[i].low for state in proved.states[1:]) / hull)
+            if hull
+            else 0.0
+        )
     return ratios
 
 

@@ -17,7 +17,9 @@ from compare.diagnosis.programs import Program
 
 PAGE, BEFORE = ROOT / "docs/oracle.md", "## All causes\n"
 FAMILIES = ("gravity_", "integrator_", "frame_")  # of whose words one line speaks
-RIGHT = Program(9.80665, 67.0, 48.846, 7.292115e-5, 6378137.0, 1 / 298.257, 0.0, 0.001, 0.3, 0.4, 0.01, 0.02)
+RIGHT = Program(
+    9.80665, 67.0, 48.846, 7.292115e-5, 6378137.0, 1 / 298.257, 0.0, 0.001, 0.3, 0.4, 0.01, 0.02
+)
 DO = {
     "no_centrifugal": "Add −Ω × (Ω × (R + r)), or judge against a scene whose g is the measured one.",
     "effective_gravity": "If your g is the measured one, say `--set site.gravity_is=effective`; else add the force.",
@@ -84,7 +86,10 @@ HABITS = {  # of a file: words, what is said of it, what to do
     "single_precision": ("holds numbers in single precision", "Compute and write in double."),
     "z_down": ("counts z downwards", "Nothing: it is converted."),
     "z_from_lowest": ("counts z from the lowest point", "Nothing: it is converted."),
-    "z_offset": ("has z too high or too low by the same in every row", "Count z from the suspension, upwards."),
+    "z_offset": (
+        "has z too high or too low by the same in every row",
+        "Count z from the suspension, upwards.",
+    ),
     "vertical_is_not_z": ("calls the vertical x or y", "Nothing: it is converted."),
     "z_constant": (conventions.FLAT, "Write the height, or leave the column out."),
     "off_the_sphere": (conventions.SPRING, "Put the bob back on the sphere after each step."),
@@ -92,15 +97,24 @@ HABITS = {  # of a file: words, what is said of it, what to do
         "is in another unit than metres or than its header says, or in cord lengths",
         "Name the unit in the header, or say `--units`.",
     ),
-    "unit_of_time": ("counts time in another unit than seconds", "Name the unit in the header, or say `--units`."),
-    "angles": ("gives x and y as angles of the cord", "Write x and y in metres, or name the columns as angles."),
+    "unit_of_time": (
+        "counts time in another unit than seconds",
+        "Name the unit in the header, or say `--units`.",
+    ),
+    "angles": (
+        "gives x and y as angles of the cord",
+        "Write x and y in metres, or name the columns as angles.",
+    ),
     "x_west, y_south, xy_reversed, xy_swapped, axes_turned": (
         "has other horizontal axes",
         "Let x point east and y north.",
     ),
     "clock_offset": ("starts its clock late", "Let the clock be 0 at the release."),
     "rows_reversed": ("has its rows in reverse order", "Write the rows in order of time."),
-    "rows_late, rows_early": ("has its clock behind or ahead of its rows", "Print time and state of the same moment."),
+    "rows_late, rows_early": (
+        "has its clock behind or ahead of its rows",
+        "Print time and state of the same moment.",
+    ),
 }
 
 
@@ -111,7 +125,9 @@ def causes() -> dict[str, str]:
     for right in (RIGHT, replace(RIGHT, gravity_reading="effective")):
         for released in (True, False):
             for kind in ("sphere", "linear", "angle"):
-                case: Any = SimpleNamespace(right=right, released=released, rows=rows, intervals=1440)
+                case: Any = SimpleNamespace(
+                    right=right, released=released, rows=rows, intervals=1440
+                )
                 for cause in causes_of(case, kind):
                     family = next((one for one in FAMILIES if cause.id.startswith(one)), cause.id)
                     said.setdefault(family, cause.text.replace("{value}", "…"))
@@ -126,7 +142,9 @@ def lines() -> Iterator[str]:
     """
     said = causes()
     if set(said) != set(DO):
-        raise SystemExit(f"{__file__}: DO lacks {set(said) - set(DO)}, and has for nothing {set(DO) - set(said)}")
+        raise SystemExit(
+            f"{__file__}: DO lacks {set(said) - set(DO)}, and has for nothing {set(DO) - set(said)}"
+        )
     yield "The word stands in the JSON document (`causes`). A word that ends in … stands for several."
     yield ""
     yield "| word | your program … | what to do |"

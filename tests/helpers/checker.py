@@ -31,7 +31,13 @@ def compiled(folder: Path, *options: str) -> Check:
         environment = os.environ | ENVIRONMENT
         command = [program, dataset]
         return subprocess.run(
-            command, capture_output=True, text=True, errors="replace", env=environment, check=False, timeout=MOST_S
+            command,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            env=environment,
+            check=False,
+            timeout=MOST_S,
         )
 
     for libraries in LIBRARIES:

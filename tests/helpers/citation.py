@@ -34,7 +34,9 @@ def lines(told: dict[str, Any]) -> Iterator[str]:
     """Yield its lines, but for the paper."""
     version = told["version"]
     found = re.search(
-        rf"^## {re.escape(version)} \((\d{{4}}-\d\d-\d\d)\)$", CHANGELOG.read_text(encoding="utf-8"), re.M
+        rf"^## {re.escape(version)} \((\d{{4}}-\d\d-\d\d)\)$",
+        CHANGELOG.read_text(encoding="utf-8"),
+        re.M,
     )
     if found is None:
         raise SystemExit(
@@ -56,7 +58,11 @@ def lines(told: dict[str, Any]) -> Iterator[str]:
     for author in told["authors"]:
         given, _, family = author["name"].rpartition(" ")
         person = "email" in author  # a group has a name alone
-        yield f"  - family-names: {family}\n    given-names: {given}" if person else f"  - name: {author['name']}"
+        yield (
+            f"  - family-names: {family}\n    given-names: {given}"
+            if person
+            else f"  - name: {author['name']}"
+        )
 
 
 if __name__ == "__main__":

@@ -23,7 +23,8 @@ def page() -> str:
     text = get_docs_for_click(obj=command, ctx=context, name="foucault").partition("\n")[2].strip()
     for name in command.list_commands(context):
         first = str(command.get_command(context, name).help).partition("\n")[0]
-        text = re.sub(rf"^\* `{name}`: .*$", f"* `{name}`: {first}", text, flags=re.M)  # it is cut there
+        # it is cut there
+        text = re.sub(rf"^\* `{name}`: .*$", f"* `{name}`: {first}", text, flags=re.M)
     text = text.replace("\n## `", "\n### `").replace("```console\n", "```text\n")
     return f"{PAGE.read_text(encoding='utf-8').partition(BEFORE)[0]}{BEFORE}\n{text}\n"
 

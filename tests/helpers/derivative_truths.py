@@ -34,7 +34,9 @@ def unit(rng):
 
 def cross(a, b):
     """np.cross, which is slow for single vectors."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def residuals_hold(module):
@@ -50,7 +52,9 @@ def residuals_hold(module):
         way = SimpleNamespace(turn=balls(turn), slow=arb(slow))
         poly = [[arb_poly(balls(column)) for column in rows.T] for rows in (p, K, P, Q)]
         with ctx.workprec(128):
-            found = module.residuals(SimpleNamespace(k=k), balls(omega), *poly[:2], way, [*poly[2], *poly[3]])
+            found = module.residuals(
+                SimpleNamespace(k=k), balls(omega), *poly[:2], way, [*poly[2], *poly[3]]
+            )
         turn, slow = h * turn, h * slow
         for s in (-1.0, -0.3, 0.4, 1.0):
             x, y, u, v = (rows[0] + rows[1] * s for rows in (p, K, P, Q))
@@ -105,7 +109,9 @@ def sources_hold(module):
             omega_size=arb(float(size(W0) + size(off))), below=arb(0.3), above=arb(0.2),
         )  # fmt: skip
         d = Sizes(arb(0), arb(0), arb(float(size(p))), arb(2), arb(0), arb(0))
-        piece = SimpleNamespace(k=k, sizes=d, step=SimpleNamespace(low=Fraction(0), high=Fraction(1, 1 << 30)))
+        piece = SimpleNamespace(
+            k=k, sizes=d, step=SimpleNamespace(low=Fraction(0), high=Fraction(1, 1 << 30))
+        )
         owner = SimpleNamespace(omega=balls(W0), damping=arb(gamma + gap))
         way = SimpleNamespace(turn=balls(turn), slow=arb(float(slow)), error=arb(0))
         parts = [size(P), size(Q), 0.1, 0.2, abs(p @ P), abs(K @ P + p @ Q)]
@@ -121,7 +127,9 @@ def sources_hold(module):
             way.error, piece.step.high = arb(1), Fraction(1)
             error, momentum, rate = module.carried(owner, piece, way, balls(parts), arb(0), arb(0))
             grown = np.exp((max(0.3, 0.2 + 1.5**2) + (gamma + gap) * size(W)) / (2 * w))
-            assert float(error) >= (1 + 0.1 + (0.2 + 3 * parts[4] + 1.5 * parts[5]) / w) * grown * (1 - 1e-9)
+            assert float(error) >= (1 + 0.1 + (0.2 + 3 * parts[4] + 1.5 * parts[5]) / w) * grown * (
+                1 - 1e-9
+            )
             assert float(momentum) >= (w + 1.5) * float(error) + parts[5] - 1e-9
             least = float(momentum) + (1.5 + size(W)) * float(error)
             assert float(rate) >= least - 1e-9
@@ -130,7 +138,11 @@ def sources_hold(module):
 # output times that are spread over several steps
 WIDE = ({"rotation_rate": "0", "x": "0.01", "y": "0.003"}, {"length": "5"}, 20)
 RUNS = {  # close to equality, or far from it with derivatives that are exact
-    "lean": ({"rotation_rate": "0.001", "x": "0", "y": "0"}, {"latitude": "0.01", "altitude": "1000"}, 9),
+    "lean": (
+        {"rotation_rate": "0.001", "x": "0", "y": "0"},
+        {"latitude": "0.01", "altitude": "1000"},
+        9,
+    ),
     "release": ({"x": "1", "y": "2", "vx": "0.1"}, {"x": "0.001", "vy": "0.001"}, 9),
     "angles": ({"angles": ("60", "30", "20", "2")}, {"angle": "0.03", "azimuth_rate": "0.01"}, 3),
     "damped": (
@@ -138,10 +150,18 @@ RUNS = {  # close to equality, or far from it with derivatives that are exact
         {"drag": "1e-5", "rotation_rate": "1e-6"},
         9,
     ),
-    "paris": ({"x": "0.3", "y": "0.4"}, {"length": "0.001", "gravity": "1e-4", "latitude": "0.01"}, 20),
+    "paris": (
+        {"x": "0.3", "y": "0.4"},
+        {"length": "0.001", "gravity": "1e-4", "latitude": "0.01"},
+        20,
+    ),
     "late": ({"rotation_rate": "0", "x": "0.01", "y": "0.003"}, {"length": "1.5"}, 800),
     # a transit soon after the release, which differs much within the box
-    "soon": ({"x": "1", "y": "0.1", "vx": "0.02"}, {"x": "0.3", "vx": "1e-6", "length": "0.001"}, 36),
+    "soon": (
+        {"x": "1", "y": "0.1", "vx": "0.02"},
+        {"x": "0.3", "vx": "1e-6", "length": "0.001"},
+        36,
+    ),
     "wide": WIDE,
     "tiny": ({"x": "0.3", "y": "0.4"}, {"x": "1e-25"}, 9),
 }
@@ -170,7 +190,10 @@ class Jumping:
     def propose(self, step):
         self.larger = not self.larger
         factor = 1001 if self.larger else 1000
-        return [([[c * factor // 1000 for c in row] for row in rows], bits) for rows, bits in self.source.propose(step)]
+        return [
+            ([[c * factor // 1000 for c in row] for row in rows], bits)
+            for rows, bits in self.source.propose(step)
+        ]
 
 
 ROUNDED = Fraction(1, 10**24)  # a difference of two runs with forty digits, over 2e-12
@@ -180,7 +203,10 @@ def slopes_at(inputs, key, times):
     """Differences of runs: of the states, and of each zero, by word and by what is differentiated."""
     off = Fraction(1, 10**12)
     up, down = (truth(moved(inputs, key, side * off), times) for side in (1, -1))
-    rows = [[(a - b) / (2 * off) for a, b in zip(up.grid.exact(c), down.grid.exact(c), strict=True)] for c in GRID]
+    rows = [
+        [(a - b) / (2 * off) for a, b in zip(up.grid.exact(c), down.grid.exact(c), strict=True)]
+        for c in GRID
+    ]
     zeros = {}
     for word in ("xdot", "highest"):
         points = [azimuths(run, word) for run in (up, down)]
@@ -197,9 +223,14 @@ def known(name, box, times):
         rng, halves = Random(1), inputs_of(box)
         corners = [drawn(box, rng, True) for _ in range(4)]
         names = [key for key, half in halves.items() if half or name in ("paris", "angles")]
-        places = {key: (box.inputs, *corners[:2]) if halves[key] else (box.inputs,) for key in names}
+        places = {
+            key: (box.inputs, *corners[:2]) if halves[key] else (box.inputs,) for key in names
+        }
         slopes = {key: [slopes_at(inputs, key, times) for inputs in places[key]] for key in names}
-        TRUTHS[name] = {end: [truth(inputs, times[:end]) for inputs in corners] for end in (2, 13)}, slopes
+        TRUTHS[name] = (
+            {end: [truth(inputs, times[:end]) for inputs in corners] for end in (2, 13)},
+            slopes,
+        )
     return TRUTHS[name]
 
 
@@ -214,7 +245,11 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             whole, poor = kind not in ("point", "poor", "jumping"), kind.startswith("poor")
             if (not whole and name == "late") or (kind == "coarse" and name != "tiny"):
                 continue
-            halves = {key: half for key, half in inputs_of(box).items() if key in slopes and (half or not whole)}
+            halves = {
+                key: half
+                for key, half in inputs_of(box).items()
+                if key in slopes and (half or not whole)
+            }
             here = box if whole else Box(box.inputs, box.inputs, box.inputs)
             halves = halves if whole else dict.fromkeys(halves, Fraction(0))
             rows = 13 if not poor else 5 if kind == "poor" and name == "damped" else 2
@@ -222,8 +257,14 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             windows = windows_of(here, BITS + 64, times[:rows], WORDS)
             follower = module.Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
             ways = follower.bound.ways
-            source = Poor(ways) if poor else (Jumping if kind == "jumping" else TangentSource)(windows.balls, ways)
-            chain = pair(Recurrence(SceneBalls(box.inputs, BITS + 64), bits, 24).chain(Fraction(1, 16)))
+            source = (
+                Poor(ways)
+                if poor
+                else (Jumping if kind == "jumping" else TangentSource)(windows.balls, ways)
+            )
+            chain = pair(
+                Recurrence(SceneBalls(box.inputs, BITS + 64), bits, 24).chain(Fraction(1, 16))
+            )
             covered = []
             windows.course.followers.append(SimpleNamespace(advance=covered.append))
             for step in until(chain, windows.course.times[-1]):
@@ -245,10 +286,16 @@ def slopes_hold(found, j, truths, case):
         for k, (slope, row) in enumerate(zip(column, found.states, strict=False)):
             slack = abs(slope) / 10**15 + ROUNDED
             assert row[j][i].low - slack <= slope <= row[j][i].high + slack, (*case, i, k)
-    assert [*found.zeros] == ["xdot", "highest"], "derivatives in other axes would be false for other sections"
+    assert [*found.zeros] == ["xdot", "highest"], (
+        "derivatives in other axes would be false for other sections"
+    )
     for (word, name), slopes in zeros.items():
         for z, led in zip(found.proved.zeros[word], found.zeros[word], strict=True):
-            near = [slope for t, slope in slopes if z.t.low - Fraction(1, 10**6) <= t <= z.t.high + Fraction(1, 10**6)]
+            near = [
+                slope
+                for t, slope in slopes
+                if z.t.low - Fraction(1, 10**6) <= t <= z.t.high + Fraction(1, 10**6)
+            ]
             made = getattr(led, name)
             assert bool(made) == (bool(led.times) and (word, name) != ("xdot", "azimuths"))
             if made and len(near) == 1:
@@ -260,7 +307,9 @@ def radius_holds(module):
     """Theorem C's bounds of |r - p| and of |H - K| with the scene's Ω, at made-up sizes; nothing where it fails."""
     k, d = SimpleNamespace(w=arb(0.7)), Sizes(arb(0), arb(0), arb(1.5), arb(2), arb(0), arb(0))
     for eta, off in ((0, 1), (1, 0), (1, 1)):
-        kept = SimpleNamespace(grown=lambda *_, eta=eta: Covered(None, Tube(arb(eta), arb(0), arb(0))))
+        kept = SimpleNamespace(
+            grown=lambda *_, eta=eta: Covered(None, Tube(arb(eta), arb(0), arb(0)))
+        )
         bound = SimpleNamespace(plain=kept)
         found = module.Tangents.by_radius(bound, SimpleNamespace(k=k), d, arb(0), arb(off))
         assert [float(x) for x in found] == pytest.approx([eta, 2.7 * eta + 1.5**2 * off])
@@ -282,7 +331,13 @@ def widths_hold(module):
 
 def intervals_hold(module):
     """What follows for all inputs is near the scene's own number, and in the wide interval."""
-    ways, ends = [SimpleNamespace(half=arb(0.5), scale=arb(4)), SimpleNamespace(half=arb(0.25), scale=arb(2))], (1, 2)
+    ways, ends = (
+        [
+            SimpleNamespace(half=arb(0.5), scale=arb(4)),
+            SimpleNamespace(half=arb(0.25), scale=arb(2)),
+        ],
+        (1, 2),
+    )
     own, derivatives = Interval(*map(Fraction, ends)), [arb(2), arb(-3)]
     for wide, found in (((-90, 90), (-4.5, 7.5)), ((0, 90), (0, 7.5)), ((-90, 3), (-4.5, 3))):
         got = module.within(Interval(*map(Fraction, wide)), own, ways, derivatives)

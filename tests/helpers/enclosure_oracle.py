@@ -32,10 +32,16 @@ PARIS = Inputs(
 
 def scene(**changes: object) -> Inputs:
     """Paris with changes; numbers as strings, `x`, `y`, `vx`, `vy` or four `angles` in degrees."""
-    start = [Fraction(str(changes.pop(n, d))) for n, d in (("x", "0.3"), ("y", "0.4"), ("vx", 0), ("vy", 0))]
+    start = [
+        Fraction(str(changes.pop(n, d)))
+        for n, d in (("x", "0.3"), ("y", "0.4"), ("vx", 0), ("vy", 0))
+    ]
     angles = changes.pop("angles", None)
     turned = tuple(Fraction(str(a)) for a in angles) if angles else None
-    numbers = {name: value if name == "gravity_is" else Fraction(str(value)) for name, value in changes.items()}
+    numbers = {
+        name: value if name == "gravity_is" else Fraction(str(value))
+        for name, value in changes.items()
+    }
     return replace(PARIS, position=None if turned else tuple(start), angles=turned, **numbers)
 
 
@@ -83,7 +89,12 @@ def integrator(prec: int):
     rates = [*names[3:], *acceleration([hy.par[i] for i in range(7)], names)]
     zero = [hy.real(0, prec)] * 7
     return hy.taylor_adaptive(
-        list(zip(names, rates, strict=True)), zero[:6], pars=zero, fp_type=hy.real, prec=prec, compact_mode=True
+        list(zip(names, rates, strict=True)),
+        zero[:6],
+        pars=zero,
+        fp_type=hy.real,
+        prec=prec,
+        compact_mode=True,
     )
 
 
@@ -116,7 +127,12 @@ def turning(prec: int):
     rates += [y * cz - z * cy + b * wz - c * wy, -(x * cz) - a * wz, x * cy + a * wy]
     zero = [hy.real(0, prec)] * 6
     return hy.taylor_adaptive(
-        list(zip(names, rates, strict=True)), zero, pars=zero[:4], fp_type=hy.real, prec=prec, compact_mode=True
+        list(zip(names, rates, strict=True)),
+        zero,
+        pars=zero[:4],
+        fp_type=hy.real,
+        prec=prec,
+        compact_mode=True,
     )
 
 
@@ -131,7 +147,10 @@ def steep_truth(inputs: Inputs, time: Fraction, prec: int) -> list[Fraction]:
         ta = turning(prec)
         ta.time = hy.real(0, prec)
         ta.state[:] = [_real(q, prec) for q in first]
-        ta.pars[:] = [_real(q, prec) for q in (wy, wz, -om * om * s * R / length, (om * om * c * R - g) / length)]
+        ta.pars[:] = [
+            _real(q, prec)
+            for q in (wy, wz, -om * om * s * R / length, (om * om * c * R - g) / length)
+        ]
         ta.propagate_until(_real(q(time), prec))
         x, y, z, a, b, d = (mp.mpf(str(q)) for q in ta.state)
         b, d = b - wy, d - wz
@@ -185,7 +204,13 @@ class FailingStep:
         return getattr(self.step, name)
 
 
-def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first: Fraction = Fraction(1, 4)):
+def steps(
+    inputs: Inputs,
+    end: Fraction,
+    bits: int = 128,
+    order: int = 64,
+    first: Fraction = Fraction(1, 4),
+):
     """Steps of the recurrence, the last one cut at `end`."""
     for step in pair(Recurrence(SceneBalls(inputs, bits + 64), bits, order).chain(first)):
         last = step.centre + step.h * step.high >= end

@@ -16,8 +16,10 @@ from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import TaylorStep
 from reference.scenes.inputs import Inputs
 
-GUARD_BITS = 16  # carried below the last bit of the coefficients, for the rounding of the recurrence
-SLACK_BITS = 12  # rounding of coefficient k enters the defect k times: the last terms need not be smaller than that
+# carried below the last bit of the coefficients, for the rounding of the recurrence
+GUARD_BITS = 16
+# rounding of coefficient k enters the defect k times: the last terms need not be smaller than that
+SLACK_BITS = 12
 ORDER_PER_BIT, LEAST_ORDER = 0.5, 24  # about the cheapest order, which depends little on it
 POWERS = (0, 0, 0, 1, 1, 1, 2, 1)  # of h in x, m, w, V, λ, j
 BLOCK = 18  # orders summed term by term before the products are taken as polynomials
@@ -29,7 +31,9 @@ def recurrence(inputs: Inputs) -> Callable[[int], Iterator[TaylorStep]]:
     def steps(bits: int) -> Iterator[TaylorStep]:
         order = max(LEAST_ORDER, round(ORDER_PER_BIT * bits))
         first = coarse(Fraction(1 / (4 * float(SceneBalls(inputs, 128).w0))))
-        return pair(Recurrence(SceneBalls(inputs, bits + SCENE_GUARD_BITS), bits, order).chain(first))
+        return pair(
+            Recurrence(SceneBalls(inputs, bits + SCENE_GUARD_BITS), bits, order).chain(first)
+        )
 
     return steps
 
@@ -127,7 +131,9 @@ class Recurrence:
         return out
 
     @staticmethod
-    def _terms(lam: list[int], n: tuple[list[int], ...], known: list[list[int]], base: int, k: int) -> Iterator[int]:
+    def _terms(
+        lam: list[int], n: tuple[list[int], ...], known: list[list[int]], base: int, k: int
+    ) -> Iterator[int]:
         if not base:
             return (sum(map(mul, lam, row[::-1])) for row in n)
         # one index at or beyond `base`, the other at most k - base < base

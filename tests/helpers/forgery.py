@@ -54,7 +54,8 @@ def forge(
     if grid is not None:
         document["invariant"] = invariant_drift(files.scene, tables["grid.csv"]).model_dump()
     texts |= {name: sheet.csv() for name, sheet in tables.items()}
-    with contextlib.suppress(ValueError, KeyError):  # a manifest that contradicts itself has no page
+    # a manifest that contradicts itself has no page
+    with contextlib.suppress(ValueError, KeyError):
         texts |= derived_texts(Manifest.model_validate(document), tables)
     seal(folder, document, texts)
 
@@ -83,13 +84,19 @@ def _change_table(tables: dict[str, Sheet], kind: str, change: Change) -> None:
     tables[f"{kind}.csv"] = forged
     if f"{kind}.binary64.csv" in tables:
         places = {name: sheet.header.index(name) for name in NUMBERS[kind]}
-        doubles = {name: [float(Fraction(row[place])) for row in forged.rows] for name, place in places.items()}
+        doubles = {
+            name: [float(Fraction(row[place])) for row in forged.rows]
+            for name, place in places.items()
+        }
         tables[f"{kind}.binary64.csv"] = binary64_sheet(forged, doubles)
 
 
 def _change_bounds(document: dict[str, Any], transits: Sheet) -> None:
     """Have the bounds on all times say what the rows do."""
-    bounds, largest = document["bounds"], max((row[-1] for row in transits.rows), key=Fraction, default=None)
+    bounds, largest = (
+        document["bounds"],
+        max((row[-1] for row in transits.rows), key=Fraction, default=None),
+    )
     bounds["transit_s"] = largest
     bounds["transits"] = {**bounds["transits"], "t": largest} if largest else {}
 
@@ -104,5 +111,9 @@ def moved(text: str, by: Fraction) -> str:
 def bound_of(files: Files, kind: str, column: str, row: int) -> Fraction:
     """Return the bound on a printed number."""
     if column == "t":
-        return Fraction(files.tables[f"{kind}.csv"].rows[row][-1]) if kind == "transits" else Fraction(0)
+        return (
+            Fraction(files.tables[f"{kind}.csv"].rows[row][-1])
+            if kind == "transits"
+            else Fraction(0)
+        )
     return files.manifest.bound(kind, column)  # type: ignore[arg-type]

@@ -79,7 +79,11 @@ class Format:
 
 def contents(folder: Path) -> Contents:
     """Return the bytes of each file of a folder, by its path there."""
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
 
 
 def _holds(found: Any, right: Any) -> bool:
@@ -104,13 +108,18 @@ def restored(folder: Path, whole: Path) -> Path:
 
 def rows_of(folder: Path) -> list[dict[str, Any]]:
     document = json.loads((folder / "study.json").read_text())
-    return [{key: value for key, value in row.items() if key not in COSTS} for row in document["rows"]]
+    return [
+        {key: value for key, value in row.items() if key not in COSTS} for row in document["rows"]
+    ]
 
 
 def read_dataset(folder: Path) -> Any:
     golden = reference.load(folder)
     tables = {"grid": golden.grid, "transits": golden.transits, **golden.sections}
-    printed = {name: {column: table.decimals(column) for column in table.columns} for name, table in tables.items()}
+    printed = {
+        name: {column: table.decimals(column) for column in table.columns}
+        for name, table in tables.items()
+    }
     times = golden.times
     if golden.function is None:
         return golden.scene, printed
@@ -126,7 +135,9 @@ def read_function(folder: Path) -> Any:
 
 def read_ranges(folder: Path) -> Any:
     ranges = reference.load_ranges(folder)
-    tables = [(zeros.table.rows, zeros.directions, zeros.possible) for zeros in ranges.sections.values()]
+    tables = [
+        (zeros.table.rows, zeros.directions, zeros.possible) for zeros in ranges.sections.values()
+    ]
     of_transits = ranges.transits.rows, ranges.directions, ranges.possible
     return ranges.scene, ranges.uncertain, ranges.times, ranges.grid.rows, of_transits, tables
 
@@ -137,8 +148,14 @@ def read_sweep(folder: Path) -> Any:
 
 def values_of(swept: reference.Swept) -> Any:
     """Return all that a sweep holds."""
-    columns = {**swept.columns(), **{f"transits {name}": values for name, values in swept.transits().items()}}
-    return {name: values.tolist() if values.dtype.kind == "O" else values.tobytes() for name, values in columns.items()}
+    columns = {
+        **swept.columns(),
+        **{f"transits {name}": values for name, values in swept.transits().items()},
+    }
+    return {
+        name: values.tolist() if values.dtype.kind == "O" else values.tobytes()
+        for name, values in columns.items()
+    }
 
 
 def begin_sweep(folder: Path, latitudes: str, **options: Any) -> None:
@@ -149,19 +166,25 @@ def begin_sweep(folder: Path, latitudes: str, **options: Any) -> None:
 
 
 def side_by_side(folder: Path, other: bool) -> None:
-    begin_sweep(folder, "1:21:2" if other else "0:20:2", want=("all", "transit-times"), engine="heyoka")
+    begin_sweep(
+        folder, "1:21:2" if other else "0:20:2", want=("all", "transit-times"), engine="heyoka"
+    )
 
 
 def one_by_one(folder: Path, other: bool) -> None:
     """Rows in more digits than double has go through `solve`, in processes."""
-    begin_sweep(folder, "1:21:4" if other else "0:20:4", want=("transits", "transit-times"), digits=16)
+    begin_sweep(
+        folder, "1:21:4" if other else "0:20:4", want=("transits", "transit-times"), digits=16
+    )
 
 
 def stored(folder: Path) -> Contents:
     """Return what an interrupted command has done: the parts of a sweep, the whole lines of a journal."""
     done = {name: data for name, data in contents(folder).items() if name.endswith(".parquet")}
     for path in folder.glob("*.jsonl"):
-        lines = [line for line in path.read_bytes().splitlines(keepends=True) if line.endswith(b"}\n")]
+        lines = [
+            line for line in path.read_bytes().splitlines(keepends=True) if line.endswith(b"}\n")
+        ]
         done |= {f"line {number}": line for number, line in enumerate(lines, 1)}
     return {name: data for name, data in done.items() if "partial-" not in name}
 
@@ -256,7 +279,9 @@ class Made:
         said = f"{out}{err}"
         assert "Traceback" not in said
         assert status in (0, 1, 2), said
-        names = self.changed(folder) | ({Path(name).name for name in contents(folder)} if of_another_run else set())
+        names = self.changed(folder) | (
+            {Path(name).name for name in contents(folder)} if of_another_run else set()
+        )
         assert status == 0 or any(name in said for name in names), said
         if self.format.read is None:
             written = {Path(name).name for name in contents(self.whole)} & self.changed(folder)
@@ -276,7 +301,9 @@ class Made:
         status, _, err = self.foucault(*self.format.command(folder))
         assert "Traceback" not in err
         if status == 2:
-            assert "foucault: --out: " in err or any(f"{name}: " in err for name in self.changed(folder)), err
+            assert "foucault: --out: " in err or any(
+                f"{name}: " in err for name in self.changed(folder)
+            ), err
             assert contents(folder).items() >= before.items()
             return False
         assert status == 0, err
@@ -289,7 +316,9 @@ class Made:
         The plan of another sweep in its place gives that sweep.
         """
         found = self.format.result(folder)
-        assert _holds(found, self.format.result(self.whole)) or _holds(found, self.format.result(self.other))
+        assert _holds(found, self.format.result(self.whole)) or _holds(
+            found, self.format.result(self.other)
+        )
         assert litter(folder) == []
         status, out, _ = self.foucault("verify", folder)
         assert status == 0 or "delete it" in out or "remove it" in out, out

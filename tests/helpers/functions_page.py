@@ -13,7 +13,16 @@ from reference.scenes.shipped import golden_root
 
 PAGE, BEFORE, AFTER = ROOT / "docs/format.md", "### Those that ship\n", "\n## ranges.json"
 MOMENTS = 10_000  # evenly spread over the span, at which the farthest point is sought
-HEADS = "scene", "pieces", "kB", "*x*, *y*: m", "of the farthest", "*z*: m", "ulp of the length", "velocities: m/s"
+HEADS = (
+    "scene",
+    "pieces",
+    "kB",
+    "*x*, *y*: m",
+    "of the farthest",
+    "*z*: m",
+    "ulp of the length",
+    "velocities: m/s",
+)
 ABOUT = """\
 What is proved of each (`bounds`), and the size of both files. The fifth column compares the bound on x and y with the
 largest distance from the vertical through the suspension. `python tests/helpers/functions_page.py` makes the table;

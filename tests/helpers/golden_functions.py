@@ -14,11 +14,14 @@ from reference.numbers.function import GoldenFunction
 from reference.scenes.scene import Scene, load_scene
 from reference.solver.proof_steps import Feed
 
-TRUTH_BITS = 137  # of the run in limbs, 40 digits; its states are sums of two doubles, so that they are off by
+# of the run in limbs, 40 digits; its states are sums of two doubles, so that they are off by
+TRUTH_BITS = 137
 TRUTH = 1e-29  # of the length, at most
 
 
-def proved_function(scene: Scene | str, radius: Fraction = Fraction(1, 10**30), engine: str = "limbs") -> Enclosure:
+def proved_function(
+    scene: Scene | str, radius: Fraction = Fraction(1, 10**30), engine: str = "limbs"
+) -> Enclosure:
     """Prove a scene, without transits, and its golden function."""
     scene = load_scene(scene) if isinstance(scene, str) else scene
     times = tuple(scene.exact.grid)
@@ -43,11 +46,15 @@ def evaluator(enclosure: Enclosure) -> GoldenFunction:
     return GoldenFunction.of(made.facts, made.bounds, made.data)
 
 
-def errors(scene: Scene, function: GoldenFunction, times: Any, bits: int = TRUTH_BITS) -> dict[str, Any]:
+def errors(
+    scene: Scene, function: GoldenFunction, times: Any, bits: int = TRUTH_BITS
+) -> dict[str, Any]:
     """Return how far each component is from a run in limbs of so many bits, at each of `times`, which increase."""
     high, low = states(scene.exact, times, bits)
     at = function.at(times)
-    return {name: np.abs((getattr(at, name) - high[:, i]) - low[:, i]) for i, name in enumerate(STATE)}
+    return {
+        name: np.abs((getattr(at, name) - high[:, i]) - low[:, i]) for i, name in enumerate(STATE)
+    }
 
 
 def random_times(function: GoldenFunction, count: int, seed: int = 0) -> Any:

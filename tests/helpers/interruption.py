@@ -31,7 +31,11 @@ def interrupted(
     """
     command = [sys.executable, "-m", "foucault", *words]
     with subprocess.Popen(
-        command, cwd=ROOT, stderr=subprocess.PIPE, start_new_session=True, env=os.environ | {"PYTHONFAULTHANDLER": "1"}
+        command,
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        env=os.environ | {"PYTHONFAULTHANDLER": "1"},
     ) as process:
         assert process.stderr is not None
         os.set_blocking(process.stderr.fileno(), False)
@@ -63,12 +67,18 @@ def stderr_of(process: subprocess.Popen[Any]) -> Any:
         return process.communicate(timeout=PATIENCE_S)[1]
     except subprocess.TimeoutExpired:
         process.send_signal(signal.SIGABRT)
-        raise AssertionError(f"it does not end: {process.communicate(timeout=PATIENCE_S)[1]}") from None
+        raise AssertionError(
+            f"it does not end: {process.communicate(timeout=PATIENCE_S)[1]}"
+        ) from None
 
 
 def members(group: int) -> int:
     """Return the number of processes of a process group."""
-    return sum(_group_of(int(entry.name)) == group for entry in Path("/proc").iterdir() if entry.name.isdecimal())
+    return sum(
+        _group_of(int(entry.name)) == group
+        for entry in Path("/proc").iterdir()
+        if entry.name.isdecimal()
+    )
 
 
 def children() -> set[int]:
@@ -76,7 +86,8 @@ def children() -> set[int]:
     found = set()
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):  # it has ended
-            parent = path.read_text().rpartition(")")[2].split()[1]  # the name before may hold anything
+            # the name before may hold anything
+            parent = path.read_text().rpartition(")")[2].split()[1]
             if int(parent) == os.getpid():
                 found.add(int(path.parent.name))
     return found

@@ -42,7 +42,10 @@ LANGUAGES = {
     ),
 }
 LINEAR = {
-    word: title for (word, _), title in zip(MODELS.values(), ("small swings", "linear in the angle"), strict=True)
+    word: title
+    for (word, _), title in zip(
+        MODELS.values(), ("small swings", "linear in the angle"), strict=True
+    )
 }
 MOST_DIGITS = 9  # beyond, rounding decides
 HEAD = """# Register of judged programs
@@ -77,7 +80,9 @@ def row(name: str) -> str:
     found, said = score.explanation, programs.said(score.explanation)
     (language,) = (one for one, names in LANGUAGES.items() if name in names)
     words = {programs.G_EFFECTIVE: "effective_gravity"}
-    likes = [f"as if `{one.id.removeprefix('as_if.')}`" for one in found.causes if one.stage == AS_IF]
+    likes = [
+        f"as if `{one.id.removeprefix('as_if.')}`" for one in found.causes if one.stage == AS_IF
+    ]
     named = ", ".join([*(f"`{words.get(word, word)}`" for word in sorted(said)), *likes]) or "–"
     unnamed = programs.TRUE[name] - said
     untold = ", ".join(f"`{words.get(word, word)}`" for word in sorted(unnamed)) or "–"
@@ -98,7 +103,9 @@ def head() -> str:
     """Return what stands above the rows."""
     common = Counter(word for words in programs.TRUE.values() for word in words)
     linear = sum(common[word] for word in LINEAR)
-    integrators = sum(any("integrator" in word for word in words) for words in programs.TRUE.values())
+    integrators = sum(
+        any("integrator" in word for word in words) for words in programs.TRUE.values()
+    )
     counts = (
         f"Of {len(programs.TRUE)} programs {linear} solve a linear model, {common[programs.G_EFFECTIVE]} take *g* for "
         f"the measured one,\n{integrators} have an integrator whose error shows, {common['inertial_rest']} release the "

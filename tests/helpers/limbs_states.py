@@ -38,7 +38,9 @@ def states(inputs: Inputs, times: npt.ArrayLike, bits: int = STATES_BITS) -> tup
     if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
         raise InputError("times", moments.shape, "a list of finite numbers, at least one")
     if moments[0] < 0 or (np.diff(moments) <= 0).any():
-        raise InputError("times", "a list that decreases or is negative", "increasing numbers from 0 on")
+        raise InputError(
+            "times", "a list that decreases or is negative", "increasing numbers from 0 on"
+        )
     exact_times = tuple(map(Fraction, moments.tolist()))
     integration = Integration(Plan(inputs, "inertial", NumberType("limbs", bits), exact_times))
     integration.finish(None)
@@ -59,7 +61,9 @@ def _two_doubles(rows: Array, limb_count: int) -> tuple[Array, Array]:
     weight = 2.0 ** (1 - LIMB_BITS * np.arange(1, limb_count + 1))
     high, low = np.zeros_like(rows[:, 0]), np.zeros_like(rows[:, 0])
     for q in range(0, limb_count, 2):  # two limbs are one exact double
-        pair = rows[:, q] * weight[q] + (rows[:, q + 1] * weight[q + 1] if q + 1 < limb_count else 0.0)
+        pair = rows[:, q] * weight[q] + (
+            rows[:, q + 1] * weight[q + 1] if q + 1 < limb_count else 0.0
+        )
         high, error = _sum(high, pair)
         low = low + error
     return _sum(high, low)

@@ -36,7 +36,9 @@ class Case:
 
     @property
     def truth(self):
-        return np.array([getattr(self.solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
+        return np.array(
+            [getattr(self.solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]
+        ).T
 
     def problem(self, name, *, rows=None, formulation=None, kind=Problem):
         word = formulation or suited(self.scene, METHODS[name].formulations)

@@ -41,7 +41,14 @@ def force(x, y, z, vx, vy, vz):
 def rates(_, s):
     x, y, z, vx, vy, vz = s
     if given("model", 0) == 1:
-        return vx, vy, 0, -g / length * x + 2 * cu * vy - drag * vx, -g / length * y - 2 * cu * vx - drag * vy, 0
+        return (
+            vx,
+            vy,
+            0,
+            -g / length * x + 2 * cu * vy - drag * vx,
+            -g / length * y - 2 * cu * vx - drag * vy,
+            0,
+        )
     fx, fy, fz = force(*s)
     pull = (vx * vx + vy * vy + vz * vz + x * fx + y * fy + z * fz) / (length * length)
     return vx, vy, vz, fx - x * pull, fy - y * pull, fz - z * pull
@@ -65,11 +72,14 @@ def step(s):
         return moved(s, b, h)
     c = rates(0, moved(s, b, h / 2))
     d = rates(0, moved(s, c, h))
-    return [x + h / 6 * (i + 2 * j + 2 * k + m) for x, i, j, k, m in zip(s, a, b, c, d, strict=True)]
+    return [
+        x + h / 6 * (i + 2 * j + 2 * k + m) for x, i, j, k, m in zip(s, a, b, c, d, strict=True)
+    ]
 
 
 x, y = given("x0", 1), given("y0", 0)
-stars = given("stars", 0) * turn * math.sin(coriolis)  # of the Earth, whatever factor the Coriolis force has
+# of the Earth, whatever factor the Coriolis force has
+stars = given("stars", 0) * turn * math.sin(coriolis)
 s = [
     x,
     y,
@@ -85,7 +95,9 @@ if "rtol" in word:
     from scipy.integrate import solve_ivp
 
     times = [out * row for row in range(rows + 1)]
-    found = solve_ivp(rates, (0, times[-1]), s, t_eval=times, rtol=word["rtol"], atol=word["rtol"] * 1e-3).y
+    found = solve_ivp(
+        rates, (0, times[-1]), s, t_eval=times, rtol=word["rtol"], atol=word["rtol"] * 1e-3
+    ).y
     for t, x, y in zip(times, found[0], found[1], strict=True):
         print(repr(t * fast), repr(float(x)), repr(float(y)), sep=",")
 else:

@@ -31,7 +31,8 @@ class Case:
     rng: np.random.Generator
     arguments: dict[str, float]
     true: set[str] = field(default_factory=set)
-    parts: list[tuple[set[str], dict[str, float | None]]] = field(default_factory=list)  # and the right arguments
+    # and the right arguments
+    parts: list[tuple[set[str], dict[str, float | None]]] = field(default_factory=list)
 
     def add(self, change: Change) -> None:
         """Make a mistake."""
@@ -60,16 +61,24 @@ class Case:
         for names, _ in self.parts:
             mended, others = self.without(names).rows(program)
             off = [np.abs(columns[name] - others[name]).max() for name in columns]
-            if max(off) > self.allowed_m or not np.array_equal(times, mended) or names & SAME.keys():
+            if (
+                max(off) > self.allowed_m
+                or not np.array_equal(times, mended)
+                or names & SAME.keys()
+            ):
                 words |= names
         return words
 
     def rows(self, program: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """Return times and columns that the program writes."""
         words = [f"{key}={float(value)!r}" for key, value in self.arguments.items()]
-        text = subprocess.run([str(program), *words], check=True, capture_output=True, text=True).stdout
+        text = subprocess.run(
+            [str(program), *words], check=True, capture_output=True, text=True
+        ).stdout
         table = np.loadtxt(text.splitlines(), delimiter=",", skiprows=1)
-        return table[:, 0], {name: np.ascontiguousarray(table[:, i + 1]) for i, name in enumerate("xyz")}
+        return table[:, 0], {
+            name: np.ascontiguousarray(table[:, i + 1]) for i, name in enumerate("xyz")
+        }
 
     @property
     def allowed_m(self) -> float:
@@ -83,10 +92,15 @@ class Case:
     def wrong(self, words: set[str]) -> set[str]:
         """Return the words that are said and are not true, programs with the same motion being one."""
         true = self.true | one_word_for_one_motion(self.true)
-        if {"vertical_only", "hemisphere"} <= true and self.arguments["reading"] == 2:  # Ω is vertical
+        # Ω is vertical
+        if {"vertical_only", "hemisphere"} <= true and self.arguments["reading"] == 2:
             true.add("coriolis_sign")
         said = one_word_for_one_motion(words) - true - UNTOLD
-        steps = {"integrator_loose"} if any(word.startswith("integrator") for word in self.true) else set()
+        steps = (
+            {"integrator_loose"}
+            if any(word.startswith("integrator") for word in self.true)
+            else set()
+        )
         return said - steps
 
 
@@ -128,7 +142,9 @@ def one_word_for_one_motion(words: set[str]) -> set[str]:
     A motion in the plane knows only the sign of Ω's vertical part, and without any of the forces of rotation there is
     no rotation.
     """
-    found = {"site.gravity" if word.startswith("gravity_") else SAME.get(word, word) for word in words}
+    found = {
+        "site.gravity" if word.startswith("gravity_") else SAME.get(word, word) for word in words
+    }
     if found & {"linear_g", "linear_in_angle"} and "hemisphere" in found:
         found = found ^ {"hemisphere", "coriolis_sign"}
     if {
@@ -147,7 +163,10 @@ def case(number: int, seed: int = 17, most: int = 3) -> Case:
     length = float(np.round(np.exp(rng.uniform(np.log(0.5), np.log(70))), 2))
     latitude = float(np.round(rng.uniform(15, 75), 4)) * (1 if rng.random() < 0.8 else -1)
     wide = math.sin(math.radians(rng.uniform(10, 70)))
-    amplitude, azimuth = length * (wide if rng.random() < 0.3 else rng.uniform(0.01, 0.08)), rng.uniform(0.2, 1.3)
+    amplitude, azimuth = (
+        length * (wide if rng.random() < 0.3 else rng.uniform(0.01, 0.08)),
+        rng.uniform(0.2, 1.3),
+    )
     x, y = (float(np.round(amplitude * part, 4)) for part in (np.cos(azimuth), np.sin(azimuth)))
     period = 2 * math.pi * math.sqrt(length / 9.80665)
     # rows dense, as usual, or sparse
@@ -161,7 +180,13 @@ def case(number: int, seed: int = 17, most: int = 3) -> Case:
         run={"t_end": repr(out * rows), "grid_step": repr(out), "digits": 20},
     ).with_values(["inputs=binary64"])  # fmt: skip
     step = out / math.ceil(out / (period / 1500))
-    made = Case(number, scene, period, rng, {"l": length, "lat": latitude, "x0": x, "y0": y, "out": out, "h": step})
+    made = Case(
+        number,
+        scene,
+        period,
+        rng,
+        {"l": length, "lat": latitude, "x0": x, "y0": y, "out": out, "h": step},
+    )
     made.arguments |= {"tend": out * rows, "reading": 2.0 if effective else 0.0}
     _mistaken(made, effective, int(rng.choice([1, 2, 3], p=[0.4, 0.35, 0.25])) if most else 0)
     return made
@@ -209,7 +234,9 @@ def _shifted(key: str, word: str, low: float, high: float) -> Change:
 
     def change(made: Case) -> None:
         rng, before = made.rng, made.arguments.get(key, 9.80665)
-        value = before * (1 + math.exp(rng.uniform(math.log(low), math.log(high))) * rng.choice([-1, 1]))
+        value = before * (
+            1 + math.exp(rng.uniform(math.log(low), math.log(high))) * rng.choice([-1, 1])
+        )
         typed = float(f"{value:.{rng.integers(3, 6)}g}")
         made.arguments[key] = typed if rng.random() < 0.7 and typed != before else value
         made.true.add(word)
@@ -218,7 +245,9 @@ def _shifted(key: str, word: str, low: float, high: float) -> Change:
 
 
 def _drag(made: Case) -> None:
-    made.arguments["drag"] = float(f"{math.exp(made.rng.uniform(math.log(1e-5), math.log(1e-2))):.2g}")
+    made.arguments["drag"] = float(
+        f"{math.exp(made.rng.uniform(math.log(1e-5), math.log(1e-2))):.2g}"
+    )
     made.true.add("pendulum.drag")
 
 

@@ -67,7 +67,8 @@ def _run(how: list[str], words: Sequence[object]) -> Ended:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},  # else the first run has events that no later one has
+        # else the first run has events that no later one has
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
     ) as process:
         try:
             out, err = process.communicate(timeout=PATIENCE_S)

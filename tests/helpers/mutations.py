@@ -24,7 +24,8 @@ from places import ROOT
 
 EQUIVALENTS = ROOT / "tests/equivalent_mutants.toml"
 
-Replacement = tuple[str, ast.AST]  # what is changed, in words of the source, and what takes the place of the node
+# what is changed, in words of the source, and what takes the place of the node
+Replacement = tuple[str, ast.AST]
 Operator = Callable[[ast.AST, ast.AST | None], Iterator[Replacement]]  # of a node and its parent
 
 
@@ -32,14 +33,35 @@ Operator = Callable[[ast.AST, ast.AST | None], Iterator[Replacement]]  # of a no
 
 SUMS = {"add"}  # of vectors, in reference/enclosure/trusted/balls.py
 PRODUCTS = {"times"}  # of a number and a vector, there as well
-COMMUTATIVE = {"add", "dot", "min", "max", "demand"}  # of two arguments; `demand` of the other one is no demand
+# of two arguments; `demand` of the other one is no demand
+COMMUTATIVE = {"add", "dot", "min", "max", "demand"}
 LATTICE = {"min", "max", "union", "intersection"}  # which choose among what they are given
 SAME_KIND = {"low": "high", "begin": "end", "lower": "upper", "start": "end", "sin": "cos"}
 SAME_KIND |= {after: before for before, after in SAME_KIND.items() if after not in SAME_KIND}
 BOUNDARY = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
-OPPOSITE = {ast.Lt: ast.GtE, ast.GtE: ast.Lt, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
+OPPOSITE = {
+    ast.Lt: ast.GtE,
+    ast.GtE: ast.Lt,
+    ast.Gt: ast.LtE,
+    ast.LtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+}
 OPPOSITE |= {ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}
-CONVERSIONS = {"list", "tuple", "set", "dict", "iter", "str", "repr", "float", "int", "bool", "ball", "arb"}
+CONVERSIONS = {
+    "list",
+    "tuple",
+    "set",
+    "dict",
+    "iter",
+    "str",
+    "repr",
+    "float",
+    "int",
+    "bool",
+    "ball",
+    "arb",
+}
 
 
 def drop_term(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
@@ -48,7 +70,10 @@ def drop_term(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
         case ast.BinOp(left, ast.Add() | ast.Sub(), right):
             yield _text(right), left
             if not _is_sum(left):  # whose terms are left out one by one
-                yield _text(left), right if isinstance(node.op, ast.Add) else ast.UnaryOp(ast.USub(), right)
+                yield (
+                    _text(left),
+                    right if isinstance(node.op, ast.Add) else ast.UnaryOp(ast.USub(), right),
+                )
         case ast.Call(ast.Name(name), args) if name in SUMS and len(args) > 1:
             for i, term in enumerate(args):
                 yield _text(term), _with(node, args=_without(args, i))
@@ -62,7 +87,10 @@ def drop_factor(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
             if isinstance(node.op, ast.Mult) and not _is_product(left):
                 yield _text(left), right
             elif isinstance(node.op, ast.Div) and not _is_product(left):
-                yield _text(left), right if _text(left) == "1" else _with(node, left=ast.Constant(1))
+                yield (
+                    _text(left),
+                    right if _text(left) == "1" else _with(node, left=ast.Constant(1)),
+                )
         case ast.Call(ast.Name(name), [factor, vector]) if name in PRODUCTS:
             yield _text(factor), vector
 
@@ -71,8 +99,13 @@ def flip_sign(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
     """Change the sign of one term, or of a 1 that is passed to a function."""
     match node:
         case ast.BinOp(op=ast.Add() | ast.Sub()):
-            yield _text(node.right), _with(node, op=ast.Sub() if isinstance(node.op, ast.Add) else ast.Add())
-        case ast.UnaryOp(ast.USub(), operand) if not (isinstance(parent, ast.Call) and _is_product(parent)):
+            yield (
+                _text(node.right),
+                _with(node, op=ast.Sub() if isinstance(node.op, ast.Add) else ast.Add()),
+            )
+        case ast.UnaryOp(ast.USub(), operand) if not (
+            isinstance(parent, ast.Call) and _is_product(parent)
+        ):
             yield _text(node), operand
         case ast.Constant(1) if isinstance(parent, ast.Call) and node.value is not True:
             yield _text(parent), ast.UnaryOp(ast.USub(), node)
@@ -81,7 +114,9 @@ def flip_sign(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
 def drop_call(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
     """Put what a function or a method is applied to in place of its result."""
     match node:
-        case ast.Call(ast.Name(name), [argument], []) if name not in CONVERSIONS and not name[0].isupper():
+        case ast.Call(ast.Name(name), [argument], []) if (
+            name not in CONVERSIONS and not name[0].isupper()
+        ):
             if not isinstance(argument, ast.Starred | ast.GeneratorExp):
                 yield _text(node), argument
         case ast.Call(ast.Attribute(value), [], []) if not isinstance(parent, ast.Expr):
@@ -99,7 +134,10 @@ def drop_alternative(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacem
             yield _text(argument), value
             yield _text(value), argument
         case ast.Call(ast.Name("reduce"), [_, every]):
-            yield f"all but the first of {_text(every)}", ast.Subscript(every, ast.Constant(0), ast.Load())
+            yield (
+                f"all but the first of {_text(every)}",
+                ast.Subscript(every, ast.Constant(0), ast.Load()),
+            )
         case ast.Call(ast.Attribute(_, "get"), [_, default]):
             yield _text(node), default
 
@@ -200,7 +238,11 @@ def change_number(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement
 def drop_statement(node: ast.AST, parent: ast.AST | None) -> Iterator[Replacement]:
     """Do nothing in place of a call, of a return, or of taking a number into what is there."""
     match node:
-        case ast.Expr(ast.Call() | ast.Yield() | ast.YieldFrom()) | ast.Return(ast.AST()) | ast.AugAssign():
+        case (
+            ast.Expr(ast.Call() | ast.Yield() | ast.YieldFrom())
+            | ast.Return(ast.AST())
+            | ast.AugAssign()
+        ):
             yield _text(node), ast.Pass()
         case ast.Assign([ast.Attribute() | ast.Subscript()]):
             yield _text(node), ast.Pass()
@@ -294,7 +336,9 @@ def mutations_of(file: str) -> list[Mutation]:
 
 def named(text: str) -> Mutation:
     """Return the mutation that is printed so."""
-    return next(mutation for mutation in mutations_of(text.partition(" ")[0]) if str(mutation) == text)
+    return next(
+        mutation for mutation in mutations_of(text.partition(" ")[0]) if str(mutation) == text
+    )
 
 
 def _parsed(file: str) -> ast.Module:
@@ -312,8 +356,16 @@ def _places(file: str, tree: ast.Module) -> Iterator[tuple[Mutation, Callable[[]
                 yield Mutation(file, *key, seen[key]), lambda put=put, new=new: put(new)
 
 
-SMALL = ast.arguments | ast.keyword | ast.comprehension | ast.withitem | ast.ExceptHandler | ast.match_case
-Node = tuple[Any, Any, str, Callable[[Any], None]]  # a node, its parent, the function, what puts another in its place
+SMALL = (
+    ast.arguments
+    | ast.keyword
+    | ast.comprehension
+    | ast.withitem
+    | ast.ExceptHandler
+    | ast.match_case
+)
+# a node, its parent, the function, what puts another in its place
+Node = tuple[Any, Any, str, Callable[[Any], None]]
 
 
 def _nodes(parent: Any, above: Any, function: str) -> Iterator[Node]:
@@ -326,7 +378,12 @@ def _nodes(parent: Any, above: Any, function: str) -> Iterator[Node]:
         children = value if isinstance(value, list) else [value]
         for i, child in enumerate(children):
             if isinstance(child, ast.stmt | ast.expr | SMALL) and not _is_spared(child):
-                yield child, parent, function, _putting(parent, field, i if isinstance(value, list) else None)
+                yield (
+                    child,
+                    parent,
+                    function,
+                    _putting(parent, field, i if isinstance(value, list) else None),
+                )
                 yield from _nodes(child, parent, function)
 
 
@@ -378,17 +435,30 @@ def stale(entries: Iterable[tuple[str, str]] | None = None) -> list[str]:
     """Return what is wrong with the tables: each entry has a reason, and is a mutation of today's source."""
     named = list(_entries("equivalent", "unnoticed") if entries is None else entries)
     files = {mutation.partition(" ")[0] for mutation, _ in named}
-    today = {str(mutation) for file in files if (ROOT / file).is_file() for mutation in mutations_of(file)}
+    today = {
+        str(mutation)
+        for file in files
+        if (ROOT / file).is_file()
+        for mutation in mutations_of(file)
+    }
     often = Counter(mutation for mutation, _ in named)
-    problems = [f"no mutation of today's source is {mutation}" for mutation, _ in named if mutation not in today]
+    problems = [
+        f"no mutation of today's source is {mutation}"
+        for mutation, _ in named
+        if mutation not in today
+    ]
     problems += [f"no reason for {mutation}" for mutation, why in named if not why.strip()]
-    problems += [f"named more than once: {mutation}" for mutation, times in often.items() if times > 1]
+    problems += [
+        f"named more than once: {mutation}" for mutation, times in often.items() if times > 1
+    ]
     return [f"{EQUIVALENTS.name}: {problem}" for problem in problems]
 
 
 def drawn(mutations: Iterable[Mutation], seed: int) -> list[Mutation]:
     """Return mutations in an order that the seed decides; what becomes of other places does not change it."""
-    return sorted(mutations, key=lambda mutation: hashlib.sha256(f"{seed} {mutation}".encode()).digest())
+    return sorted(
+        mutations, key=lambda mutation: hashlib.sha256(f"{seed} {mutation}".encode()).digest()
+    )
 
 
 class OutOfTimeError(Exception):
@@ -411,7 +481,9 @@ def limited(cpu_s: float) -> Iterator[None]:
         signal.signal(signal.SIGVTALRM, before)
 
 
-def noticed(mutation: Mutation, check: Callable[[Any], None], cpu_s: float = 60) -> BaseException | None:
+def noticed(
+    mutation: Mutation, check: Callable[[Any], None], cpu_s: float = 60
+) -> BaseException | None:
     """Return how a check of the mutated module ends that does not pass; None if it passes."""
     try:
         with limited(cpu_s):

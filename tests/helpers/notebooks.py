@@ -44,7 +44,11 @@ def run(path: Path) -> list[tuple[str, Any]]:
             printed = io.StringIO()
             with contextlib.redirect_stdout(printed):
                 exec(compile(ast.Module(body, []), path.name, "exec"), names)
-                value = eval(compile(ast.Expression(last.value), path.name, "eval"), names) if last else None
+                value = (
+                    eval(compile(ast.Expression(last.value), path.name, "eval"), names)
+                    if last
+                    else None
+                )
             found.append((printed.getvalue(), value))
     finally:
         os.chdir(before)
@@ -55,12 +59,16 @@ def outputs(printed: str, value: Any, *, with_pictures: bool = True) -> list[dic
     """Return what a notebook keeps of what a cell printed and of its last value: text, or a small picture."""
     kept: list[dict[str, Any]] = []
     if printed:
-        kept.append({"name": "stdout", "output_type": "stream", "text": printed.splitlines(keepends=True)})
+        kept.append(
+            {"name": "stdout", "output_type": "stream", "text": printed.splitlines(keepends=True)}
+        )
     if value is not None:
         data: dict[str, Any] = {"text/plain": str(repr(value)).splitlines(keepends=True)}
         if with_pictures and (picture := _png(value)):
             data["image/png"] = base64.b64encode(picture).decode()
-        kept.append({"data": data, "execution_count": None, "metadata": {}, "output_type": "execute_result"})
+        kept.append(
+            {"data": data, "execution_count": None, "metadata": {}, "output_type": "execute_result"}
+        )
     return kept
 
 

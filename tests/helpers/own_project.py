@@ -16,7 +16,10 @@ from places import ROOT
 def own_project(folder: Path, scenes: Iterable[str]) -> Path:
     """Copy the project's programs, and some of its scenes, into a new folder."""
     for package in ("reference", "compare"):
-        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("foucault-*"))  # compiled code
+        # compiled code
+        shutil.copytree(
+            ROOT / package, folder / package, ignore=shutil.ignore_patterns("foucault-*")
+        )
     shutil.copy2(ROOT / "foucault.py", folder)
     (folder / "data/scenes").mkdir(parents=True)
     (folder / "data/golden").mkdir()
@@ -44,5 +47,10 @@ def foucault_of(project: Path, *words: object, numba: bool = True) -> Any:
     begin = ["-m", "foucault"] if numba else ["-c", WITHOUT_NUMBA]
     command = [sys.executable, *begin, *map(str, words)]
     return subprocess.run(
-        command, cwd=project, env=environment_of(project), capture_output=True, text=True, check=False
+        command,
+        cwd=project,
+        env=environment_of(project),
+        capture_output=True,
+        text=True,
+        check=False,
     )

@@ -45,7 +45,12 @@ def blocks(page: str) -> list[Block]:
 def code_spans(page: str) -> list[str]:
     """Return what stands between backticks in the text of a page, in order."""
     tokens = MarkdownIt("commonmark").parse((ROOT / page).read_text(encoding="utf-8"))
-    return [part.content for token in tokens for part in token.children or () if part.type == "code_inline"]
+    return [
+        part.content
+        for token in tokens
+        for part in token.children or ()
+        if part.type == "code_inline"
+    ]
 
 
 def of_language(page: str, language: str) -> list[str]:
@@ -115,7 +120,11 @@ def output_here(
         capfd: pytest's.
     """
     plain = re.fullmatch(r'(foucault|python) ([^|<>;$]+)(; echo "exit status \$\?")?', command)
-    tests = command.removeprefix("python -m pytest ") if command.startswith("python -m pytest ") else None
+    tests = (
+        command.removeprefix("python -m pytest ")
+        if command.startswith("python -m pytest ")
+        else None
+    )
     if plain is None or (plain[2].startswith("-") and tests is None):
         return output(command, folder)
     with pytest.MonkeyPatch.context() as patch:
@@ -143,4 +152,8 @@ def _pytest(words: list[str], folder: Path, patch: pytest.MonkeyPatch) -> None:
 def shows(shown: str, got: str) -> bool:
     """Whether a page shows what a command printed; a line … stands for any number of lines."""
     lines = shown.splitlines(keepends=True)
-    return bool(re.fullmatch("".join("(?:.*\n)*?" if line == "…\n" else re.escape(line) for line in lines), got))
+    return bool(
+        re.fullmatch(
+            "".join("(?:.*\n)*?" if line == "…\n" else re.escape(line) for line in lines), got
+        )
+    )

@@ -17,7 +17,14 @@ SLACK = 1 + 1e-3  # of bounds: a zero is found by one step of Newton's method
 def plumb(inputs):
     """The pull at the pivot, and the rest position in m, by the equations' force alone."""
     s, c, R, length, g, om, _ = constants(inputs)
-    at = lambda x, y, z: (om * om * x, -om * om * s * (R - s * y + c * z), -g + om * om * c * (R - s * y + c * z))  # noqa: E731
+
+    def at(x, y, z):
+        return (
+            om * om * x,
+            -om * om * s * (R - s * y + c * z),
+            -g + om * om * c * (R - s * y + c * z),
+        )
+
     pull, r = at(0, 0, 0), (mp.mpf(0), mp.mpf(0), -length)
     for _ in range(400):
         f = at(*r)
@@ -53,12 +60,20 @@ def found(inputs, words, end):
     rates, first = doubles(inputs)
     end, swing = float(end), 2 * np.pi * float(inputs.length / inputs.gravity) ** 0.5
     run = solve_ivp(
-        rates, (0, end), first, method="DOP853", rtol=1e-13, atol=1e-13 * max(map(abs, first)), dense_output=True
+        rates,
+        (0, end),
+        first,
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-13 * max(map(abs, first)),
+        dense_output=True,
     )
     times = np.linspace(SOON * end, end, int(PER_SWING * max(end / swing, 5)))
     states, passages = run.sol(times), {}
     for word in words:
-        a, b, d = ([float(x) for x in p] if isinstance(p, tuple) else float(p) for p in form(inputs, word))
+        a, b, d = (
+            [float(x) for x in p] if isinstance(p, tuple) else float(p) for p in form(inputs, word)
+        )
         at = lambda t: float(np.dot([*a, *b], run.sol(t)) - d)  # noqa: B023, E731
         values = np.dot([*a, *b], states) - d
         zeros = []
@@ -70,7 +85,11 @@ def found(inputs, words, end):
                 i and values[i - 1] * low > 0 and abs(low) < min(abs(values[i - 1]), abs(high))
             ):  # a dip, which may hold a close pair
                 side = np.sign(low)
-                dip = minimize_scalar(lambda t: side * at(t), bounds=(times[i - 1], times[i + 1]), method="bounded")  # noqa: B023
+                dip = minimize_scalar(
+                    lambda t, side=side, at=at: side * at(t),
+                    bounds=(times[i - 1], times[i + 1]),
+                    method="bounded",
+                )
                 if dip.fun < 0:
                     ends = (times[i - 1], dip.x, times[i + 1])
                     for k, way in enumerate((-side, side)):
@@ -92,7 +111,9 @@ def outside(inputs, tables):
     with mp.workprec(400):
         rows.sort(key=lambda row: row[1])
         pars, forms = constants(inputs), {word: form(inputs, word) for word in tables}
-        for (word, _, bound, *state), true in zip(rows, truth(inputs, [row[1] for row in rows]), strict=True):
+        for (word, _, bound, *state), true in zip(
+            rows, truth(inputs, [row[1] for row in rows]), strict=True
+        ):
             numbers, parts = list(map(number, true)), forms[word]
             rates = [*numbers[3:], *acceleration(pars, numbers)]
             late = -value(parts, numbers) / value((*parts[:2], 0), rates)
@@ -111,6 +132,9 @@ def number(x):
 
 def rows_of(table):
     """Yield of each passage its time, the bound on that, and x to vz, each with its bound."""
-    columns = [zip(table.exact(name), table.bound(name), strict=True) for name in ("x", "y", "z", "vx", "vy", "vz")]
+    columns = [
+        zip(table.exact(name), table.bound(name), strict=True)
+        for name in ("x", "y", "z", "vx", "vy", "vz")
+    ]
     for t, bound, *state in zip(table.exact("t"), table.bound("t"), *columns, strict=True):
         yield t, bound, *state

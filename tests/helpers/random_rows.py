@@ -40,7 +40,9 @@ def random_inputs(kind: str, generator: random.Random, span: Fraction = SPAN) ->
     }
     share = {"small": 0.01, "wide": 0.5, "meridian": 0.05, "planet": 0.3, "over": 0}[kind]
     speed = float(length) ** 0.5 * 3.13 * share
-    x, y, vx, vy = (_decimal(generator, -f, f) for f in (*[float(length) * share] * 2, *[speed] * 2))
+    x, y, vx, vy = (
+        _decimal(generator, -f, f) for f in (*[float(length) * share] * 2, *[speed] * 2)
+    )
     if kind == "meridian":
         x, vx = _decimal(generator, -1e-4, 1e-4), _decimal(generator, -1e-4, 1e-4)
     if generator.random() < 0.3:
@@ -56,10 +58,17 @@ def random_inputs(kind: str, generator: random.Random, span: Fraction = SPAN) ->
         rates = _decimal(generator, -200, 200, 3), _decimal(generator, -60, 60, 3)
         angles = (_decimal(generator, 60, 179, 3), _decimal(generator, -180, 180, 3), *rates)
         site["length"] = _decimal(generator, 1, 10, 3)
-    return replace(load_scene("paris").exact, **site, position=None if angles else (x, y, vx, vy), angles=angles)
+    return replace(
+        load_scene("paris").exact,
+        **site,
+        position=None if angles else (x, y, vx, vy),
+        angles=angles,
+    )
 
 
-def random_kinds(seed: int, count: int, span: Fraction = SPAN, kinds: tuple[str, ...] = KINDS) -> Iterator[Inputs]:
+def random_kinds(
+    seed: int, count: int, span: Fraction = SPAN, kinds: tuple[str, ...] = KINDS
+) -> Iterator[Inputs]:
     """Yield scenes of all kinds in turn."""
     generator = random.Random(seed)
     for i in range(count):
@@ -70,10 +79,13 @@ def columns_of_many(many: list[Inputs]) -> dict[str, DoubleDouble]:
     """Return scenes of one release form and one gravity as columns."""
     columns = [columns_of(inputs) for inputs in many]
     return {
-        name: DoubleDouble.from_pairs(np.concatenate([each[name].pairs for each in columns])) for name in columns[0]
+        name: DoubleDouble.from_pairs(np.concatenate([each[name].pairs for each in columns]))
+        for name in columns[0]
     }
 
 
 def rows_of(many: list[Inputs], section: str = "") -> Rows:
     """Return scenes of any release form and gravity as rows, in order, with a section's form or that of xdot."""
-    return Rows.joined([row_constants(columns_of(inputs), inputs.gravity_is, 1, section) for inputs in many])
+    return Rows.joined(
+        [row_constants(columns_of(inputs), inputs.gravity_is, 1, section) for inputs in many]
+    )

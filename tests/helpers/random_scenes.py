@@ -11,10 +11,19 @@ def random_scene(seed: int) -> dict[str, Any]:
     """Return a scene at the level enclosed: 5 to 120 swings, 15 to 30 digits."""
     rng = Random(seed)
     length = 10 ** rng.uniform(-3, 4)
-    latitude = rng.choice([rng.uniform(-90, 90)] * 6 + [0, 90, -90, rng.uniform(-1e-6, 1e-6), 89.999999])
+    latitude = rng.choice(
+        [rng.uniform(-90, 90)] * 6 + [0, 90, -90, rng.uniform(-1e-6, 1e-6), 89.999999]
+    )
     g = rng.choice([9.80665] * 5 + [1.62, 0.01, 24.8])
     rotation = rng.choice(
-        [7.292115e-5, 7.292115e-5, 0, -7.292115e-5, 10 ** rng.uniform(-4, -0.31), -(10 ** rng.uniform(-4, -0.31))]
+        [
+            7.292115e-5,
+            7.292115e-5,
+            0,
+            -7.292115e-5,
+            10 ** rng.uniform(-4, -0.31),
+            -(10 ** rng.uniform(-4, -0.31)),
+        ]
     )
     radius: float = 6378137
     if abs(rotation) > 1e-3:  # keep the centrifugal pull below a few g
@@ -45,14 +54,26 @@ def random_scene(seed: int) -> dict[str, Any]:
     angle = rng.choice([10 ** rng.uniform(-4, -0.2)] * 3 + [rng.uniform(0.3, 3.1)])
     if kind == 0 and angle < 1.5:
         azimuth, r = rng.uniform(0, 2 * math.pi), length * math.sin(angle)
-        document["release"] = {"x": f"{r * math.cos(azimuth):.12g}", "y": f"{r * math.sin(azimuth):.12g}"}
+        document["release"] = {
+            "x": f"{r * math.cos(azimuth):.12g}",
+            "y": f"{r * math.sin(azimuth):.12g}",
+        }
         if rng.random() < 0.5:
             speed = 0.5 * angle * length * swing
-            document["release"] |= {"vx": f"{rng.gauss(0, speed):.9g}", "vy": f"{rng.gauss(0, speed):.9g}"}
+            document["release"] |= {
+                "vx": f"{rng.gauss(0, speed):.9g}",
+                "vy": f"{rng.gauss(0, speed):.9g}",
+            }
     else:
         azimuth = rng.choice([rng.uniform(-180, 180)] * 5 + [0, 90, -90, 180])
         document["release"] = {"angle": f"{math.degrees(angle):.12g}", "azimuth": f"{azimuth:.12g}"}
         if rng.random() < 0.6:
-            rates = math.degrees(rng.gauss(0, 0.5) * angle * swing), math.degrees(rng.gauss(0, 0.7) * swing)
-            document["release"] |= {"angle_rate": f"{rates[0]:.9g}", "azimuth_rate": f"{rates[1]:.9g}"}
+            rates = (
+                math.degrees(rng.gauss(0, 0.5) * angle * swing),
+                math.degrees(rng.gauss(0, 0.7) * swing),
+            )
+            document["release"] |= {
+                "angle_rate": f"{rates[0]:.9g}",
+                "azimuth_rate": f"{rates[1]:.9g}",
+            }
     return document

@@ -18,7 +18,9 @@ def swept() -> list[str]:
     import reference
 
     over = ["site.latitude=10:80:10"]
-    rows = reference.sweep(reference.load_scene("paris", ["run.t_end=600"]), over=over, engine="octet")
+    rows = reference.sweep(
+        reference.load_scene("paris", ["run.t_end=600"]), over=over, engine="octet"
+    )
     return [f"{name} {rows[name].tolist()}" for name in COUNTED]
 
 
@@ -27,7 +29,9 @@ def confirmed() -> list[str]:
     import reference
     from reference.dataset.render import render
 
-    texts = render(reference.solve(reference.load_scene("paris"), t_end="600", digits=20, level="confirmed"))
+    texts = render(
+        reference.solve(reference.load_scene("paris"), t_end="600", digits=20, level="confirmed")
+    )
     return [f"{file} {sha256(text.encode()).hexdigest()}" for file, text in texts.items()]
 
 
@@ -57,7 +61,9 @@ def differing(names: Iterable[str]) -> str:
     """Return the kind of processor that numba compiles for, and the scenes that do not come out as they ship."""
     import numba
 
-    return f"{numba.config.CPU_NAME}: {[name for name in names if made_again(name) != shipped(name)]}"
+    return (
+        f"{numba.config.CPU_NAME}: {[name for name in names if made_again(name) != shipped(name)]}"
+    )
 
 
 def processor() -> str:

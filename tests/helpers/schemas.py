@@ -30,7 +30,10 @@ def path_of(name: str) -> Path:
 
 def schema_of(name: str) -> dict[str, Any]:
     """Return the schema that the code has for such a file."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **SCHEMAS[name].model_json_schema()}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **SCHEMAS[name].model_json_schema(),
+    }
 
 
 if __name__ == "__main__":

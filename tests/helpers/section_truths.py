@@ -28,15 +28,32 @@ FAST = {"rotation_rate": "0.02", "equatorial_radius": "1000", "length": "20", "x
 CASES = {  # changes of Paris, sections, end: rest and moving, fast planets, where d is large
     "paris": ({}, ("highest", "lowest", "gate 30", "gate -75.5@0", "turn 100.25"), 20),
     "fast": (FAST | {"vx": "0.4"}, ("highest", "lowest", "gate 30", "gate 110@0", "turn 200"), 20),
-    "lean": (FAST | {"latitude": "-35", "gravity_is": "effective"}, ("gate 0", "gate 91", "gate 0@0", "highest"), 20),
-    "plane": ({"rotation_rate": "0", "vy": "0.3"}, ("gate 10", "gate 100@0", "turn 53.2", "lowest"), 20),
+    "lean": (
+        FAST | {"latitude": "-35", "gravity_is": "effective"},
+        ("gate 0", "gate 91", "gate 0@0", "highest"),
+        20,
+    ),
+    "plane": (
+        {"rotation_rate": "0", "vy": "0.3"},
+        ("gate 10", "gate 100@0", "turn 53.2", "lowest"),
+        20,
+    ),
     "pole": ({"latitude": "90", "angles": ("5", "30", "0", "0")}, ("turn 120", "gate 60"), 20),
     "own plane": ({"angles": ("5", "30", "0", "0")}, ("gate 30@0", "turn 120", "highest"), 20),
     "aside": ({"gravity_is": "effective", "vx": "-0.04", "vy": "0.03"}, ("highest", "lowest"), 20),
-    "nearly aside": ({"gravity_is": "effective", "vx": "-0.04", "vy": f"0.03{'0' * 45}1"}, ("highest", "lowest"), 20),
-    "from below": ({"x": "0", "y": "0", "vx": "0.3"}, ("highest", "lowest", "gate 30@0", "turn 90"), 20),
+    "nearly aside": (
+        {"gravity_is": "effective", "vx": "-0.04", "vy": f"0.03{'0' * 45}1"},
+        ("highest", "lowest"),
+        20,
+    ),
+    "from below": (
+        {"x": "0", "y": "0", "vx": "0.3"},
+        ("highest", "lowest", "gate 30@0", "turn 90"),
+        20,
+    ),
 }
-POSSIBLE = {  # what vanishes at the release with its rate, or may vanish there, so that nothing is decided
+# what vanishes at the release with its rate, or may vanish there, so that nothing is decided
+POSSIBLE = {
     ("own plane", "gate 30@0"),
     ("pole", "turn 120"),
     ("nearly aside", "highest"),
@@ -63,31 +80,50 @@ def forms_hold(module):
     unit, made_up = 1 << BITS, ([1, 2, 3], [3, -1, 2], [-2, 4, 1], [0])
     rows = tuple([x * unit // 8 for x in row] for row in made_up)
     motions = {
-        s: [[sum(Fraction(c, unit) * f(k) for k, c in enumerate(x)) for x in rows[:3]] for f in _powers(s)]
+        s: [
+            [sum(Fraction(c, unit) * f(k) for k, c in enumerate(x)) for x in rows[:3]]
+            for f in _powers(s)
+        ]
         for s in (Fraction(-1, 2), Fraction(0), Fraction(3, 4))
     }
     for speed, (a, b, d), h in product(("0", "0.1"), FORMS, (1, Fraction(1, 4), 3)):
         balls = SceneBalls(scene(rotation_rate="0", vx=speed), BITS + 64)
-        piece = Piece(balls, TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH))
+        piece = Piece(
+            balls,
+            TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH),
+        )
         axis = next(i for i in range(3) if a[i] or b[i])
         for part in range(5):
             sizes = [Fraction(part in (i, 4), 100) for i in range(3)]
             with ctx.workprec(BITS + 64):
-                numbers = [ball(Fraction(x)) for x in a], [ball(Fraction(x)) for x in b], ball(Fraction(d))
+                numbers = (
+                    [ball(Fraction(x)) for x in a],
+                    [ball(Fraction(x)) for x in b],
+                    ball(Fraction(d)),
+                )
                 made = module.SectionSlope(Covered(piece, Tube(*map(ball, sizes))), *numbers)
             for s, side in product(motions, (1, -1)):
                 r, v, w = ([*x] for x in motions[s])
                 for i, x in enumerate((r, v, w)):
                     x[axis] += side * sizes[i]
                 with ctx.workprec(BITS + 64):
-                    assert made.at(0, ball(s)).overlaps(ball(h * (_dot(a, r) - d) + _dot(b, v))), "the form"
-                    assert made.at(1, ball(s)).overlaps(ball(h * _dot(a, v) + _dot(b, w))), "its rate"
+                    assert made.at(0, ball(s)).overlaps(ball(h * (_dot(a, r) - d) + _dot(b, v))), (
+                        "the form"
+                    )
+                    assert made.at(1, ball(s)).overlaps(ball(h * _dot(a, v) + _dot(b, w))), (
+                        "its rate"
+                    )
             scale = float(h * max(a) * sizes[0] + max(b) * sizes[1])
-            assert float(made.forms[0][1].rad()) == pytest.approx(scale, rel=1e-6), "what counts as near to zero"
+            assert float(made.forms[0][1].rad()) == pytest.approx(scale, rel=1e-6), (
+                "what counts as near to zero"
+            )
 
 
 RELEASES = [  # position and velocity, or angle, azimuth and their rates
-    *(dict(zip(("x", "y", "vx", "vy"), row, strict=True)) for row in product("03", "04", ("0", "0.3"), ("0", "0.3"))),
+    *(
+        dict(zip(("x", "y", "vx", "vy"), row, strict=True))
+        for row in product("03", "04", ("0", "0.3"), ("0", "0.3"))
+    ),
     {"x": "3", "y": "4", "vx": "-0.4", "vy": "0.3"},
     {"x": "3", "y": "4", "vx": "-0.4", "vy": f"0.3{'0' * 60}1"},
     *({"angles": angles} for angles in product(("0", "5", "180"), ("0", "30", "90"), "02", "03")),
@@ -101,7 +137,16 @@ SITES = [
     {"latitude": "-90"},
     {"latitude": "1e-40"},
 ]
-AT_RELEASE = ("highest", "turn 0", "turn 30", "turn 90", "gate 0@0", "gate 30@0", "gate -90@0", "gate 30")
+AT_RELEASE = (
+    "highest",
+    "turn 0",
+    "turn 30",
+    "turn 90",
+    "gate 0@0",
+    "gate 30@0",
+    "gate -90@0",
+    "gate 30",
+)
 SURE = {  # what exact zeros show to vanish, or a sum of exact products
     ("3", "4", "0", "0"): {"highest", "turn 0", "turn 30", "turn 90"},
     ("3", "4", "-0.4", "0.3"): {"highest"},
@@ -128,9 +173,15 @@ def releases_hold(module):
         with mp.workprec(1000):
             released = start(inputs)
             for word in said:
-                assert abs(value(forms_at(site)[word], released)) < mp.mpf(10) ** -250, (changes, site, word)
+                assert abs(value(forms_at(site)[word], released)) < mp.mpf(10) ** -250, (
+                    changes,
+                    site,
+                    word,
+                )
         if SITES[site] == {"gravity_is": "effective"}:
-            assert said >= SURE.get(changes.get("angles") or tuple(changes.values()), set()), changes
+            assert said >= SURE.get(changes.get("angles") or tuple(changes.values()), set()), (
+                changes
+            )
 
 
 def wide_forms_hold(module):
@@ -141,18 +192,30 @@ def wide_forms_hold(module):
     off = Fraction(1, 50)
     for h, place in product((Fraction(1, 4), 3), range(7)):
         balls = SceneBalls(scene(rotation_rate="0"), BITS + 64)
-        piece = Piece(balls, TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH))
+        piece = Piece(
+            balls,
+            TaylorStep(Fraction(0), Fraction(h), Fraction(-1), Fraction(1), BITS, rows, EARTH),
+        )
         middle = [Fraction(x) for x in (1, -2, 3, 2, 1, -1, 1)]
         with ctx.workprec(BITS + 64):
-            wide = [ball(x) + (arb(0, ball(off)) if i == place else 0) for i, x in enumerate(middle)]
+            wide = [
+                ball(x) + (arb(0, ball(off)) if i == place else 0) for i, x in enumerate(middle)
+            ]
             made = module.SectionSlope(Covered(piece, still), wide[:3], wide[3:6], wide[6])
         for side, s in product((1, -1), (Fraction(-1), Fraction(1, 2), Fraction(1))):
             member = [x + side * off * (i == place) for i, x in enumerate(middle)]
-            r, v, w = ([sum(Fraction(c, unit) * f(k) for k, c in enumerate(x)) for x in rows[:3]] for f in _powers(s))
+            r, v, w = (
+                [sum(Fraction(c, unit) * f(k) for k, c in enumerate(x)) for x in rows[:3]]
+                for f in _powers(s)
+            )
             a, b, d = member[:3], member[3:6], member[6]
             with ctx.workprec(BITS + 64):
-                assert made.at(0, ball(s)).overlaps(ball(h * (_dot(a, r) - d) + _dot(b, v))), "the form of a member"
-                assert made.at(1, ball(s)).overlaps(ball(h * _dot(a, v) + _dot(b, w))), "the rate of a member"
+                assert made.at(0, ball(s)).overlaps(ball(h * (_dot(a, r) - d) + _dot(b, v))), (
+                    "the form of a member"
+                )
+                assert made.at(1, ball(s)).overlaps(ball(h * _dot(a, v) + _dot(b, w))), (
+                    "the rate of a member"
+                )
         # a wide d costs no more than it is wide, and nothing in the rate, as it is constant
         if place == 6:
             assert float(made.forms[0][1].rad()) == pytest.approx(float(h * off), rel=1e-6)
@@ -164,14 +227,22 @@ def few_bits_hold(module):
     wave = [(0, 1, 0, -1)[k % 4] * Fraction(3**k, factorial(k)) for k in range(48)]  # sin 3s
     slow = [Fraction((-1) ** (k // 3), 2 + k) for k in range(48)]  # whose last orders are not small
     rows = tuple([int(c * 2**BITS) for c in row] for row in (wave, slow, [0], [0]))
-    piece = Piece(SceneBalls(scene(), BITS + 64), TaylorStep(*map(Fraction, (0, 1, -1, 1)), BITS, rows, EARTH))
+    piece = Piece(
+        SceneBalls(scene(), BITS + 64), TaylorStep(*map(Fraction, (0, 1, -1, 1)), BITS, rows, EARTH)
+    )
     tube, ends = Tube(*map(arb, ("1e-9", "2e-9", "3e-9"))), [Fraction(k, 8) for k in range(-8, 9)]
-    for (x, m), (n, (low, high)) in product(((1, 0), (0, 1), (2, 1)), product((0, 1), combinations(ends, 2))):
+    for (x, m), (n, (low, high)) in product(
+        ((1, 0), (0, 1), (2, 1)), product((0, 1), combinations(ends, 2))
+    ):
         with ctx.workprec(BITS + 64):
-            made = module.SectionSlope(Covered(piece, tube), [arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0))
+            made = module.SectionSlope(
+                Covered(piece, tube), [arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0)
+            )
             both = [made.at(n, ball(s)) for s in (low, high)]
         with ctx.workprec(64):
-            assert all(made.at(n, ball(s)).contains(y) for s, y in zip((low, high), both, strict=True)), "at a place"
+            assert all(
+                made.at(n, ball(s)).contains(y) for s, y in zip((low, high), both, strict=True)
+            ), "at a place"
             whole = made.at(n, ball(low).union(ball(high)))
             assert all(whole.contains(y) for y in both), "on a part"
 
@@ -203,12 +274,21 @@ def apses_hold(module):
         gaps = [q - f for q, f in zip(on_sphere(angle), made_up, strict=True)]
         missed = [np.array([gap.deriv(n)(0) if n else gap(0) for gap in gaps]) for n in range(3)]
         x, z = ([int(c * unit) for c in f.coef] for f in made_up)
-        step = TaylorStep(Fraction(0), Fraction(3), Fraction(-1), Fraction(1), BITS, (x, [0], z, [0]), EARTH)
+        step = TaylorStep(
+            Fraction(0), Fraction(3), Fraction(-1), Fraction(1), BITS, (x, [0], z, [0]), EARTH
+        )
         piece, tube = Piece(balls, step), Tube(*(arb(float(np.linalg.norm(q))) for q in missed))
         numbers = [arb(0)] * 3, [arb(b[0]), arb(0), arb(b[1])], arb(0)
-        made, plain = module.Apsis(Covered(piece, tube), *numbers), module.SectionSlope(Covered(piece, tube), *numbers)
+        made, plain = (
+            module.Apsis(Covered(piece, tube), *numbers),
+            module.SectionSlope(Covered(piece, tube), *numbers),
+        )
         for n in (0, 1):
-            assert abs(b @ missed[n + 1]) <= float(made.forms[n][1].rad()) * (1 + 1e-6), (b, n, missed)
+            assert abs(b @ missed[n + 1]) <= float(made.forms[n][1].rad()) * (1 + 1e-6), (
+                b,
+                n,
+                missed,
+            )
         if b == tilted and missed[1].any():  # what it is for
             assert float(made.forms[0][1].rad()) < 0.8 * float(plain.forms[0][1].rad())
         at = made.row(arb(0.5, 0.25))
@@ -238,14 +318,19 @@ def passages_hold(module, names=CASES):
         balls = SceneBalls(inputs, BITS + 64)
         course = Course(balls, [Fraction(0), Fraction(end)], False, ())
         both = [*product(words, (False, True))]
-        course.scans = {(word, second): module.section_scan(balls, word, second) for word, second in both}
+        course.scans = {
+            (word, second): module.section_scan(balls, word, second) for word, second in both
+        }
         for step in until(pair(Recurrence(balls, BITS, 64).chain(Fraction(1, 4))), Fraction(end)):
             course.advance(step)
         proved = course.finish()
         with mp.workprec(200):
             if name not in TRUTHS:
                 times = [Fraction(end * k, 100) for k in range(1, 101)]
-                TRUTHS[name] = [[mp.mpf(x.numerator) / x.denominator for x in row] for row in truth(inputs, times, 200)]
+                TRUTHS[name] = [
+                    [mp.mpf(x.numerator) / x.denominator for x in row]
+                    for row in truth(inputs, times, 200)
+                ]
             for word, second in both:
                 check(inputs, word, proved.zeros[word, second], TRUTHS[name], end, name)
 

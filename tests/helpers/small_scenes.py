@@ -24,7 +24,9 @@ def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
     return start.ctx, start.k, start.n, start.v
 
 
-def run_in_limbs(scene: Scene, prec: int, times: Any, zeros: tuple[str, ...] = (XDOT,), report: Any = None) -> Run:
+def run_in_limbs(
+    scene: Scene, prec: int, times: Any, zeros: tuple[str, ...] = (XDOT,), report: Any = None
+) -> Run:
     """Return a run of the engine limbs at a precision in bits."""
     limbs = engines()["limbs"]
     return limbs.run(limbs.plan(scene.exact, prec, times, zeros), report)
@@ -35,7 +37,9 @@ def start_for(scene: Scene, number: NumberType) -> Start:
     return Start.of(scene.exact, number.prec + GUARD_BITS)
 
 
-def stepper_of(scene: Scene, number: NumberType, name: str = "momentum", kind: Any = None, **keywords: Any) -> Any:
+def stepper_of(
+    scene: Scene, number: NumberType, name: str = "momentum", kind: Any = None, **keywords: Any
+) -> Any:
     """Return heyoka's integrator of a scene at its release; `kind` is a subclass of it."""
     from reference.engines.heyoka.stepper import Stepper
 

@@ -78,7 +78,9 @@ def table(
     last: str = "",
 ) -> str:
     """Return a text of a header and rows."""
-    lines = ([] if header is None else [header]) + [separator.join(map(spelled, row)) + last for row in rows]
+    lines = ([] if header is None else [header]) + [
+        separator.join(map(spelled, row)) + last for row in rows
+    ]
     return end.join([*lines, ""])
 
 
@@ -99,7 +101,9 @@ def passages(text: str, times: Sequence[float]) -> Spelling:
 
 def exponent(letter: str, since: int) -> list[Row]:
     """Return rows whose numbers have an exponent with a letter from a row on."""
-    written = [tuple(f"{float(number):.16e}".replace("e", letter) for number in row[1:]) for row in HALVES]
+    written = [
+        tuple(f"{float(number):.16e}".replace("e", letter) for number in row[1:]) for row in HALVES
+    ]
     return [row if i < since else (row[0], *written[i]) for i, row in enumerate(HALVES)]
 
 
@@ -119,7 +123,9 @@ def of_the_field() -> dict[str, Spelling]:
                 name = f"comma {word} {kind} {'header' if head else 'none'}"
                 found[name] = read(table(header, rows, separator, comma), rows)
             mixed = [(row[0], *map(comma, row[1:])) for row in rows]
-            found[f"point and comma {word} {kind}"] = read(table(separator.join(NAMES), mixed, separator), rows)
+            found[f"point and comma {word} {kind}"] = read(
+                table(separator.join(NAMES), mixed, separator), rows
+            )
     found["comma list"] = passages("t\n2,2430\n6,7295\n11,2155\n", [2.243, 6.7295, 11.2155])
     found["comma list whole first"] = passages("t\n2\n6,7295\n11,2155\n", [2, 6.7295, 11.2155])
     found["comma list numbered"] = passages("k;t\n1;2,2430\n2;6,7295\n", [2.243, 6.7295])
@@ -150,16 +156,26 @@ def of_the_field() -> dict[str, Spelling]:
     found["units semicolons"] = read(table("t;x;y\ns;m;m", WHOLE, ";", comma), WHOLE)
     found["units tabs"] = read(table("t\tx\ty\ns\tcm\tcm", HALVES, "\t"), factors=(1, CM, CM))
     found["units comment"] = read(table("# t x y\n# s cm cm", HALVES, " "), factors=(1, CM, CM))
-    found["units comment labelled"] = read(table("# t x y\n# units: s cm cm", HALVES, " "), factors=(1, CM, CM))
-    found["units and a comment"] = read(table("t,x,y\ns,cm,cm\n# of the first run", HALVES), factors=(1, CM, CM))
+    found["units comment labelled"] = read(
+        table("# t x y\n# units: s cm cm", HALVES, " "), factors=(1, CM, CM)
+    )
+    found["units and a comment"] = read(
+        table("t,x,y\ns,cm,cm\n# of the first run", HALVES), factors=(1, CM, CM)
+    )
     # R3: quotes
     found["quotes around all"] = read(table('"t","x","y"', HALVES, ",", lambda word: f'"{word}"'))
-    found["quotes around commas"] = read(table('"t","x","y"', WHOLE, ",", lambda word: f'"{comma(word)}"'), WHOLE)
+    found["quotes around commas"] = read(
+        table('"t","x","y"', WHOLE, ",", lambda word: f'"{comma(word)}"'), WHOLE
+    )
     found["quotes where needed"] = read(
         table("t,x,y", WHOLE, ",", lambda word: f'"{comma(word)}"' if "." in word else word), WHOLE
     )
-    found["quoted separator"] = read(table('Time (s) Run #1,"Position, X (m) Run #1","Position, Y (m) Run #1"', HALVES))
-    found["quoted unread separator"] = read(table('t,x,y,"note, if any"', [(*row, '"a, b"') for row in HALVES]))
+    found["quoted separator"] = read(
+        table('Time (s) Run #1,"Position, X (m) Run #1","Position, Y (m) Run #1"', HALVES)
+    )
+    found["quoted unread separator"] = read(
+        table('t,x,y,"note, if any"', [(*row, '"a, b"') for row in HALVES])
+    )
     found["latest"] = read(table("Latest: Time (s),Latest: X (m),Latest: Y (m)", HALVES))
     found["quotes blanks"] = read(table('"t" "x" "y"', HALVES, " "))
     # R4: names of three parts
@@ -178,7 +194,9 @@ def of_the_field() -> dict[str, Spelling]:
     ):
         found[f"name {x}"] = read(table(f"t_s,{x},{y}", HALVES), factors=(1, factor, factor))
     # R5: clocks, and times that are text
-    found["clock text"] = read(table("time,x,y", [(f"00:00:0{float(t):.3f}", x, y) for t, x, y in HALVES]))
+    found["clock text"] = read(
+        table("time,x,y", [(f"00:00:0{float(t):.3f}", x, y) for t, x, y in HALVES])
+    )
     found["clock moments"] = read(
         table("time,x,y", [(f"2026-03-01T12:00:0{float(t):.3f}Z", x, y) for t, x, y in HALVES])
     )
@@ -200,7 +218,10 @@ def of_the_field() -> dict[str, Spelling]:
     found["modelling"] = read(table("timestamp,x(t),y(t)", HALVES))
     found["index"] = read(table(",t,x,y", [(str(i), *row) for i, row in enumerate(HALVES)]))
     found["latin"] = read(
-        table("Zeit (s);Ost (m);Nord (m);Länge", [(*row, "1") for row in WHOLE], ";", comma).encode("latin-1"), WHOLE
+        table("Zeit (s);Ost (m);Nord (m);Länge", [(*row, "1") for row in WHOLE], ";", comma).encode(
+            "latin-1"
+        ),
+        WHOLE,
     )
     found["windows"] = read(table("t,x,y", HALVES, end="\r\n"))
     return found
@@ -233,7 +254,9 @@ def of_my_own() -> dict[str, Spelling]:
         "t;x;y\n1;0,250;2,500\n2;1,125;2,375\n", [("1", "0.25", "2.5"), ("2", "1.125", "2.375")]
     )
     found["thousands and comma"] = refused("t;x;y\n0;0,3;0,4\n1;1.234,5;0,1\n", "thousands")
-    found["thousands of a point beside commas"] = refused("t;x;y\n1.000;0,3;0,4\n2.000;0,2;0,1\n", "1.000")
+    found["thousands of a point beside commas"] = refused(
+        "t;x;y\n1.000;0,3;0,4\n2.000;0,2;0,1\n", "1.000"
+    )
     found["point of times beside commas"] = read(
         "t;x;y\n0.000;0,3;0,4\n1.000;0,2;0,1\n", [("0", "0.3", "0.4"), ("1", "0.2", "0.1")]
     )
@@ -241,12 +264,17 @@ def of_my_own() -> dict[str, Spelling]:
         "t (ms);x (mm);y (mm)\n0;300;400\n1.000;278;362\n2.000;216;256\n", "1.000"
     )
     found["thousands of a blank"] = refused("t;x;y\n0;0,3;0,4\n1 234,5;0,2;0,1\n", "thousands")
-    found["thousands of an apostrophe"] = refused("t;x;y\n0;0.3;0.4\n1'234.5;0.2;0.1\n", "thousands")
+    found["thousands of an apostrophe"] = refused(
+        "t;x;y\n0;0.3;0.4\n1'234.5;0.2;0.1\n", "thousands"
+    )
     found["comma in front after a blank"] = refused("0 ,5 ,3\n1 ,25 ,4\n", "semicolons")
-    found["comma in front"] = read("t;x;y\n0;,5;,25\n1;,25;-,5\n", [("0", "0.5", "0.25"), ("1", "0.25", "-0.5")])
+    found["comma in front"] = read(
+        "t;x;y\n0;,5;,25\n1;,25;-,5\n", [("0", "0.5", "0.25"), ("1", "0.25", "-0.5")]
+    )
     found["number and time, or a comma"] = refused("1,2\n2,6\n3,11\n", "first line", alone=True)
     found["comma with exponents"] = read(
-        "t x y\n0 3,0E-01 4,0e-1\n5,0E-01 2,5E-1 +1,25E+00\n", [("0", "0.3", "0.4"), ("0.5", "0.25", "1.25")]
+        "t x y\n0 3,0E-01 4,0e-1\n5,0E-01 2,5E-1 +1,25E+00\n",
+        [("0", "0.3", "0.4"), ("0.5", "0.25", "1.25")],
     )
     found["commas of a text beside"] = read(
         "t;x;y;note\n" + "".join(f"{';'.join(row)};one, two\n" for row in commas), WHOLE
@@ -256,27 +284,35 @@ def of_my_own() -> dict[str, Spelling]:
     found["units of the screen"] = refused(table("t,x,y\ns,px,px", HALVES), "px")
     found["units for two of three"] = refused(table("# units: ms, cm\nt,x,y", HALVES), "units")
     found["units against the header"] = refused(table("t,x (cm),y (cm)\ns,m,m", HALVES), "header")
-    found["units as the header"] = read(table("t,x (cm),y (cm)\ns,cm,cm", HALVES), factors=(1, CM, CM))
+    found["units as the header"] = read(
+        table("t,x (cm),y (cm)\ns,cm,cm", HALVES), factors=(1, CM, CM)
+    )
     found["units twice"] = refused(table("ms,cm,cm\nt,x,y\ns,m,m", HALVES), "units")
     found["units nobody knows"] = refused(table("t,x,y\ns,furlongs,m", HALVES), "furlongs")
     found["units of SI in words"] = read(table("# all in SI units\nt,x,y", HALVES))
     found["units of a list"] = passages("t\nms\n2243\n6729.5\n", [2.243, 6.7295])
     found["unit in a field"] = refused("t,x,y\n0,0.3 m,0.4 m\n1,0.2 m,0.1 m\n", "row of numbers")
     # clocks
-    found["clock of two numbers"] = refused("time,x,y\n00:00,0.3,0.4\n00:01,0.2,0.1\n", "minutes and seconds")
-    found["clock of minutes"] = read(table("time,x,y", [(f"00:0{float(t):.1f}", x, y) for t, x, y in HALVES]))
+    found["clock of two numbers"] = refused(
+        "time,x,y\n00:00,0.3,0.4\n00:01,0.2,0.1\n", "minutes and seconds"
+    )
+    found["clock of minutes"] = read(
+        table("time,x,y", [(f"00:0{float(t):.1f}", x, y) for t, x, y in HALVES])
+    )
     found["clock of frames"] = refused(
         table("time,x,y", [(f"00:00:0{i}:12", *row[1:]) for i, row in enumerate(HALVES)]), "number"
     )
     found["clock of twelve hours"] = refused(
-        table("time,x,y", [(f"12:00:0{i} PM", *row[1:]) for i, row in enumerate(HALVES)]), "hours:minutes:seconds"
+        table("time,x,y", [(f"12:00:0{i} PM", *row[1:]) for i, row in enumerate(HALVES)]),
+        "hours:minutes:seconds",
     )
     found["date of days first"] = refused(
         table("time,x,y", [(f"03/01/2026 12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]),
         "hours:minutes:seconds",
     )
     found["date of no calendar"] = refused(
-        table("time,x,y", [(f"2026-02-30T12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]), "calendar"
+        table("time,x,y", [(f"2026-02-30T12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]),
+        "calendar",
     )
     found["date and zone"] = read(
         table(
@@ -296,18 +332,26 @@ def of_my_own() -> dict[str, Spelling]:
     found["date and blank"] = read(
         table("time;x;y", [(f"2026-03-01 12:00:0{t}", x, y) for t, x, y in HALVES], ";", comma)
     )
-    found["time of day"] = read(table("time,x,y", [(f"12:34:5{float(t):.1f}", x, y) for t, x, y in HALVES]))
+    found["time of day"] = read(
+        table("time,x,y", [(f"12:34:5{float(t):.1f}", x, y) for t, x, y in HALVES])
+    )
     found["clock and number"] = refused("time,x,y\n00:00:00,0.3,0.4\n1,0.2,0.1\n", "first row")
     found["number and clock"] = refused("time,x,y\n0,0.3,0.4\n00:00:01,0.2,0.1\n", "number")
-    found["clock with a unit"] = refused("time (ms),x,y\n00:00:00,0.3,0.4\n00:00:01,0.2,0.1\n", "unit")
+    found["clock with a unit"] = refused(
+        "time (ms),x,y\n00:00:00,0.3,0.4\n00:00:01,0.2,0.1\n", "unit"
+    )
     found["clock that started before"] = read(table("t,x,y", late), late)
     # rows without numbers
-    found["failed at the end"] = refused(table("t,x,y", [*HALVES, ("3", "nan", "nan")]), "run failed")
+    found["failed at the end"] = refused(
+        table("t,x,y", [*HALVES, ("3", "nan", "nan")]), "run failed"
+    )
     found["infinite in the middle"] = refused(
         table("t,x,y", [HALVES[0], ("0.2", "inf", "0"), *HALVES[1:]]), "run failed"
     )
     found["nothing but lost frames"] = refused("t,x,y\n0,,\n1,,\n2,,\n", "in any row")
-    found["lost at first and at last"] = read(table("t,x,y", [("0", "", ""), *late, ("9", "", "")]), late)
+    found["lost at first and at last"] = read(
+        table("t,x,y", [("0", "", ""), *late, ("9", "", "")]), late
+    )
     found["no time"] = refused(table("t,x,y", [*HALVES, ("", "0.1", "0.2")]), "t")
     found["mean below"] = refused(table("t,x,y", [*HALVES, ("Mean", "0.1", "0.2")]), "Mean")
     found["cut off"] = refused(table("t,x,y", HALVES) + "2.5,0.1", "cut off")
@@ -326,7 +370,10 @@ def of_my_own() -> dict[str, Spelling]:
         found[name] = refused(f"t,x,y\n0,0.3,0.4\n1,{number},0.1\n", "number")
     # names
     found["two runs"] = refused(
-        table("Time (s),x (m) Run #1,x (m) Run #2,y (m) Run #1", [(t, x, x, y) for t, x, y in HALVES]), "x (m) Run #2"
+        table(
+            "Time (s),x (m) Run #1,x (m) Run #2,y (m) Run #1", [(t, x, x, y) for t, x, y in HALVES]
+        ),
+        "x (m) Run #2",
     )
     found["row names"] = refused("t x y\n1 0 0.3 0.4\n2 1 0.2 0.1\n", "4 fields")
     found["words of a comment for four columns"] = refused(
@@ -339,7 +386,9 @@ def of_my_own() -> dict[str, Spelling]:
     found["an inch"] = read(table('t,x,y,width (")', [(*row, "3") for row in HALVES]))
     # lines
     found["bars"] = read(table("t|x|y", HALVES, "|"))
-    found["Markdown"] = read("| t | x | y |\n|---|---|---|\n" + "".join(f"| {' | '.join(row)} |\n" for row in HALVES))
+    found["Markdown"] = read(
+        "| t | x | y |\n|---|---|---|\n" + "".join(f"| {' | '.join(row)} |\n" for row in HALVES)
+    )
     found["carriage returns"] = refused(table("t,x,y", HALVES, end="\r"), "CR")
     found["UTF-16"] = refused(table("t,x,y", HALVES).encode("utf-16"), "text")
     found["columns in line"] = read(
@@ -347,8 +396,12 @@ def of_my_own() -> dict[str, Spelling]:
         + "\n"
         + "".join("".join(f"{n:>24}" for n in row) + "\n" for row in HALVES)
     )
-    found["comments and gaps"] = read("Foucault pendulum, run 1\n\n" + table("#t,x,y", HALVES, end="\n# and so on\n\n"))
-    found["units in brackets, blanks"] = read(table("t (s) x (cm) y (cm)", HALVES, " "), factors=(1, CM, CM))
+    found["comments and gaps"] = read(
+        "Foucault pendulum, run 1\n\n" + table("#t,x,y", HALVES, end="\n# and so on\n\n")
+    )
+    found["units in brackets, blanks"] = read(
+        table("t (s) x (cm) y (cm)", HALVES, " "), factors=(1, CM, CM)
+    )
     found["names by commas, rows by tabs"] = read(table("t,x,y", HALVES, "\t"))
     return found
 
@@ -358,7 +411,15 @@ def _plain(number: str) -> str:
 
 
 HEADERS = {  # names of columns, by the unit in which their numbers then are
-    "t": {"t": 1, "time": 1, "Time (s)": 1, "t_ms": MS, "t (min)": 60, "Latest: Time (s)": 1, "elapsed time": 1},
+    "t": {
+        "t": 1,
+        "time": 1,
+        "Time (s)": 1,
+        "t_ms": MS,
+        "t (min)": 60,
+        "Latest: Time (s)": 1,
+        "elapsed time": 1,
+    },
     "x": {
         "x": 1,
         "x_east_m": 1,
@@ -369,9 +430,20 @@ HEADERS = {  # names of columns, by the unit in which their numbers then are
         "Position, X (m)": 1,
         "x [east]": 1,
     },
-    "y": {"y": 1, "y_north_m": 1, "y_pos_cm": CM, "North (cm)": CM, "y/m": 1, "south_mm": -MM, "Y (m) Run #1": 1},
+    "y": {
+        "y": 1,
+        "y_north_m": 1,
+        "y_pos_cm": CM,
+        "North (cm)": CM,
+        "y/m": 1,
+        "south_mm": -MM,
+        "Y (m) Run #1": 1,
+    },
 }
-UNIT_LINES = {"t": {"s": 1, "ms": MS, "(min)": 60, "": 1}, "x": {"m": 1, "cm": CM, "[mm]": MM, "": 1}}
+UNIT_LINES = {
+    "t": {"s": 1, "ms": MS, "(min)": 60, "": 1},
+    "x": {"m": 1, "cm": CM, "[mm]": MM, "": 1},
+}
 UNREAD = ("energy", "note", "frame", "theta (deg)")
 
 
@@ -390,22 +462,33 @@ def drawn(random: Random) -> Spelling:
     separator = random.choice((",", ",", ";", ";", "\t", " ", "   ", "|", ", ", " ; "))
     mark = random.choice((".", ".", ","))
     head = random.random() < 0.85
-    names = {name: random.choice([*HEADERS[name]]) if random.random() < 0.5 else name for name in NAMES}
+    names = {
+        name: random.choice([*HEADERS[name]]) if random.random() < 0.5 else name for name in NAMES
+    }
     factors: dict[str, Fraction | int] = {name: HEADERS[name][names[name]] for name in NAMES}
     words = [names.get(name, name) for name in order]
     lines = [
-        f"# {line}" for line in random.sample(("of a program", "l = 67 m", "all in SI units"), random.choice((0, 0, 1)))
+        f"# {line}"
+        for line in random.sample(
+            ("of a program", "l = 67 m", "all in SI units"), random.choice((0, 0, 1))
+        )
     ]
     quote = random.choice(("", "", "needed", "all"))
 
     def quoted(field: str) -> str:
-        return f'"{field}"' if quote == "all" or (quote and separator.strip() and separator.strip() in field) else field
+        return (
+            f'"{field}"'
+            if quote == "all" or (quote and separator.strip() and separator.strip() in field)
+            else field
+        )
 
     if head:
         lines.append(random.choice(("", "", "# ")) + separator.join(map(quoted, words)))
         plainly = all(words[i] == name for i, name in enumerate(order))
         if plainly and random.random() < 0.4:
-            units = {name: random.choice([*UNIT_LINES["t" if name == "t" else "x"]]) for name in NAMES}
+            units = {
+                name: random.choice([*UNIT_LINES["t" if name == "t" else "x"]]) for name in NAMES
+            }
             factors = {name: UNIT_LINES["t" if name == "t" else "x"][units[name]] for name in NAMES}
             line = separator.join(units.get(name, "") for name in order)
             lines.insert(len(lines) - random.randint(0, 1), line)
@@ -416,7 +499,9 @@ def drawn(random: Random) -> Spelling:
     lost = random.choice(("", "nan", "NA")) if random.random() < 0.15 else None
     grouped = random.choice((",", ".", "'", " ")) if random.random() < 0.1 else ""
     clock = (
-        random.choice(("", "", "", "", "h", "moment")) if factors["t"] == 1 and float(columns["t"][-1]) < 80000 else ""
+        random.choice(("", "", "", "", "h", "moment"))
+        if factors["t"] == 1 and float(columns["t"][-1]) < 80000
+        else ""
     )
     if grouped == mark:
         grouped = ""

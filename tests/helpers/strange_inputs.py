@@ -34,7 +34,17 @@ FIELDS = (
     "release.angle", "release.azimuth", "release.angle_rate", "release.azimuth_rate", "run.t_end",
     "run.grid_step", "run.digits", "run.level", "run.transits", "run.nothing",
 )  # fmt: skip
-WORDS = (*NUMBERS, *TEXTS, "decimal", "binary64", "confirmed", "enclosed", "false", "paris", "large_angle,polar")
+WORDS = (
+    *NUMBERS,
+    *TEXTS,
+    "decimal",
+    "binary64",
+    "confirmed",
+    "enclosed",
+    "false",
+    "paris",
+    "large_angle,polar",
+)
 
 Chance = random.Random
 
@@ -49,14 +59,25 @@ def a_scene(chance: Chance) -> bytes:
         tables.setdefault(table, []).append(f"{key} = {literal(chance)}")
     if chance.random() < 0.7:
         tables["release"] += ['x = "0.3"', 'y = "0.4"']
-    text = "\n".join("\n".join([f"[{name}]" if name else "", *lines]) for name, lines in tables.items())
+    text = "\n".join(
+        "\n".join([f"[{name}]" if name else "", *lines]) for name, lines in tables.items()
+    )
     return encoded(chance, text)
 
 
 def literal(chance: Chance) -> str:
     """Return a value as TOML writes it, or not quite."""
     word = chance.choice(WORDS)
-    return chance.choice((f'"{word}"', f"'{word}'", word, json.dumps(word), f"[{json.dumps(word)}]", f"0x{'f' * 5000}"))
+    return chance.choice(
+        (
+            f'"{word}"',
+            f"'{word}'",
+            word,
+            json.dumps(word),
+            f"[{json.dumps(word)}]",
+            f"0x{'f' * 5000}",
+        )
+    )
 
 
 def an_assignment(chance: Chance) -> str:
@@ -69,7 +90,9 @@ def an_assignment(chance: Chance) -> str:
 def a_candidate(chance: Chance) -> bytes:
     """Return the bytes of a trajectory: text, .npy or .npz, mostly damaged."""
     names = chance.sample(["z", "vx", "vy", "vz", "energy", "transits"], chance.randint(0, 3))
-    names[:0] = chance.choice((["t", "x", "y"], ["t", "x", "y"], ["T", '"y"', "x"], ["t", "x"], ["time", "x", "y"]))
+    names[:0] = chance.choice(
+        (["t", "x", "y"], ["t", "x", "y"], ["T", '"y"', "x"], ["t", "x"], ["time", "x", "y"])
+    )
     rows, columns = chance.randint(0, 30), len(names)
     table = np.random.default_rng(chance.getrandbits(32)).normal(size=(rows, columns))
     table[:, 0] = np.arange(rows)
@@ -87,33 +110,64 @@ def a_candidate(chance: Chance) -> bytes:
         chance.choice((np.savez, np.savez_compressed))(stream, **arrays)
         return damaged(chance, stream.getvalue())
     put = chance.choice((",", ",", ",", " ", "\t", ";", " , "))
-    lines = [put.join(format(number, chance.choice((".17g", ".3g", ".25f", ".3e"))) for number in row) for row in table]
+    lines = [
+        put.join(format(number, chance.choice((".17g", ".3g", ".25f", ".3e"))) for number in row)
+        for row in table
+    ]
     for _ in range(chance.choice((0, 0, 1, 3))):
         fields = chance.choice(lines or [""]).split(put)
         fields[chance.randrange(len(fields))] = chance.choice(WORDS)
         lines.insert(chance.randint(0, len(lines)), put.join(fields))
     header = chance.choice(("", "# ", "#")) + put.join(names)
-    text = chance.choice(("\n", "\n", "\r\n", "\r")).join([header, *lines] if chance.random() < 0.9 else lines)
-    return encoded(chance, text) if chance.random() < 0.6 else damaged(chance, text.encode(errors="surrogatepass"))
+    text = chance.choice(("\n", "\n", "\r\n", "\r")).join(
+        [header, *lines] if chance.random() < 0.9 else lines
+    )
+    return (
+        encoded(chance, text)
+        if chance.random() < 0.6
+        else damaged(chance, text.encode(errors="surrogatepass"))
+    )
 
 
 def a_list_of_transits(chance: Chance) -> bytes:
     """Return the bytes of a list of transits."""
     times = sorted(chance.uniform(0, 100) for _ in range(chance.randint(0, 20)))
     words = [str(time) if chance.random() < 0.95 else chance.choice(WORDS) for time in times]
-    text = "\n".join([chance.choice(("t", "k,t", "t,k", "# t", "")), *(f"{i},{word}" for i, word in enumerate(words))])
-    return encoded(chance, text) if chance.random() < 0.6 else damaged(chance, text.encode(errors="surrogatepass"))
+    text = "\n".join(
+        [
+            chance.choice(("t", "k,t", "t,k", "# t", "")),
+            *(f"{i},{word}" for i, word in enumerate(words)),
+        ]
+    )
+    return (
+        encoded(chance, text)
+        if chance.random() < 0.6
+        else damaged(chance, text.encode(errors="surrogatepass"))
+    )
 
 
 def a_command(chance: Chance) -> str:
     """Return an argument of --run; the program is never there."""
     parts = chance.choices(
-        (*WORDS, *(f"{{{field.rpartition('.')[2]}}}" for field in FIELDS), " "), k=chance.randint(0, 8)
+        (*WORDS, *(f"{{{field.rpartition('.')[2]}}}" for field in FIELDS), " "),
+        k=chance.randint(0, 8),
     )
     return "/no/such/program " + chance.choice(("", " ")).join(parts)
 
 
-NO_DOCUMENTS = ("[" * 10**5, '{"a":' * 10**5, "", "[]", "null", '"x"', "1", "9" * 5000, "{}", "\ufeff{}", "\0" * 99)
+NO_DOCUMENTS = (
+    "[" * 10**5,
+    '{"a":' * 10**5,
+    "",
+    "[]",
+    "null",
+    '"x"',
+    "1",
+    "9" * 5000,
+    "{}",
+    "\ufeff{}",
+    "\0" * 99,
+)
 STRANGE = (
     None, -1, 0, 10**30, 10**400, "x", "", [], {}, True, 1e308, "1e400", [[]], [1], ["x", [1]], {"a": 1}, {"a": []},
     float("nan"), float("inf"),
@@ -135,7 +189,11 @@ def with_strange_value(chance: Chance, document: dict[str, Any]) -> dict[str, An
     changed = json.loads(json.dumps(document))
     inside: Any = changed
     while True:
-        key = chance.choice(list(inside)) if isinstance(inside, dict) else chance.randrange(len(inside))
+        key = (
+            chance.choice(list(inside))
+            if isinstance(inside, dict)
+            else chance.randrange(len(inside))
+        )
         if not isinstance(inside[key], (dict, list)) or not inside[key] or chance.random() < 0.3:
             inside[key] = chance.choice(STRANGE)
             return changed
@@ -144,17 +202,26 @@ def with_strange_value(chance: Chance, document: dict[str, Any]) -> dict[str, An
 
 def encoded(chance: Chance, text: str) -> bytes:
     """Return a text in an encoding that somebody might use."""
-    return text.encode(chance.choice(("utf-8",) * 8 + ("utf-16", "latin-1", "utf-8-sig")), "replace")
+    return text.encode(
+        chance.choice(("utf-8",) * 8 + ("utf-16", "latin-1", "utf-8-sig")), "replace"
+    )
 
 
 def damaged(chance: Chance, data: bytes) -> bytes:
     """Return data with some places changed, dropped, repeated, cut or filled with strange text."""
     for _ in range(chance.choice((0, 1, 1, 2, 5))):
         a, b = sorted(chance.randint(0, len(data)) for _ in range(2))
-        junk = chance.choice((bytes([chance.randrange(256)]), chance.choice(WORDS).encode(errors="surrogatepass")))
+        junk = chance.choice(
+            (bytes([chance.randrange(256)]), chance.choice(WORDS).encode(errors="surrogatepass"))
+        )
         near = min(b, a + chance.choice((1, 3, 12)))
         data = chance.choice(
-            (data[:a] + junk + data[near:], data[:a] + data[near:], data[:b] + data[a:b] * 3 + data[b:], data[:a])
+            (
+                data[:a] + junk + data[near:],
+                data[:a] + data[near:],
+                data[:b] + data[a:b] * 3 + data[b:],
+                data[:a],
+            )
         )
     return data
 
@@ -167,10 +234,19 @@ def a_command_line(chance: Chance, file: Path) -> list[str]:
     words = (
         [chance.choice(("show", "generate")), str(file)],
         ["score", "paris", str(file), "--no-diagnosis"],
-        [chance.choice(("show", "generate", "score", "study")), "paris", "--set", an_assignment(chance)],
+        [
+            chance.choice(("show", "generate", "score", "study")),
+            "paris",
+            "--set",
+            an_assignment(chance),
+        ],
         ["score", "paris", "--run", a_command(chance)],
-        [chance.choice(("show", "generate", "verify", "score", "study", "pend", "?")), *chance.choices(TEXTS, k=2)],
+        [
+            chance.choice(("show", "generate", "verify", "score", "study", "pend", "?")),
+            *chance.choices(TEXTS, k=2),
+        ],
     )[kind]
     return [
-        word.replace("\0", "").encode("utf-8", "surrogatepass").decode("utf-8", "surrogateescape") for word in words
+        word.replace("\0", "").encode("utf-8", "surrogatepass").decode("utf-8", "surrogateescape")
+        for word in words
     ]

@@ -16,7 +16,8 @@ from functools import cache
 from pathlib import Path
 
 PACKAGES = ("reference", "compare")
-WIDE, BOX, HIGH, GAP, FLOOR = 420, 104, 26, 12, 58  # of the picture: a package, a box, from box to box, floor to floor
+# of the picture: a package, a box, from box to box, floor to floor
+WIDE, BOX, HIGH, GAP, FLOOR = 420, 104, 26, 12, 58
 MARGIN, TITLE = 16, 30
 STYLE = """<style>
 text { font: 12px sans-serif; text-anchor: middle; fill: #222 }
@@ -30,7 +31,9 @@ Arrows = set[tuple[str, str]]
 
 def sources(root: Path) -> list[Path]:
     """Every source file of the project, tests excepted."""
-    return sorted([root / "foucault.py", *(path for name in PACKAGES for path in (root / name).rglob("*.py"))])
+    return sorted(
+        [root / "foucault.py", *(path for name in PACKAGES for path in (root / name).rglob("*.py"))]
+    )
 
 
 @cache
@@ -39,11 +42,15 @@ def imported(path: Path, root: Path) -> set[Path]:
     inside, found = list(path.relative_to(root).parts[:-1]), set()
     for node in imports(path):
         if isinstance(node, ast.Import):
-            found |= {target for alias in node.names for target in _existing(root, *alias.name.split("."))}
+            found |= {
+                target for alias in node.names for target in _existing(root, *alias.name.split("."))
+            }
         else:
             base = inside[: len(inside) + 1 - node.level] if node.level else []
             words = [*base, *(node.module.split(".") if node.module else [])]
-            found |= {target for alias in node.names for target in _existing(root, *words, alias.name)}
+            found |= {
+                target for alias in node.names for target in _existing(root, *words, alias.name)
+            }
     return found
 
 
@@ -72,7 +79,11 @@ def _existing(root: Path, *words: str) -> tuple[Path, ...]:
 def arrows(root: Path, place: str = "") -> tuple[set[str], Arrows]:
     """The rooms of a package ("" for the whole project) and the arrows between them."""
     home = root / place
-    rooms = {path.relative_to(home).parts[0].removesuffix(".py") for path in sources(root) if home in path.parents}
+    rooms = {
+        path.relative_to(home).parts[0].removesuffix(".py")
+        for path in sources(root)
+        if home in path.parents
+    }
     rooms.discard("__init__")
     found = set()
     for path in sources(root):
@@ -90,7 +101,8 @@ def arrows(root: Path, place: str = "") -> tuple[set[str], Arrows]:
 def modules(root: Path) -> tuple[set[str], Arrows]:
     """All files, and the arrows between files; a package's `__init__` stands for the package."""
     names = {
-        path: path.relative_to(root).with_suffix("").as_posix().removesuffix("/__init__") for path in sources(root)
+        path: path.relative_to(root).with_suffix("").as_posix().removesuffix("/__init__")
+        for path in sources(root)
     }
     found = set()
     for path, name in names.items():
@@ -106,7 +118,10 @@ def circles(rooms: set[str], found: Arrows) -> list[set[str]]:
         for room in rooms:
             if middle in reach[room]:
                 reach[room] |= reach[middle]
-    groups = {frozenset(other for other in rooms if other in reach[room] and room in reach[other]) for room in rooms}
+    groups = {
+        frozenset(other for other in rooms if other in reach[room] and room in reach[other])
+        for room in rooms
+    }
     return [set(group) for group in groups if len(group) > 1]
 
 
@@ -120,7 +135,9 @@ def floors(rooms: set[str], found: Arrows) -> list[set[str]]:
                 height[a] = max(height[a], height[b] + 1)
         for group in together.values():
             height.update(dict.fromkeys(group, max(height[room] for room in group)))
-    return [{room for room in rooms if height[room] == h} for h in range(max(height.values()), -1, -1)]
+    return [
+        {room for room in rooms if height[room] == h} for h in range(max(height.values()), -1, -1)
+    ]
 
 
 def upwards(found: Arrows, declared: list[list[str]]) -> Arrows:
@@ -157,7 +174,11 @@ def direct(found: Arrows) -> Arrows:
         for ends in reach.values():
             if middle in ends:
                 ends.update(reach[middle])
-    return {(a, b) for a, b in found if not any(b in reach.get(c, ()) for start, c in found if start == a)}
+    return {
+        (a, b)
+        for a, b in found
+        if not any(b in reach.get(c, ()) for start, c in found if start == a)
+    }
 
 
 def drawn(root: Path, name: str, left: int) -> tuple[list[str], int]:
@@ -172,7 +193,9 @@ def drawn(root: Path, name: str, left: int) -> tuple[list[str], int]:
     lines, boxes = [], []
     for a, b in sorted(direct(found)):
         (x1, y1), (x2, y2) = places[a], places[b]
-        lines.append(f'<line x1="{x1 + BOX / 2:g}" y1="{y1 + HIGH}" x2="{x2 + BOX / 2:g}" y2="{y2}"/>')
+        lines.append(
+            f'<line x1="{x1 + BOX / 2:g}" y1="{y1 + HIGH}" x2="{x2 + BOX / 2:g}" y2="{y2}"/>'
+        )
     for room, (x, y) in sorted(places.items()):
         boxes.append(f'<rect x="{x:g}" y="{y}" width="{BOX}" height="{HIGH}" rx="3"/>')
         boxes.append(f'<text x="{x + BOX / 2:g}" y="{y + 17}">{room}</text>')
@@ -210,13 +233,19 @@ def main(root: Path) -> None:
         )
     files = sources(root)
     rings = circles(*modules(root))
-    print(f"files      {len(files)}, circles of files: {len(rings)} {[sorted(ring) for ring in rings] or ''}")
+    print(
+        f"files      {len(files)}, circles of files: {len(rings)} {[sorted(ring) for ring in rings] or ''}"
+    )
     repeated = class_names(root)
     print(f"class names used more than once: {len(repeated)}: {', '.join(repeated)}")
     names = Counter(path.name for path in files if path.name != "__init__.py")
     again = {f"{name} ({count})": count for name, count in sorted(names.items()) if count > 1}
     print(f"file names used more than once: {len(again)}: {', '.join(again)}")
-    single = [path for path, users in importers(root).items() if len(users) == 1 and path.name != "__init__.py"]
+    single = [
+        path
+        for path, users in importers(root).items()
+        if len(users) == 1 and path.name != "__init__.py"
+    ]
     print(f"files that one other file imports: {len(single)}")
     for path in single:
         print(f"  {path.relative_to(root).as_posix()}")

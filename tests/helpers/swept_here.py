@@ -25,7 +25,11 @@ def is_left(row: dict[str, Any]) -> bool:
 
 
 def swept_here(
-    scene: Scene, over: list[str], promote: Promote = promoted, rows: Path | None = None, **options: Any
+    scene: Scene,
+    over: list[str],
+    promote: Promote = promoted,
+    rows: Path | None = None,
+    **options: Any,
 ) -> Swept:
     """Return a sweep in memory, all of its rows in one part; options as those of `request`."""
     asked = request(scene, over, rows, **options)

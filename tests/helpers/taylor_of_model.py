@@ -31,7 +31,9 @@ class Polynomial:
 
     def __mul__(self, other):
         a, b = self.coefficients, self._like(other)
-        return Polynomial(sum((a[i] * b[k - i] for i in range(k + 1)), start=0 * a[0]) for k in range(len(a)))
+        return Polynomial(
+            sum((a[i] * b[k - i] for i in range(k + 1)), start=0 * a[0]) for k in range(len(a))
+        )
 
     __rmul__ = __mul__
 
@@ -44,6 +46,8 @@ def taylor(inputs, formulation, order, prec):
     for j in range(order):
         rates = model.derivatives([Polynomial(row) for row in rows], k, ctx)
         for row, rate in zip(rows, rates, strict=True):
-            value = rate.coefficients[j] if isinstance(rate, Polynomial) else (rate if j == 0 else 0)
+            value = (
+                rate.coefficients[j] if isinstance(rate, Polynomial) else (rate if j == 0 else 0)
+            )
             row.append(ctx.mpf(value) / (j + 1))
     return ctx, k, rows

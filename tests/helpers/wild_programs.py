@@ -16,22 +16,40 @@ from reference import Scene, load_scene
 FOLDER = ROOT / "tests" / "compare" / "diagnosis" / "wild"
 G_EFFECTIVE = "g is the effective one"
 FORMAT = {"decimals", "digits"}
-SAME = {"no_centrifugal": G_EFFECTIVE, "effective_gravity": G_EFFECTIVE}  # they differ by less than the tolerance
+# they differ by less than the tolerance
+SAME = {"no_centrifugal": G_EFFECTIVE, "effective_gravity": G_EFFECTIVE}
 
 TWO = {"integrator_leapfrog_late": {"integrator_leapfrog", "half_a_step"}}  # one word for both
 
 
-def words(length: str, gravity: str, latitude: str, x: str, y: str, t_end: str, *more: str) -> list[str]:
+def words(
+    length: str, gravity: str, latitude: str, x: str, y: str, t_end: str, *more: str
+) -> list[str]:
     """Return the settings of a program."""
     scene = [f"pendulum.length={length}", f"site.gravity={gravity}", f"site.latitude={latitude}"]
     release = [f"release.x={x}", f"release.y={y}"]
-    return [*scene, *release, f"run.t_end={t_end}", "run.level=self_consistent", "run.transits=false", *more]
+    return [
+        *scene,
+        *release,
+        f"run.t_end={t_end}",
+        "run.level=self_consistent",
+        "run.transits=false",
+        *more,
+    ]
 
 
 ROTATION = "site.rotation_rate={}".format
 PUSH = "release.vy={}".format
 AXIS = "site.equatorial_radius=0"
-SAHA = ("67", "9.7976432222", "48.846222", "3.3486043411354482", "0", "600", ROTATION("7.2921158553e-5"))
+SAHA = (
+    "67",
+    "9.7976432222",
+    "48.846222",
+    "3.3486043411354482",
+    "0",
+    "600",
+    ROTATION("7.2921158553e-5"),
+)
 SETTINGS = {
     "w01": words("2.5", "9.80665", "45", "0.1", "0", "600", ROTATION("7.2921e-5")),
     "w02": words("67", "9.81", "48.8664", "6", "0", "60"),
@@ -74,7 +92,8 @@ SETTINGS = {
 }  # fmt: skip
 LINEAR = {"linear_g", G_EFFECTIVE}
 TRUE = {
-    "w01": {*LINEAR, "integrator_rk4"},  # at 0.01 s, which moves it by half as much again as the tolerance
+    # at 0.01 s, which moves it by half as much again as the tolerance
+    "w01": {*LINEAR, "integrator_rk4"},
     "w02": {*LINEAR, "rate_per_hour"},
     "w03": LINEAR,
     # np.append puts the newest row first, and the release is half a row away; Runge-Kutta at 0.3 s
@@ -98,12 +117,14 @@ TRUE = {
     "w18": {"point_mass", "sphere"},
     "w19": {"integrator_loose"},
     "w20": {"linear_g"},
-    "w21": {G_EFFECTIVE, "slip"},  # a wrong sign in the equation of the polar angle, on a swing of 43 degrees
+    # a wrong sign in the equation of the polar angle, on a swing of 43 degrees
+    "w21": {G_EFFECTIVE, "slip"},
     "w22": {G_EFFECTIVE, "frame_x_south", "rounded_rate"},  # odeint leaves as much as both of these
     "w23": {*LINEAR, "integrator_loose"},
     "w24": {G_EFFECTIVE, "turned_plane"},  # cos and sin of sqrt(g/l), on a cord of 51,000 km
     "w25": {*LINEAR, "integrator_leapfrog", "half_a_step"},  # x(2) = x(1)
-    "w26": {"linear_g", "tilt_no_sine", "sphere", "integrator_semi_implicit_euler"},  # Euler-Cromer at 5 ms
+    # Euler-Cromer at 5 ms
+    "w26": {"linear_g", "tilt_no_sine", "sphere", "integrator_semi_implicit_euler"},
     "w27": {"falls", "y_is_vertical"},
     "w28": {"slip"},
     "w29": {*LINEAR, "integrator_loose"},
@@ -126,12 +147,16 @@ def read_in(name: str) -> tuple[Scene, np.ndarray, dict[str, np.ndarray]]:
     table = np.loadtxt(path, delimiter=",", skiprows=1)
     with path.open() as lines:
         header = lines.readline().strip().split(",")
-    columns = {word: np.ascontiguousarray(table[:, i]) for i, word in enumerate(header) if word in "xyz"}
+    columns = {
+        word: np.ascontiguousarray(table[:, i]) for i, word in enumerate(header) if word in "xyz"
+    }
     return scene, table[:, 0], columns
 
 
 def said(found: Any) -> set[str]:
     """Return the words of an explanation."""
-    slip = {"falls", "y_is_vertical"} if "y falls" in found.slip else {"slip"} if found.slip else set()
+    slip = (
+        {"falls", "y_is_vertical"} if "y falls" in found.slip else {"slip"} if found.slip else set()
+    )
     known = {SAME.get(one.id, one.id) for one in (*found.known, *found.conventions)} - FORMAT | slip
     return known - TWO.keys() | {word for one in known & TWO.keys() for word in TWO[one]}

@@ -26,12 +26,16 @@ def test_the_nearest_names_are_those_alike_in_any_case_or_containing_the_word(wo
 
 def test_there_are_at_most_five_names():
     assert (
-        nearest("name", [f"name_{i}" for i in range(9)]) and len(nearest("name", map("name_{}".format, range(9)))) == 5
+        nearest("name", [f"name_{i}" for i in range(9)])
+        and len(nearest("name", map("name_{}".format, range(9)))) == 5
     )
 
 
 def test_of_names_that_contain_the_word_the_shortest_stand_first():
-    assert nearest("dop853", ["numbalsoda_dop853", "rk4", "scipy_dop853"]) == ["scipy_dop853", "numbalsoda_dop853"]
+    assert nearest("dop853", ["numbalsoda_dop853", "rk4", "scipy_dop853"]) == [
+        "scipy_dop853",
+        "numbalsoda_dop853",
+    ]
 
 
 def test_one_of_a_kind_has_no_plural():
@@ -39,7 +43,11 @@ def test_one_of_a_kind_has_no_plural():
 
 
 def test_names_are_joined_as_in_a_sentence():
-    assert [in_words(names) for names in (["a"], ["a", "b"], ["a", "b", "c"])] == ["a", "a or b", "a, b or c"]
+    assert [in_words(names) for names in (["a"], ["a", "b"], ["a", "b", "c"])] == [
+        "a",
+        "a or b",
+        "a, b or c",
+    ]
     assert did_you_mean("pari", ["paris"], "") == "Did you mean paris?"
     assert did_you_mean("zzz", ["paris"], "Look.") == "Look."
 
@@ -67,7 +75,9 @@ def test_every_field_of_a_scene_has_a_name_that_set_takes():
     for name in names:
         with pytest.raises(InputError) as refused:
             load_scene("paris", [f"{name}=\0", "release.mistake=1"])
-        assert "mistake" in str(refused.value) or refused.value.expected != "a field that scenes have"
+        assert (
+            "mistake" in str(refused.value) or refused.value.expected != "a field that scenes have"
+        )
 
 
 @pytest.mark.parametrize("word", ["", "  "])

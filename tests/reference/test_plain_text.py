@@ -11,7 +11,15 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from reference.errors import DatasetError, InputError, UnreachableError
-from reference.plain_text import PlainStream, is_plain, plain, plain_json, plain_lines, plain_output, terminal_of
+from reference.plain_text import (
+    PlainStream,
+    is_plain,
+    plain,
+    plain_json,
+    plain_lines,
+    plain_output,
+    terminal_of,
+)
 
 DANGEROUS = ["\x1b[31m", "\x1b]0;title\x07", "\x9b2J", "\x00", "\r", "\x7f"]
 DANGEROUS += ["\u202e", "\u2028", "\ufeff", "\udcff", "\ud800"]
@@ -84,13 +92,20 @@ def test_values_that_python_cannot_print_are_named_by_their_kind():
     for _ in range(100_000):
         deep = [deep]
     for value, word in ((10**5000, "int"), (-(10**5000), "int"), (deep, "list")):
-        assert f"too large a value to print, {word}" in str(InputError("run.digits", value, "a number"))
+        assert f"too large a value to print, {word}" in str(
+            InputError("run.digits", value, "a number")
+        )
 
 
 def test_no_command_sends_an_escape_to_the_terminal(foucault, tmp_path):
     hostile = tmp_path / "e\x1b[31m\n.csv"
     hostile.write_text("t,x\x1b[31m\n0,1\n")
-    calls = (["show", hostile], ["score", "paris", hostile], ["verify", hostile], ["generate", "paris", "--x\x1b[31m"])
+    calls = (
+        ["show", hostile],
+        ["score", "paris", hostile],
+        ["verify", hostile],
+        ["generate", "paris", "--x\x1b[31m"],
+    )
     for words in (*calls, ["show", "paris", "--set", "title=\x1b[31m"]):
         status, out, err = foucault(*words)
         assert status == 2

@@ -51,7 +51,11 @@ class Experiment:
 def _times(factor: str, *fields: str) -> Values:
     def values(scene: Scene) -> dict[str, str]:
         texts = {field: attrgetter(field)(scene) for field in fields}
-        return {field: str(Decimal(text) * Decimal(factor)) for field, text in texts.items() if text is not None}
+        return {
+            field: str(Decimal(text) * Decimal(factor))
+            for field, text in texts.items()
+            if text is not None
+        }
 
     return values
 
@@ -145,7 +149,9 @@ def possible(scene: Scene, command: str) -> list[Experiment]:
         InputError: there are none.
     """
     words, given = set(re.findall(r"(?<!\{)\{(\w+)\}", command)), placeholders(scene)
-    angles, places = ({name for name in given if re.match(form, name)} for form in ("a(ng|z)", "v?[xyz]0"))
+    angles, places = (
+        {name for name in given if re.match(form, name)} for form in ("a(ng|z)", "v?[xyz]0")
+    )
     experiments = []
     for experiment in EXPERIMENTS:
         try:

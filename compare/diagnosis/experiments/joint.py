@@ -32,8 +32,11 @@ from ..stepped import LONGEST, Steps, step_cause
 
 # how a cause follows the scene
 RULE, TYPED, FACTOR = "", ", whatever it is given", ", in proportion to what it is given"
-INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")  # numbers that a scene, or {setting}, gives
-CLOCK = fitted_number("clock", "clock", "moves on by {value} s while its clock counts one", "pace", stage="clock")
+# numbers that a scene, or {setting}, gives
+INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
+CLOCK = fitted_number(
+    "clock", "clock", "moves on by {value} s while its clock counts one", "pace", stage="clock"
+)
 TRIED = 30  # readings of a family that are run
 EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
 
@@ -80,7 +83,8 @@ class FollowedCause(NamedTuple):
 
     def applied(self, program: Program, value: float, first: Trial, trial: Trial) -> Program:
         """Return the program of a trial's scene with it; `value` is its number in the first scene."""
-        if self.way == RULE:  # a cause that the scene does not know, such as a sign of no rotation, does nothing there
+        # a cause that the scene does not know, such as a sign of no rotation, does nothing there
+        if self.way == RULE:
             return trial.causes[self.key].change(program) if self.key in trial.causes else program
         program, free = self.cause.change(program), self.cause.free
         if self.way == FACTOR and first.given(free):
@@ -145,7 +149,9 @@ class JointCase(FileCase):
 
     def side_by_side(self, rows: Sequence[Array]) -> Array:
         """Return positions of each run as those of one."""
-        return np.concatenate([positions * self.weight(run) for positions, run in zip(rows, self.runs, strict=True)])
+        return np.concatenate(
+            [positions * self.weight(run) for positions, run in zip(rows, self.runs, strict=True)]
+        )
 
     def positions(self, program: Program) -> Array:
         """Return what a program writes in all runs."""
@@ -154,10 +160,18 @@ class JointCase(FileCase):
         return self.side_by_side([run.case.positions(run_program) for run, run_program in made])
 
     def _fit(self, kind: str, fits: Sequence[FamilyFit]) -> FamilyFit:
-        weights = [self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times)) for run in self.runs]
-        fits = [replace(fit, rest=w * fit.rest, slopes=w * fit.slopes) for w, fit in zip(weights, fits, strict=True)]
+        weights = [
+            self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times))
+            for run in self.runs
+        ]
+        fits = [
+            replace(fit, rest=w * fit.rest, slopes=w * fit.slopes)
+            for w, fit in zip(weights, fits, strict=True)
+        ]
         blocks = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
-        slopes = np.block([[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks])
+        slopes = np.block(
+            [[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks]
+        )
         free = tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free)
         rest = math.hypot(*(fit.rest for fit in fits))
         return FamilyFit(kind, np.concatenate([fit.theta for fit in fits]), rest, free, slopes)
@@ -168,7 +182,9 @@ class JointCase(FileCase):
         for key, cause in self.runs[0].causes.items():
             varied = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
             ways = (TYPED, FACTOR)[: 1 + varied] if cause.free else (RULE, TYPED)
-            causes += [_following(FollowedCause(key, cause, way), varied) for way in ways if key[0] == kind]
+            causes += [
+                _following(FollowedCause(key, cause, way), varied) for way in ways if key[0] == kind
+            ]
         return causes
 
     def readings(self, most: float = 1.0) -> list[CauseReading]:
@@ -177,8 +193,13 @@ class JointCase(FileCase):
         fits = [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
         finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
         readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
-        readings = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
-        return sorted((reading for reading in readings if self.off(reading) <= most), key=lambda reading: reading.score)
+        readings = [
+            polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)
+        ]
+        return sorted(
+            (reading for reading in readings if self.off(reading) <= most),
+            key=lambda reading: reading.score,
+        )
 
     def off(self, reading: CauseReading) -> float:
         """Return the most that a reading leaves of a run, over what may be left."""
@@ -192,13 +213,19 @@ class JointCase(FileCase):
             most = max(most, largest(run.case.rows.positions - made) / allowed)
         return most
 
-    def without_steps(self, steps: Steps, way: str, reading: CauseReading | None = None) -> tuple[JointCase, Deviation]:
+    def without_steps(
+        self, steps: Steps, way: str, reading: CauseReading | None = None
+    ) -> tuple[JointCase, Deviation]:
         """Return the case with what steps do to the programs of a reading taken from the rows, and that cause."""
         program, seen, causes = self.right if reading is None else reading.program, [], []
         assert isinstance(program, Joint)
         for run, run_program in zip(self.runs, program.programs, strict=True):
-            taken = replace(steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0)))
-            case = run.case.part(int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum()))
+            taken = replace(
+                steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0))
+            )
+            case = run.case.part(
+                int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum())
+            )
             pendulum, theta = case.pendulum_of(run_program)
             moved = replace(taken, **vars(pendulum)).rows(theta, case.rows.times, 2)
             effect = moved - pendulum.rows(theta, case.rows.times, 2)
@@ -211,12 +238,20 @@ class JointCase(FileCase):
         """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
         assert isinstance(reading.program, Joint)
         case, program = self.runs[0].case, reading.program.programs[0]
-        read, left_m, times = [*sized(case, reading), *besides], largest(case.left(program)), case.rows.times
+        read, left_m, times = (
+            [*sized(case, reading), *besides],
+            largest(case.left(program)),
+            case.rows.times,
+        )
         known, clean = tuple(cause.id for cause in read), clean_share(case, program.kind)
         spacing = float(times[1] - times[0])
-        evidence = Evidence(left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known)
+        evidence = Evidence(
+            left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known
+        )
         causes = tuple(supported_causes(read, evidence))
-        return Explanation(causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m)
+        return Explanation(
+            causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m
+        )
 
 
 def _following(part: FollowedCause, varied: bool) -> Cause:
@@ -224,6 +259,8 @@ def _following(part: FollowedCause, varied: bool) -> Cause:
 
     def change(program: Program) -> Program:
         changed = part.cause.change(program)
-        return changed.changed(parts=(*changed.parts, part)) if isinstance(changed, Joint) else changed
+        return (
+            changed.changed(parts=(*changed.parts, part)) if isinstance(changed, Joint) else changed
+        )
 
     return replace(part.cause, change=change, text=part.cause.text + part.way * varied)

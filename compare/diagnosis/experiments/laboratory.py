@@ -23,7 +23,8 @@ from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
 WAYS = TYPED, FACTOR  # how a step follows {setting}
 SAME_MOTION = {"turn": "coriolis"}  # Ω upwards alone, and a plane turned by hand, may be one motion
 LEAST_RUNS = 2  # by which a cause is measured
-UNSOLVED = (FoucaultError, ArithmeticError, np.linalg.LinAlgError)  # no program solves such a scene, or fits its rows
+# no program solves such a scene, or fits its rows
+UNSOLVED = (FoucaultError, ArithmeticError, np.linalg.LinAlgError)
 Run = Callable[[Experiment, Scene], Candidate]
 
 
@@ -31,7 +32,12 @@ class Laboratory:
     """The runs of a program so far, and what they show."""
 
     def __init__(
-        self, candidate: Candidate, scene: Scene, allowed_m: float, explanation: Explanation, run: Run
+        self,
+        candidate: Candidate,
+        scene: Scene,
+        allowed_m: float,
+        explanation: Explanation,
+        run: Run,
     ) -> None:
         """Begin with the first run.
 
@@ -42,8 +48,14 @@ class Laboratory:
             explanation: of its one file.
             run: runs it for an experiment in a scene; raises a FoucaultError.
         """
-        self._problem, self._allowed_m, self._run, self._explanation = KnownScene.of(scene), allowed_m, run, explanation
-        self._rename = any(convention.id in RENAMED for convention in explanation.conventions)  # axes as they were read
+        self._problem, self._allowed_m, self._run, self._explanation = (
+            KnownScene.of(scene),
+            allowed_m,
+            run,
+            explanation,
+        )
+        # axes as they were read
+        self._rename = any(convention.id in RENAMED for convention in explanation.conventions)
         self._reach = 0.0
         self._findings: list[Finding] = []
         self._likely: list[tuple[Steps, str]] | None = None
@@ -56,13 +68,16 @@ class Laboratory:
             for experiment in possible:
                 if self._make(experiment) and len(self._runs) > LEAST_RUNS:
                     explanations = self._explanations()
-                    if len(explanations) < 2:  # what does not make these files makes no more of them
+                    # what does not make these files makes no more of them
+                    if len(explanations) < 2:
                         break
             if 1 < len(self._runs) <= LEAST_RUNS:  # the program is fit for no more
                 explanations = self._explanations()
             known = bool(explanations)
             explanations = explanations or self._of_integrator()
-        texts = ["; it ".join(cause.text for cause in explanation.causes) for explanation in explanations]
+        texts = [
+            "; it ".join(cause.text for cause in explanation.causes) for explanation in explanations
+        ]
         files = f"the {len(self._runs)} files"
         text = f"Measured: {'one explanation makes' if known else 'an integrator is at fault, say'} {files}."
         if len(explanations) > 1:
@@ -70,11 +85,19 @@ class Laboratory:
         elif not explanations:
             text = f"No known mistake makes {files}: nothing is named."
         ids = tuple(tuple(cause.id for cause in explanation.causes) for explanation in explanations)
-        unknown = replace(self._explanation, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
+        unknown = replace(
+            self._explanation, causes=(), slip="", corrected_m=_error_m(self._runs[0])
+        )
         best = explanations[0] if len(explanations) == 1 else unknown
         same = _ids(self._explanation) == set().union(*ids)
-        best = replace(best, conventions=self._explanation.conventions, model=self._explanation.model if same else None)
-        return Experiments(tuple(self._findings), ids, text), self._explanation if len(self._runs) == 1 else best
+        best = replace(
+            best,
+            conventions=self._explanation.conventions,
+            model=self._explanation.model if same else None,
+        )
+        return Experiments(tuple(self._findings), ids, text), self._explanation if len(
+            self._runs
+        ) == 1 else best
 
     def _explanations(self) -> list[Explanation]:
         """Return what makes the files of all runs; where nothing does, with the steps of a method on the sphere."""
@@ -82,11 +105,16 @@ class Laboratory:
             case = JointCase.of(self._runs)
             explanations = _explanations_of(case)
             if self._likely is None and not explanations:
-                self._likely = [(steps, way) for steps in likely_steps(self._runs[0].case, None) for way in WAYS]
-            while not explanations and self._likely:  # what does not make these files makes no more of them
+                self._likely = [
+                    (steps, way) for steps in likely_steps(self._runs[0].case, None) for way in WAYS
+                ]
+            # what does not make these files makes no more of them
+            while not explanations and self._likely:
                 steps, way = self._likely[0]
                 near = case.without_steps(steps, way)[0].readings(math.inf)
-                explanations = _explanations_of(*case.without_steps(steps, way, near[0])) if near else []
+                explanations = (
+                    _explanations_of(*case.without_steps(steps, way, near[0])) if near else []
+                )
                 self._likely = self._likely[not explanations :]
             return explanations
         except UNSOLVED:
@@ -104,7 +132,12 @@ class Laboratory:
             read = [(run.case, readers_of(run.case, list(run.fits.values()))) for run in self._runs]
         except UNSOLVED:
             return []
-        spheres = [(case, reader) for case, readers in read for reader in readers if reader.right.kind == "sphere"]
+        spheres = [
+            (case, reader)
+            for case, readers in read
+            for reader in readers
+            if reader.right.kind == "sphere"
+        ]
         drifting = {id(case) for case, reader in spheres if reader.drifts(case, reader.right)}
         error_m = _error_m(first)
         explanation = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
@@ -116,10 +149,17 @@ class Laboratory:
         problem, changes = KnownScene.of(experiment.changed(scene)), experiment.values(scene)
         if experiment.finer > 1:
             changes[SETTING] = f"1/{experiment.finer} of the first"
-        trial, conclusion = None, "its file is read in another way than the first; nothing follows from it"
+        trial, conclusion = (
+            None,
+            "its file is read in another way than the first; nothing follows from it",
+        )
         try:
             candidate = self._run(experiment, problem.scene)
-            trial = self._trial(problem, candidate, 1 / experiment.finer) if candidate.positions else None
+            trial = (
+                self._trial(problem, candidate, 1 / experiment.finer)
+                if candidate.positions
+                else None
+            )
         except UNSOLVED as error:
             conclusion = f"{str(error).rstrip('.')}; nothing follows from it"
         error_m = None
@@ -127,9 +167,15 @@ class Laboratory:
             self._runs.append(trial)
             error_m = _error_m(trial)
             gone = error_m <= trial.case.enough
-            conclusion = f"what is wrong is {experiment.where}" if gone else f"it is not {experiment.where} alone"
+            conclusion = (
+                f"what is wrong is {experiment.where}"
+                if gone
+                else f"it is not {experiment.where} alone"
+            )
             conclusion = conclusion if experiment.where else ""
-        self._findings.append(Finding(experiment.id, experiment.title, changes, error_m, conclusion))
+        self._findings.append(
+            Finding(experiment.id, experiment.title, changes, error_m, conclusion)
+        )
         return error_m is not None
 
     def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
@@ -139,7 +185,9 @@ class Laboratory:
         case = problem.case(rows, self._allowed_m)
         reach = largest(case.truth)
         self._reach = self._reach or reach
-        return Trial(problem, replace(case, allowed_m=self._allowed_m * reach / self._reach), setting)
+        return Trial(
+            problem, replace(case, allowed_m=self._allowed_m * reach / self._reach), setting
+        )
 
 
 def _explanations_of(case: JointCase, *step: Deviation) -> list[Explanation]:
@@ -168,4 +216,8 @@ def _error_m(trial: Trial) -> float:
 
 
 def _conventions(trial: Trial) -> list[str]:
-    return [convention.id for convention in trial.case.rows.conventions if convention.id not in UNCORRECTED]
+    return [
+        convention.id
+        for convention in trial.case.rows.conventions
+        if convention.id not in UNCORRECTED
+    ]

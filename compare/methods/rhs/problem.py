@@ -26,10 +26,12 @@ from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
 from .straight_line import StraightLine, compiled, elements
 from .tracing import differentiated, record
 
-SMALLEST_SIZE = 1e-12  # least swing of a variable, so that tolerances for a bob at rest are not zero
+# least swing of a variable, so that tolerances for a bob at rest are not zero
+SMALLEST_SIZE = 1e-12
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]
 Derivatives = Callable[[Sequence[Any], Constants, Any], Sequence[Any]]
-Filling = Callable[[Array, Array, Array], None]  # of the last array, from a state and the parameters
+# of the last array, from a state and the parameters
+Filling = Callable[[Array, Array, Array], None]
 
 
 @dataclass(frozen=True)
@@ -47,19 +49,25 @@ class FirstOrderSystem:
     parameters: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, variables: tuple[str, ...], derivatives: Derivatives, k: Constants) -> FirstOrderSystem:
+    def of(
+        cls, variables: tuple[str, ...], derivatives: Derivatives, k: Constants
+    ) -> FirstOrderSystem:
         """Return equations of motion as a system whose parameters are the constants in double that they use.
 
         Compiled code is shared by all scenes with the same constants other than zero.
         """
 
-        def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
+        def rates(
+            state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]
+        ) -> Sequence[Any]:
             return derivatives(state, Constants.of(parameters), functions)
 
         complete = cls(variables, rates, k.entries())
         symbols = zip(complete.inputs[len(variables) :], complete.parameters.items(), strict=True)
         used = complete.program.used
-        return cls(variables, rates, dict(parameter for symbol, parameter in symbols if symbol in used))
+        return cls(
+            variables, rates, dict(parameter for symbol, parameter in symbols if symbol in used)
+        )
 
     @cached_property
     def program(self) -> StraightLine:
@@ -74,7 +82,9 @@ class FirstOrderSystem:
     @property
     def inputs(self) -> tuple[str, ...]:
         """Names in generated code: x0, x1, … for the variables, k0, k1, … for the parameters."""
-        return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(f"k{i}" for i in range(len(self.parameters)))
+        return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(
+            f"k{i}" for i in range(len(self.parameters))
+        )
 
     def traced(self, function: Callable[..., Sequence[Any]], *more: str) -> StraightLine:
         """Trace a function of state, functions, parameters, and of further inputs named by `more`."""
@@ -119,16 +129,27 @@ class SwingReach:
         if strength == 0:
             return cls(False, 1.0, float(np.linalg.norm(v)))
         energy = float(v @ v / 2 - n @ pull)
-        cosine = min(-energy / strength, 1.0)  # of the largest angle; -1 or less where the bob can go over the top
-        aside = float(np.hypot(*pull[:2])) / strength  # distance of the rest position from the vertical
-        spread = rate * rate / strength  # largest energy that the centrifugal gradient may add, as a part of the pull
+        # of the largest angle; -1 or less where the bob can go over the top
+        cosine = min(-energy / strength, 1.0)
+        # distance of the rest position from the vertical
+        aside = float(np.hypot(*pull[:2])) / strength
+        # largest energy that the centrifugal gradient may add, as a part of the pull
+        spread = rate * rate / strength
         reach = math.sqrt(1 - cosine**2) if cosine > 0 else 1.0
-        return cls(cosine > aside + spread, min(reach + aside, 1.0), math.sqrt(max(2 * (energy + strength), 0.0)))
+        return cls(
+            cosine > aside + spread,
+            min(reach + aside, 1.0),
+            math.sqrt(max(2 * (energy + strength), 0.0)),
+        )
 
     def sizes(self, variables: int) -> Array:
         """Return bounds on positions (radians, or n) and rates (1/s), in the order of a state's variables."""
-        rise = self.reach**2 / (1 + math.sqrt(1 - self.reach**2))  # 1 - cos of the largest angle from the vertical
-        positions, rates = (self.reach, self.reach, rise), (self.fastest, self.fastest, self.fastest * self.reach)
+        # 1 - cos of the largest angle from the vertical
+        rise = self.reach**2 / (1 + math.sqrt(1 - self.reach**2))
+        positions, rates = (
+            (self.reach, self.reach, rise),
+            (self.fastest, self.fastest, self.fastest * self.reach),
+        )
         half = variables // 2
         return np.maximum([*positions[:half], *rates[:half]], SMALLEST_SIZE)
 
@@ -166,7 +187,9 @@ class Problem:
         try:
             state = start.state(model)
         except ValueError as error:
-            raise InputError("formulation", formulation, "one that holds at the release", f"{error}.") from None
+            raise InputError(
+                "formulation", formulation, "one that holds at the release", f"{error}."
+            ) from None
         if times is None:
             times = [float(t) for t in scene.exact.grid]
         rounded = start.k.converted(float)
@@ -212,7 +235,9 @@ class Problem:
         for letter, array, count in (("x", "y", variables), ("c", "k", parameters)):
             texts[letter] = "".join(f"{letter}{i}, " for i in range(count))
             texts[f"unpack_{array}"] = f"{texts[letter]}= {texts[array]}" if count else "pass"
-        return compiled(f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}")
+        return compiled(
+            f"@nb.njit(**OPTIONS)\n{program.source('traced')}\n\n{Template(template).substitute(texts)}"
+        )
 
     def cartesian(self, states: Array) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""

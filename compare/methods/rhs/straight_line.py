@@ -62,7 +62,10 @@ class StraightLine:
         """Return the source of a Python function of the inputs, which returns the tuple of the outputs."""
         body = [f"{line.name} = {line.expression}" for line in self.lines]
         ending = ", ".join(self.outputs) + ("," if len(self.outputs) == 1 else "")
-        return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
+        return (
+            "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"])
+            + "\n"
+        )
 
 
 def elements(array: str, count: int, row: str = "") -> str:
@@ -78,7 +81,11 @@ def compiled(body: str) -> ModuleType:
     """
     text = (HEADER + body).encode()
     name = f"f{hashlib.sha256(text).hexdigest()[:32]}"
-    path = kept("generated", f"{name}.py", lambda path: replace_file(path, lambda stream: stream.write(text)))
+    path = kept(
+        "generated",
+        f"{name}.py",
+        lambda path: replace_file(path, lambda stream: stream.write(text)),
+    )
     module = ModuleType(name)
     sys.modules[name] = module  # numba's cache unpickles its functions by the module's name
     exec(compile(text, str(path), "exec"), module.__dict__)

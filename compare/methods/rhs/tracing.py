@@ -89,7 +89,9 @@ class TracedNumber:
         return power
 
     def _refuse(self, *_: Any) -> Any:
-        raise TracingError("a traced function must not compare or convert numbers: straight-line code has no branches")
+        raise TracingError(
+            "a traced function must not compare or convert numbers: straight-line code has no branches"
+        )
 
     __radd__, __rmul__ = __add__, __mul__
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = __float__ = __int__ = __abs__ = _refuse
@@ -107,7 +109,9 @@ class Tape:
         if isinstance(value, TracedNumber):
             return value.name
         if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
-            raise TracingError(f"got {value!r}, expected a recorded number, an int, a float or a Fraction")
+            raise TracingError(
+                f"got {value!r}, expected a recorded number, an int, a float or a Fraction"
+            )
         return repr(float(value))
 
     def record(self, operation: str, *values: Any) -> TracedNumber:
@@ -179,10 +183,18 @@ def differentiated(program: StraightLine, variables: Sequence[str]) -> StraightL
         for name, partial in zip(line.operands, partials, strict=True):
             for i, slope in enumerate(slopes.get(name, none)):
                 slopes[line.name][i] = plus(slopes[line.name][i], product(partial, slope))
-    return tape.program(program.inputs, [slope for name in program.outputs for slope in slopes.get(name, none)])
+    return tape.program(
+        program.inputs, [slope for name in program.outputs for slope in slopes.get(name, none)]
+    )
 
 
-_OPERATORS: dict[str, Callable[..., Any]] = {"add": add, "sub": sub, "mul": mul, "div": truediv, "neg": neg}
+_OPERATORS: dict[str, Callable[..., Any]] = {
+    "add": add,
+    "sub": sub,
+    "mul": mul,
+    "div": truediv,
+    "neg": neg,
+}
 # the derivatives of an operation's result by each of its operands, from functions, the result and the operands
 _PARTIALS: dict[str, Callable[..., tuple[Any, ...]]] = {
     "add": lambda f, result, x, y: (1, 1),

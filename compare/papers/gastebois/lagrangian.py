@@ -102,8 +102,14 @@ def printed_accelerations(p: Point) -> Vector:
     """Return θ'', φ'' as printed at the end of 7.2."""
     sp, cp, sl, _ = p.angle_functions
     along = cp * sin(p.phi) - sp * sl * cos(p.phi)
-    theta = -p.gravity / p.length * sp + sp * cp * p.azimuth_rate**2 + 2 * sp * along * p.rate * p.azimuth_rate
-    return vector(theta, (-2 * cp * p.cord_rate * p.azimuth_rate - 2 * along * p.rate * p.cord_rate) / sp)
+    theta = (
+        -p.gravity / p.length * sp
+        + sp * cp * p.azimuth_rate**2
+        + 2 * sp * along * p.rate * p.azimuth_rate
+    )
+    return vector(
+        theta, (-2 * cp * p.cord_rate * p.azimuth_rate - 2 * along * p.rate * p.cord_rate) / sp
+    )
 
 
 def _accelerated(p: Point, accelerations: Vector) -> Point:
@@ -118,7 +124,11 @@ def _theta_side(p: Point) -> Any:
 
 def _phi_side(p: Point) -> Any:
     sp, cp, *_ = p.angle_functions
-    return p.mass * p.length**2 * (sp**2 * p.azimuth_second + 2 * sp * cp * p.cord_rate * p.azimuth_rate)
+    return (
+        p.mass
+        * p.length**2
+        * (sp**2 * p.azimuth_second + 2 * sp * cp * p.cord_rate * p.azimuth_rate)
+    )
 
 
 def force(i: int, right: bool) -> Callable[[Point], Any]:
@@ -142,7 +152,9 @@ def force(i: int, right: bool) -> Callable[[Point], Any]:
 def small_accelerations(p: Point) -> Vector:
     """Return θ'', φ'' for small angles by 7.3."""
     theta, up = p.cord, rate_up(p)
-    second = -p.gravity / p.length * theta + theta * p.azimuth_rate**2 + 2 * theta * up * p.azimuth_rate
+    second = (
+        -p.gravity / p.length * theta + theta * p.azimuth_rate**2 + 2 * theta * up * p.azimuth_rate
+    )
     return vector(second, (-2 * p.cord_rate * p.azimuth_rate - 2 * up * p.cord_rate) / theta)
 
 
@@ -187,7 +199,9 @@ def _flat_end(p: Point) -> Vector:
     length, theta, up = p.length, p.cord, rate_up(p)
     along = length * p.cord_rate * cl - length * theta * sl * p.azimuth_rate
     across = length * p.cord_rate * sl + length * theta * cl * p.azimuth_rate
-    return vector(-p.gravity * cl * theta + 2 * up * across, -p.gravity * sl * theta - 2 * up * along)
+    return vector(
+        -p.gravity * cl * theta + 2 * up * across, -p.gravity * sl * theta - 2 * up * along
+    )
 
 
 def checks() -> list[Check]:

@@ -30,7 +30,15 @@ from ..digits import (
     sqrt,
     vector,
 )
-from ..first_principles import AXIS, linearised, moving_velocity, rate_up, rotated, turning, turning_rates
+from ..first_principles import (
+    AXIS,
+    linearised,
+    moving_velocity,
+    rate_up,
+    rotated,
+    turning,
+    turning_rates,
+)
 from ..points import Point, paris, path_in, points, rotation, solved, swing_plane
 
 RATE = mpf("7.292115e-5")  # rad/s, WGS84
@@ -92,7 +100,9 @@ def _seen_at_rest(order: int) -> Callable[[Point], Vector]:
 
     def seen(p: Point) -> Vector:
         place, speed, second = _relative(p)
-        return derivative(lambda s: rotated(place + s * speed + s * s / 2 * second, AXIS, p.rate * s), 0, order)
+        return derivative(
+            lambda s: rotated(place + s * speed + s * s / 2 * second, AXIS, p.rate * s), 0, order
+        )
 
     return seen
 
@@ -140,7 +150,10 @@ def _turn(latitude: str) -> float:
 
 def _pole() -> Answer:
     turn = _turn("90")
-    return Answer(abs(turn / -15.04106864 - 1) < 1e-4, f"{turn:.15f}° an hour, the Earth -15.041068640° in the sky")
+    return Answer(
+        abs(turn / -15.04106864 - 1) < 1e-4,
+        f"{turn:.15f}° an hour, the Earth -15.041068640° in the sky",
+    )
 
 
 def _equator() -> Answer:

@@ -5,7 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from ...approximations import gastebois
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, component, over, section
+from ..checks import (
+    Answer,
+    Approximate,
+    Check,
+    Identity,
+    PrintedNumber,
+    Statement,
+    component,
+    over,
+    section,
+)
 from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate, turned_in_plane
 from ..points import Point, points
@@ -41,7 +51,11 @@ def motion_at_rest(p: Point, t: Any) -> Vector:
 def pantheon(s: Any = 1) -> Point:
     """Return the Pantheon's pendulum, rotation s times the Earth's."""
     return points()[0].but(
-        length=PANTHEON_LENGTH, gravity=GRAVITY, latitude=PANTHEON_LATITUDE, rate=RATE * MP.mpf(s), x=PANTHEON_RELEASE
+        length=PANTHEON_LENGTH,
+        gravity=GRAVITY,
+        latitude=PANTHEON_LATITUDE,
+        rate=RATE * MP.mpf(s),
+        x=PANTHEON_RELEASE,
     )
 
 

@@ -36,7 +36,8 @@ def _prolate() -> Answer:
 def order_of(tableau: Tableau | NystromTableau) -> int:
     """Return the highest order whose conditions a table of coefficients meets."""
     try:
-        return replace(tableau, order=99).order  # more than any has: the first condition that fails tells its own
+        # more than any has: the first condition that fails tells its own
+        return replace(tableau, order=99).order
     except TableauError as error:
         return error.order - 1
 
@@ -54,10 +55,15 @@ def _step_control() -> Answer:
     """Look for a second formula of order 3 in the stages of the classical scheme, whose error it would estimate."""
     table = [[mpf(part) for part in row] for row in rk4.TABLEAU.a]
     nodes = [sum(row, MP.zero) for row in table]
-    inner = [sum((part * node for part, node in zip(row, nodes, strict=False)), MP.zero) for row in table]
+    inner = [
+        sum((part * node for part, node in zip(row, nodes, strict=False)), MP.zero) for row in table
+    ]
     conditions = MP.matrix([[MP.one] * len(nodes), nodes, [node**2 for node in nodes], inner])
     size = MP.det(conditions)
-    return Answer(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
+    return Answer(
+        size == 0,
+        f"determinant of the conditions of order 3: {shown(size)}; one formula meets them",
+    )
 
 
 def _by_parabola() -> Answer:

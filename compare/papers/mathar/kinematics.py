@@ -11,7 +11,22 @@ import numpy as np
 from reference.model.constants import axis_distance
 
 from ..checks import Answer, Check, Identity, Statement, component, section
-from ..digits import MP, Vector, cos, cross, degrees, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
+from ..digits import (
+    MP,
+    Vector,
+    cos,
+    cross,
+    degrees,
+    derivative,
+    dot,
+    norm,
+    shown,
+    sin,
+    sqrt,
+    unit,
+    vanishes,
+    vector,
+)
 from ..first_principles import (
     angle_state,
     by_angles,
@@ -64,18 +79,25 @@ def _not_the_north_direction() -> Answer:
 
 
 def _is_the_north_direction() -> bool:
-    return all(vanishes(_along_meridian(p) - (_meridian_radius(p) + p.altitude) * north(p)) for p in points())
+    return all(
+        vanishes(_along_meridian(p) - (_meridian_radius(p) + p.altitude) * north(p))
+        for p in points()
+    )
 
 
 def _east_from_latitude() -> Answer:
     p = points()[0]
     along, e_east = unit(_along_meridian(p)), east(p)
     cosine = shown(dot(along, e_east))
-    return Answer(vanishes(cross(along, e_east)), f"cosine of the angle between dX_s/dϕ and e_E: {cosine}")
+    return Answer(
+        vanishes(cross(along, e_east)), f"cosine of the angle between dX_s/dϕ and e_E: {cosine}"
+    )
 
 
 def _east_from_longitude() -> bool:
-    return all(vanishes(cross(derivative(partial(suspension, p), p.rate * p.t), east(p))) for p in points())
+    return all(
+        vanishes(cross(derivative(partial(suspension, p), p.rate * p.t), east(p))) for p in points()
+    )
 
 
 def _site_axis(i: int) -> Callable[[Point], Vector]:
@@ -105,7 +127,9 @@ def _up_cross_east(p: Point) -> Vector:
 def _in_matrix(p: Point) -> Vector:
     st, ct, s, c = sin(p.rate * p.t), cos(p.rate * p.t), sin(p.phi), cos(p.phi)
     x, y, z = p.position
-    turned = vector(-st * x - s * ct * y + c * ct * z, ct * x - s * st * y + c * st * z, c * y + s * z)
+    turned = vector(
+        -st * x - s * ct * y + c * ct * z, ct * x - s * st * y + c * st * z, c * y + s * z
+    )
     return printed_suspension(p) + turned
 
 
@@ -118,7 +142,9 @@ def _by_chain_rule(p: Point) -> Vector:
 
 def _alpha(power: int) -> Callable[[Point], Any]:
     """Return the coefficient of Ω**power in the squared velocity."""
-    return lambda p: in_rate(lambda rate: square_speed(p.but(rate=rate), by_angles, *angle_state(p)[:2]), power)
+    return lambda p: in_rate(
+        lambda rate: square_speed(p.but(rate=rate), by_angles, *angle_state(p)[:2]), power
+    )
 
 
 def alphas(p: Point) -> Vector:
@@ -129,7 +155,8 @@ def alphas(p: Point) -> Vector:
     arm = far - p.length * (c * cp + s * sp * sl)
     return vector(
         p.length**2 * (p.cord_rate**2 + sp**2 * p.azimuth_rate**2),
-        first + 2 * p.length**2 * (sp * p.azimuth_rate * (s * sp + c * cp * sl) - c * p.cord_rate * cl),
+        first
+        + 2 * p.length**2 * (sp * p.azimuth_rate * (s * sp + c * cp * sl) - c * p.cord_rate * cl),
         arm**2 + p.length**2 * sp**2 * cl**2,
     )
 

@@ -63,23 +63,49 @@ def azimuth_equation(p: Point) -> Any:
 
 def plane_alphas(p: Point) -> Vector:
     """Return α0, α1, α2 in x and y by (28)-(30)."""
-    x, y, vx, vy, l2, s, c, far = p.x, p.y, p.vx, p.vy, p.length**2, sin(p.phi), cos(p.phi), p.N + p.altitude
+    x, y, vx, vy, l2, s, c, far = (
+        p.x,
+        p.y,
+        p.vx,
+        p.vy,
+        p.length**2,
+        sin(p.phi),
+        cos(p.phi),
+        p.N + p.altitude,
+    )
     below = l2 - x**2 - y**2
     half = below ** MP.mpf("1.5")
     alpha0 = 2 * x * y * vx * vy + (l2 - y**2) * vx**2 + (l2 - x**2) * vy**2
     alpha1 = -2 * vx * s * y * l2 - 2 * vx * c * half + 2 * vx * s * y**3 - 2 * vy * s * x**3
-    alpha1 += 2 * vx * s * y * x**2 - 2 * vx * c * x**2 * sqrt(below) - 2 * vy * c * x * y * sqrt(below)
+    alpha1 += (
+        2 * vx * s * y * x**2 - 2 * vx * c * x**2 * sqrt(below) - 2 * vy * c * x * y * sqrt(below)
+    )
     alpha1 += 2 * l2 * far * c * vx - 2 * far * c * x**2 * vx - 2 * far * c * y**2 * vx
     alpha1 += 2 * l2 * s * x * vy - 2 * s * x * y**2 * vy
-    alpha2 = -2 * x**2 * y**2 + y**2 * l2 + 2 * c**2 * y**4 + c**2 * x**4 + x**2 * l2 + c**2 * l2**2 - x**4 - y**4
-    alpha2 += far**2 * c**2 * l2 - 3 * y**2 * l2 * c**2 - 2 * far * c**2 * half - 2 * c**2 * l2 * x**2
-    alpha2 += 3 * c**2 * x**2 * y**2 + 2 * s * c * y * half - far**2 * c**2 * x**2 - far**2 * c**2 * y**2
+    alpha2 = (
+        -2 * x**2 * y**2
+        + y**2 * l2
+        + 2 * c**2 * y**4
+        + c**2 * x**4
+        + x**2 * l2
+        + c**2 * l2**2
+        - x**4
+        - y**4
+    )
+    alpha2 += (
+        far**2 * c**2 * l2 - 3 * y**2 * l2 * c**2 - 2 * far * c**2 * half - 2 * c**2 * l2 * x**2
+    )
+    alpha2 += (
+        3 * c**2 * x**2 * y**2 + 2 * s * c * y * half - far**2 * c**2 * x**2 - far**2 * c**2 * y**2
+    )
     alpha2 += -2 * far * s * c * y * l2 + 2 * s * c * far * y * x**2 + 2 * s * c * far * y**3
     return vector(alpha0, alpha1, alpha2) / below
 
 
 def _plane_alpha(power: int) -> Any:
-    return lambda p: in_rate(lambda rate: square_speed(p.but(rate=rate), by_plane, *plane_state(p)[:2]), power)
+    return lambda p: in_rate(
+        lambda rate: square_speed(p.but(rate=rate), by_plane, *plane_state(p)[:2]), power
+    )
 
 
 def _energy_in_the_inertial_frame_changes() -> Answer:
@@ -91,7 +117,9 @@ def _energy_in_the_inertial_frame_changes() -> Answer:
         return square_speed(p, by_plane, q, speed + s * second) / 2 + p.gravity * by_plane(p, *q)[2]
 
     change = derivative(energy)
-    return Answer(abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion")
+    return Answer(
+        abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion"
+    )
 
 
 def _no_time_in_the_lagrangian() -> Answer:
@@ -111,7 +139,9 @@ def _azimuth_is_fast() -> Answer:
     """Compare λ' at the passage next to the vertical with the angular frequency of the swing."""
     near, miss = paris_passage()
     fast, slow = float((np.hypot(near[:, 3], near[:, 4]) / miss).max()), np.sqrt(9.80665 / 67)
-    return Answer(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
+    return Answer(
+        fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s"
+    )
 
 
 def _shared(p: Point) -> Any:
@@ -145,7 +175,10 @@ def beta_y(p: Point) -> Vector:
 def matrix_times(p: Point, a: Vector) -> Vector:
     """Return the left side of (42)."""
     x, y, z = p.position
-    return vector(z**2 * (x**2 + z**2) * a[0] + z**2 * y * x * a[1], z**2 * y * x * a[0] + z**2 * (y**2 + z**2) * a[1])
+    return vector(
+        z**2 * (x**2 + z**2) * a[0] + z**2 * y * x * a[1],
+        z**2 * y * x * a[0] + z**2 * (y**2 + z**2) * a[1],
+    )
 
 
 def inverse_times(p: Point, b: Vector) -> Vector:
@@ -167,7 +200,9 @@ def _plane_equation(i: int, power: int = 4) -> Callable[[Point], Any]:
 
 def _coefficient(i: int, power: int) -> Callable[[Point], Any]:
     """Return z⁴ times the terms of Euler-Lagrange without accelerations, at one power of Ω."""
-    return lambda p: in_rate(lambda rate: _plane_equation(i)(p.but(rate=rate, ax=MP.zero, ay=MP.zero)), power)
+    return lambda p: in_rate(
+        lambda rate: _plane_equation(i)(p.but(rate=rate, ax=MP.zero, ay=MP.zero)), power
+    )
 
 
 def _printed_32(p: Point) -> Any:

@@ -52,7 +52,10 @@ def _work_of_the_centrifugal_force() -> Answer:
 
     gained = p.gravity * (z - p.z) + (vy**2 + vz**2) / 2
     work = p.rate**2 * (square((x, y, z)) - square(paris().position)) / 2
-    return Answer(abs(gained - work) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg")
+    return Answer(
+        abs(gained - work) < MP.mpf("1e-25"),
+        f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg",
+    )
 
 
 def _middle_of_the_first_swing() -> Answer:
@@ -75,7 +78,10 @@ def _about_the_rest_position() -> Answer:
     for begin in (0.0, 7000.0, 12000.0):
         middle = window(begin, 63 / 64 * period, step=period / 64)[1][:, :2].mean(axis=0)
         gaps.append(np.hypot(*(middle - x_y)))
-    return Answer(max(gaps) < 1e-3, f"the mean of a swing is {max(gaps):.4e} m from the rest position, or less")
+    return Answer(
+        max(gaps) < 1e-3,
+        f"the mean of a swing is {max(gaps):.4e} m from the rest position, or less",
+    )
 
 
 def _clouds_move() -> Answer:
@@ -88,7 +94,9 @@ def _clouds_move() -> Answer:
 
 def _linear() -> Answer:
     slope, off = rotation(paris_path()[0], paris_swing_plane())
-    return Answer(off < 0.01, f"{slope:.15f}° an hour, within {off:.2e}° of a straight line for 24 h")
+    return Answer(
+        off < 0.01, f"{slope:.15f}° an hour, within {off:.2e}° of a straight line for 24 h"
+    )
 
 
 def _north_east_to_east() -> Answer:
@@ -96,12 +104,17 @@ def _north_east_to_east() -> Answer:
     start = degrees(MP.atan2(mpf("0.4") - y, mpf("0.3")))
     slope, _ = rotation(paris_path()[0], paris_swing_plane())
     hours = -start / slope
-    return Answer(bool(0 < start < 90 and slope < 0), f"from {shown(start)}° to 0° (east-west) in {shown(hours, 6)} h")
+    return Answer(
+        bool(0 < start < 90 and slope < 0),
+        f"from {shown(start)}° to 0° (east-west) in {shown(hours, 6)} h",
+    )
 
 
 def _coupling_is_ahead() -> Answer:
     scene, at = load_scene("paris"), np.array([0.0, 12000.0])
-    item_2, true = (motion(scene, at)[-1] for motion in (motions()["mathar_item_2"].trajectory, path_in))
+    item_2, true = (
+        motion(scene, at)[-1] for motion in (motions()["mathar_item_2"].trajectory, path_in)
+    )
     gap, speed = (item_2 - true)[:2], true[3:5]
     ahead = float(gap @ speed / (speed @ speed))  # along the way
     return Answer(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
@@ -138,7 +151,10 @@ def transit_frequency() -> Any:
 def _planar_run() -> Answer:
     run = solved(STILL, "20", 30)
     period = mpf(run.transits.exact("t")[1])
-    return Answer(abs(period - planar_period()) < MP.mpf("1e-27"), f"run without rotation: {shown(period, 25)} s")
+    return Answer(
+        abs(period - planar_period()) < MP.mpf("1e-27"),
+        f"run without rotation: {shown(period, 25)} s",
+    )
 
 
 def _slowed(by: Any) -> Answer:

@@ -8,16 +8,49 @@ from typing import Any
 
 from ...approximations.frequency import line_of_46, series, triangle
 from ...approximations.mathar import derivatives, truncated
-from ..checks import Answer, Approximate, Check, Identity, PrintedNumber, Statement, component, over, section
-from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
-from ..first_principles import coupled_at, horizontal_acceleration, in_rate, linearised, rest, uniform_acceleration
+from ..checks import (
+    Answer,
+    Approximate,
+    Check,
+    Identity,
+    PrintedNumber,
+    Statement,
+    component,
+    over,
+    section,
+)
+from ..digits import (
+    MP,
+    ZERO_BELOW,
+    Vector,
+    cos,
+    degrees,
+    derivative,
+    shown,
+    sin,
+    sqrt,
+    vanishes,
+    vector,
+)
+from ..first_principles import (
+    coupled_at,
+    horizontal_acceleration,
+    in_rate,
+    linearised,
+    rest,
+    uniform_acceleration,
+)
 from ..points import Point, paris, points
 from .lagrangian import beta_x, beta_y, solved
 
 SERIES = (
     (2, "²", "/ 2g"),
     (4, "⁴", "[(N+h) (1+cos2ϕ)/2 - l cos2ϕ] / 2g²"),
-    (6, "⁶", "{(N+h)² [cos4ϕ + 3cos2ϕ + 2] - (N+h) l [37/8 cos4ϕ + 11/8 + 6cos2ϕ] + l² [35/8 cos4ϕ + 13/8]} / 12g³"),
+    (
+        6,
+        "⁶",
+        "{(N+h)² [cos4ϕ + 3cos2ϕ + 2] - (N+h) l [37/8 cos4ϕ + 11/8 + 6cos2ϕ] + l² [35/8 cos4ϕ + 13/8]} / 12g³",
+    ),
 )
 
 
@@ -48,7 +81,9 @@ def _degree_of_45() -> Answer:
         return sum((-1) ** k * MP.binomial(order, k) * cleared(MP.mpf(k)) for k in range(order + 1))
 
     holds = abs(difference(5)) < ZERO_BELOW < abs(difference(4))
-    return Answer(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
+    return Answer(
+        holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}"
+    )
 
 
 def _first_line_of_46(p: Point, sign: int) -> Any:
@@ -77,7 +112,10 @@ def _below_a_tenth() -> Answer:
 
 def _same_curve() -> Answer:
     latitudes = [MP.mpf(10 * k) for k in range(1, 9)]
-    angles = [[degrees(paris().but(length=MP.mpf(m), latitude=d).case.rest_angle) for m in (1, 100)] for d in latitudes]
+    angles = [
+        [degrees(paris().but(length=MP.mpf(m), latitude=d).case.rest_angle) for m in (1, 100)]
+        for d in latitudes
+    ]
     gap = max(abs(a - b) for a, b in angles)
     return Answer(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
 
@@ -85,7 +123,10 @@ def _same_curve() -> Answer:
 def _south_in_the_north() -> Answer:
     y_at_rest = [rest(paris().but(latitude=MP.mpf(d)))[1] for d in (-60, -20, 20, 60)]
     holds = all((y < 0) == (d > 0) for y, d in zip(y_at_rest, (-60, -20, 20, 60), strict=True))
-    return Answer(holds, f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m")
+    return Answer(
+        holds,
+        f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m",
+    )
 
 
 def _on_the_meridian() -> Answer:
@@ -224,7 +265,8 @@ def _section_vi() -> list[Check]:
             over(_swinging, _coriolis(without(4)), _coriolis(solved)), 1, "amplitude",
             remark=f"of the Coriolis acceleration; {place}"),
         Approximate("vi_5", "item 5", "z replaced by l",
-            over(_swinging, lambda p: -p.gravity / p.length * p.position[:2],  # from the diagonal of (43), with g alone
+            # from the diagonal of (43), with g alone
+            over(_swinging, lambda p: -p.gravity / p.length * p.position[:2],
                 lambda p: -p.gravity * abs(p.z) / p.length**2 * p.position[:2]), 2, "amplitude", remark=place),
         Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
             lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,

@@ -24,8 +24,10 @@ from ...studies.stability import Cell
 from ..pareto import rows_of
 
 LONGEST_REASON = 160  # characters of what is wrong with a study: every row may lack the same
-NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}  # of a cell in docs/studies, where there is none
-KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}  # they make no difference to a score
+# of a cell in docs/studies, where there is none
+NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}
+# they make no difference to a score
+KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}
 
 
 @dataclass
@@ -46,8 +48,16 @@ class StudyResults:
         """Return it in short; empty if nothing is known."""
         if self.same_digits:
             right = sum(cell.status is Status.OK for cell in self.same_digits.values())
-            wrong = [name for name, cell in self.same_digits.items() if cell.status is Status.SILENTLY_WRONG]
-            ending = f"; silently wrong: {', '.join(wrong)}" if wrong else ", and none was silently wrong"
+            wrong = [
+                name
+                for name, cell in self.same_digits.items()
+                if cell.status is Status.SILENTLY_WRONG
+            ]
+            ending = (
+                f"; silently wrong: {', '.join(wrong)}"
+                if wrong
+                else ", and none was silently wrong"
+            )
             return f"{right} of {len(self.same_digits)} runs of methods kept what was asked for{ending}."
         if self.least:
             best = self.least[0]
@@ -122,7 +132,9 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
         paths = sorted(path.parent for path in folder.glob(f"*/{MANIFEST}"))
     if not paths:
         advice = "`foucault generate --all` makes those that ship."
-        raise InputError("--data", str(folder), "a folder of golden datasets, each a folder in it", advice)
+        raise InputError(
+            "--data", str(folder), "a folder of golden datasets, each a folder in it", advice
+        )
     readings: dict[str, dict[str, Golden]] = {}
     for path in paths:
         golden = load(path)
@@ -152,7 +164,12 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
         InputError: there is no such folder, or a file is no study.
     """
     if folder is not None and not folder.is_dir():
-        raise InputError("--studies", str(folder), "a folder of results", "`foucault study … --out DIR` writes one.")
+        raise InputError(
+            "--studies",
+            str(folder),
+            "a folder of results",
+            "`foucault study … --out DIR` writes one.",
+        )
     results: dict[str, StudyResults] = defaultdict(StudyResults)
     cells = TypeAdapter(list[Cell])
     for path in sorted(folder.glob("*.json")) if folder is not None else ():
@@ -161,12 +178,30 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
             scene = document.get("scene")
             if scene is None:
                 for cell in cells.validate_python([NOT_KEPT | row for row in document["rows"]]):
-                    results[cell.scene].same_digits.setdefault(run_name(cell), cell)  # the first study that has it
+                    # the first study that has it
+                    results[cell.scene].same_digits.setdefault(run_name(cell), cell)
             elif document["t_end"] > results[scene].span_s:
-                results[scene].least, results[scene].span_s = _least(rows_of(document)), float(document["t_end"])
-        except (InputError, OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
-            reason = error.advice if isinstance(error, InputError) else f"{shortened(str(error), LONGEST_REASON)}."
-            raise InputError("--studies", str(path), "a study as `foucault study` writes it", reason) from None
+                results[scene].least, results[scene].span_s = (
+                    _least(rows_of(document)),
+                    float(document["t_end"]),
+                )
+        except (
+            InputError,
+            OSError,
+            ValueError,
+            KeyError,
+            TypeError,
+            AttributeError,
+            OverflowError,
+        ) as error:
+            reason = (
+                error.advice
+                if isinstance(error, InputError)
+                else f"{shortened(str(error), LONGEST_REASON)}."
+            )
+            raise InputError(
+                "--studies", str(path), "a study as `foucault study` writes it", reason
+            ) from None
     return results
 
 

@@ -26,7 +26,8 @@ from .entry import Entry, entries
 EVALUATOR = "function.mjs"
 MOST_EMBEDDED = 500_000  # characters of coefficients in a page; more are in a script beside it
 PLAIN = "Begin here: pendulums as they hang"  # scenes without flags, but for a long run
-GROUPS = {  # and the others: each stands in the first group that has one of its flags, or in the last
+# and the others: each stands in the first group that has one of its flags, or in the last
+GROUPS = {
     "Wide swings, and over the top": {"large_angle"},
     "Drag": {"damped", "stiff"},
     "Fast rotation, no gravity": {"fast_rotation", "weightless"},
@@ -42,7 +43,9 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
         cards[_group(entry)].append(_card(entry, thumb))
     datasets = sum(len(entry.datasets) for entry in scenes)
     sections = [
-        section(name, Html(f'<div class="thumbs">\n{chr(10).join(of)}\n</div>')) for name, of in cards.items() if of
+        section(name, Html(f'<div class="thumbs">\n{chr(10).join(of)}\n</div>'))
+        for name, of in cards.items()
+        if of
     ]
     return page(
         "Atlas of the Foucault pendulum",
@@ -59,10 +62,16 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
 
 def _group(entry: Entry) -> str:
     flags = {*entry.flags} - {"long"}
-    return next((name for name, group in GROUPS.items() if flags & group), [*GROUPS][-1]) if flags else PLAIN
+    return (
+        next((name for name, group in GROUPS.items() if flags & group), [*GROUPS][-1])
+        if flags
+        else PLAIN
+    )
 
 
-def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any] | None, beside: str | None) -> str:
+def scene_page(
+    entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any] | None, beside: str | None
+) -> str:
     """Return the page of a scene, which holds its golden rows and judges a file by them.
 
     Args:
@@ -74,16 +83,27 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any
     """
     (first, *further), title = entry.datasets, entry.golden.manifest.title.rstrip(".")
     fared = parts.methods(entry.studied)
-    readings = [Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}") for golden in further]
+    readings = [
+        Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}")
+        for golden in further
+    ]
     return page(
         entry.id,
         [
-            section("The motion", *([Html(source("player.html"))] if made else []), parts.pictures(svgs)),
+            section(
+                "The motion", *([Html(source("player.html"))] if made else []), parts.pictures(svgs)
+            ),
             section("Judge your program", _drop(entry, made, beside)),
             section("The state at the end", parts.state(entry.golden)),
             section("The dataset", parts.dataset(first, base), *readings),
-            *([section("How methods fare", paragraph(entry.studied.sentence()), *fared)] if fared else []),
-            section("Inputs", paragraph("SI units, angles in degrees."), parts.inputs(entry.golden)),
+            *(
+                [section("How methods fare", paragraph(entry.studied.sentence()), *fared)]
+                if fared
+                else []
+            ),
+            section(
+                "Inputs", paragraph("SI units, angles in degrees."), parts.inputs(entry.golden)
+            ),
         ],
         lead=Html(
             f"{paragraph(f'{title}.')}\n{parts.flags(entry)}\n"
@@ -119,8 +139,12 @@ def _filters(scenes: Sequence[Entry]) -> Html:
 
 
 def _choice(name: str, words: Iterable[str]) -> str:
-    options = "".join(f'<option value="{text(word)}">{text(word.replace("_", " "))}</option>' for word in words)
-    return f'<label>{name} <select id="{name}"><option value="">any</option>{options}</select></label>'
+    options = "".join(
+        f'<option value="{text(word)}">{text(word.replace("_", " "))}</option>' for word in words
+    )
+    return (
+        f'<label>{name} <select id="{name}"><option value="">any</option>{options}</select></label>'
+    )
 
 
 def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html:
@@ -133,13 +157,19 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
     known = "the golden rows alone: the dataset has no golden function"
     if made:
         rows = f"rows at any times up to {golden.t[-1]:.15g} s"
-        bounds = ", ".join(f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z"))
+        bounds = ", ".join(
+            f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z")
+        )
         known = f"the golden function, which has {bounds} of the truth at every time (proven)"
     if made and beside:
         size = f"{len(made['coefficients']) / 1e6:.1f} MB"
         known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"
     words = {"rows": rows, "transits": transits, "known": known, "command": entry.score_command()}
-    return Html(Template(source("drop.html").rstrip()).substitute({name: text(word) for name, word in words.items()}))
+    return Html(
+        Template(source("drop.html").rstrip()).substitute(
+            {name: text(word) for name, word in words.items()}
+        )
+    )
 
 
 def _data(document: dict[str, Any]) -> Html:
@@ -158,7 +188,11 @@ def source(name: str) -> str:
     if name == EVALUATOR:
         folder = data_root().parent / "docs" / "readers" if in_checkout() else files(__package__)
         program = folder.joinpath(name).read_text(encoding="utf-8")
-        return str(re.findall(r"^// Return what.*?^export (function.*?^}\n)", program, re.MULTILINE | re.DOTALL)[0])
+        return str(
+            re.findall(
+                r"^// Return what.*?^export (function.*?^}\n)", program, re.MULTILINE | re.DOTALL
+            )[0]
+        )
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
@@ -189,9 +223,15 @@ def build(
     for count, entry in enumerate(scenes):
         report(count, len(scenes), entry.id)
         motion, made = PicturedMotion.of_golden(entry.golden), parts.function_made(entry.judged)
-        beside = f"{entry.id}.function.js" if made and len(made["coefficients"]) > MOST_EMBEDDED else None
+        beside = (
+            f"{entry.id}.function.js"
+            if made and len(made["coefficients"]) > MOST_EMBEDDED
+            else None
+        )
         if beside:
-            pages[beside] = f"globalThis.goldenFunction = {json.dumps(made, separators=(',', ':'))};\n"
+            pages[beside] = (
+                f"globalThis.goldenFunction = {json.dumps(made, separators=(',', ':'))};\n"
+            )
         pages[f"{entry.id}.html"] = scene_page(entry, motion_svgs(motion), base, made, beside)
         thumbs.append(thumbnail(motion))
     pages[PAGE] = index_page(scenes, thumbs)

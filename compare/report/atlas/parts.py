@@ -31,7 +31,8 @@ from ...score.verdict import WHOLE
 from ..page import Html, PageTable, facts, text
 from .entry import Entry, StudyResults, run_name
 
-THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}  # of the proof's THEOREM.md
+# of the proof's THEOREM.md
+THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}
 
 
 def pictures(svgs: Sequence[str]) -> Html:
@@ -42,7 +43,10 @@ def pictures(svgs: Sequence[str]) -> Html:
 def flags(entry: Entry) -> Html:
     """Return why a scene is difficult: each flag with its sentence."""
     notes = entry.golden.manifest.notes
-    items = "".join(f"<li><b>{text(flag.replace('_', ' '))}</b>: {text(notes[flag])}</li>" for flag in entry.flags)
+    items = "".join(
+        f"<li><b>{text(flag.replace('_', ' '))}</b>: {text(notes[flag])}</li>"
+        for flag in entry.flags
+    )
     return Html(f'<ul class="flags">{items}</ul>' if items else "")
 
 
@@ -51,7 +55,12 @@ def state(golden: Golden) -> Html:
     manifest, last = golden.manifest, {name: golden.decimals(name)[-1] for name in STATE}
     units = {name: "m/s" if name.startswith("v") else "m" for name in STATE}
     rows = [
-        (name, Html(f'<span class="digits">{last[name]}</span>'), units[name], manifest.bounds.grid[name])
+        (
+            name,
+            Html(f'<span class="digits">{last[name]}</span>'),
+            units[name],
+            manifest.bounds.grid[name],
+        )
         for name in STATE
     ]
     return PageTable(
@@ -107,19 +116,36 @@ def linked(golden: Golden, name: str, base: str) -> Html:
 
 def inputs(golden: Golden) -> Html:
     """Return the scene's inputs as they stand in the manifest."""
-    return facts(by_field({name: table for name, table in golden.manifest.scene.items() if name != "run"}))
+    return facts(
+        by_field({name: table for name, table in golden.manifest.scene.items() if name != "run"})
+    )
 
 
 def methods(studied: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
     if studied.same_digits:
-        columns = {"method": "", "outcome": "", **dict.fromkeys(("asked for", "digits kept", "CPU s"), "number")}
+        columns = {
+            "method": "",
+            "outcome": "",
+            **dict.fromkeys(("asked for", "digits kept", "CPU s"), "number"),
+        }
         rows, kinds = [], []
-        kept = {name: -1.0 if cell.digits is None else cell.digits for name, cell in studied.same_digits.items()}
+        kept = {
+            name: -1.0 if cell.digits is None else cell.digits
+            for name, cell in studied.same_digits.items()
+        }
         for name in sorted(kept, key=kept.__getitem__, reverse=True):
             cell = studied.same_digits[name]
-            rows.append((name, cell.status.words, _tenths(cell.asked), _tenths(cell.digits), _cpu(cell.cpu_s)))
+            rows.append(
+                (
+                    name,
+                    cell.status.words,
+                    _tenths(cell.asked),
+                    _tenths(cell.digits),
+                    _cpu(cell.cpu_s),
+                )
+            )
             kinds.append("" if cell.status is Status.OK else "failed")
         same_digits = PageTable(columns, rows, kinds)
         parts.append(same_digits.html("Runs that were asked for the same digits (docs/studies.md)"))
@@ -150,13 +176,18 @@ def function_made(golden: Golden) -> dict[str, Any] | None:
     }
 
 
-def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | None = None) -> dict[str, Any]:
+def embedded(
+    golden: Golden, made: dict[str, Any] | None = None, beside: str | None = None
+) -> dict[str, Any]:
     """Return what `judging.js` needs of a dataset: doubles of its grid and transits in base64, bounds, scales, words.
 
     Transits come with the weight |ax|/ω in 1/s·m, by which an error of time becomes one of position. The golden
     function is `made`, or in a file `beside` the page.
     """
-    inputs, speed = golden.scene.exact, float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
+    inputs, speed = (
+        golden.scene.exact,
+        float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max()),
+    )
     omega, length = swing_rate(golden.scene, speed), float(inputs.length)
     reason, transits = unjudged_transits(golden), golden.transits
     weight = np.abs(transits["ax"]) / omega if omega else np.zeros(len(transits))
@@ -181,9 +212,14 @@ def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | N
 def vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
     reading = names, text_reader, header, clock, read, candidate
-    tables = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
+    tables = {
+        name: value for module in reading for name, value in vars(module).items() if name.isupper()
+    }
     sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID}
-    limits = {name: getattr(judge, name) for name in ("TOLERANCE", "SUBTRACT", "FINER", "FAR", "SAME", "SMALL")}
+    limits = {
+        name: getattr(judge, name)
+        for name in ("TOLERANCE", "SUBTRACT", "FINER", "FAR", "SAME", "SMALL")
+    }
     axes = [[*order, *signs, text] for (order, signs), (_, text) in AXES_SAID.items()]
     return tables | sentences | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
 
@@ -192,7 +228,11 @@ def plain(value: object) -> Any:
     """Return what JSON has for a set, a pattern, a fraction or a deviation of the vocabulary; for `json.dumps`."""
     if isinstance(value, Fraction):
         return [value.numerator, value.denominator]
-    return sorted(value) if isinstance(value, set) else getattr(value, "pattern", None) or getattr(value, "text", None)
+    return (
+        sorted(value)
+        if isinstance(value, set)
+        else getattr(value, "pattern", None) or getattr(value, "text", None)
+    )
 
 
 def _doubles(values: Array) -> str:

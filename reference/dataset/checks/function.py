@@ -33,7 +33,11 @@ def problems(files: Files) -> Iterator[str]:
     at = function.at([float(row[0]) for row in texts])
     for i, name in enumerate(STATE, 1):
         numbers = np.array([float(row[i]) for row in texts])
-        limit = float(files.manifest.bound("grid", name)) + function.bound[name] + np.spacing(np.abs(numbers))
+        limit = (
+            float(files.manifest.bound("grid", name))
+            + function.bound[name]
+            + np.spacing(np.abs(numbers))
+        )
         off = np.abs(getattr(at, name) - numbers)
         for k in np.flatnonzero(off > limit):
             yield f"{FUNCTION[0]}: t = {texts[k][0]}: {name} is {off[k]:.2g} from grid.csv, its bound is {limit[k]:.2g}"
@@ -48,7 +52,9 @@ def moments(files: Files) -> list[float]:
     return sorted({*ends.tolist(), *np.nextafter(ends[1:], 0.0).tolist(), *inside.tolist()})
 
 
-def contradicted(files: Files, times: list[float], table: Table, apart: Mapping[str, Fraction]) -> list[str]:
+def contradicted(
+    files: Files, times: list[float], table: Table, apart: Mapping[str, Fraction]
+) -> list[str]:
     """Return a sentence for every value that is further from a run than its bound and the distance of two runs."""
     if files.function is None:
         return []
@@ -56,7 +62,9 @@ def contradicted(files: Files, times: list[float], table: Table, apart: Mapping[
     at, sentences = function.at(times), []
     for name in STATE:
         limit = Fraction(record.bounds[name]) + apart[name]
-        for t, value, whole in zip(times, getattr(at, name).tolist(), table.whole(name, table.bits), strict=True):
+        for t, value, whole in zip(
+            times, getattr(at, name).tolist(), table.whole(name, table.bits), strict=True
+        ):
             n, d = value.as_integer_ratio()
             gap = Fraction(abs((n << table.bits) - whole * d), d << table.bits)
             if gap > limit:

@@ -29,20 +29,25 @@ from ..manifest import MANIFEST, Kind, Manifest
 from . import function
 from .scene_check import largest_jerk
 
-BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
+# CPU seconds that the runs may take: some, and more for longer tables
+BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001
 PATIENCE = 4  # times that, for all attempts together, where the first does not decide
 GRAZES = 8  # of the bounds on vx, and of xdot where a proof may not have decided whether it is zero
-UNSURE = 4  # times the time that the radius of a velocity is worth: a ball about a zero, which also holds the end
+# times the time that the radius of a velocity is worth: a ball about a zero, which also holds the end
+UNSURE = 4
 OUTWARD = Fraction(2, 10**20)  # s, by which the ends of a possible interval are rounded outward
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
 
-Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s
+# called with the simulated time reached and the whole span, in s
+Progress = Callable[[float, float], None]
 
 
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
     """Return a sentence for every number that the motion contradicts, and what was not decided, with the reason."""
     if not engines()["limbs"].installed:
-        return [], _undecided("integrating it again needs numba: pip install 'foucault-reference[fast]'")
+        return [], _undecided(
+            "integrating it again needs numba: pip install 'foucault-reference[fast]'"
+        )
     manifest = files.manifest
     allowed_s = BASE_S + ROW_S * manifest.counts.grid + TRANSIT_S * manifest.counts.transits
     prec, steps, expected_s, most_s = _first_prec(manifest), _steps(files), 0.0, allowed_s
@@ -69,7 +74,9 @@ def _undecided(reason: str) -> list[str]:
 def _first_prec(manifest: Manifest) -> int:
     """Return the bits of the published run where limbs have as many, and at least those of the digits."""
     claimed = re.search(r"\((\d{1,4})\)", manifest.run.number)
-    prec = max(int(claimed[1]) if claimed else DOUBLE_BITS, bits_of(manifest.digits) + GUARD_BITS // 2)
+    prec = max(
+        int(claimed[1]) if claimed else DOUBLE_BITS, bits_of(manifest.digits) + GUARD_BITS // 2
+    )
     return min(max(prec, LEAST_PREC + LIMB_BITS), MOST_PREC)
 
 
@@ -80,16 +87,22 @@ def _steps(files: Files) -> int:
         at = files.function[1].at(function.moments(files))  # type: ignore[index]
         speed = Fraction(float(sum(np.abs(getattr(at, name)) for name in VELOCITY).max()))
     else:
-        speed = max(sum(map(abs, row), Fraction(0)) for row in files.tables["grid.csv"].numbers(VELOCITY))
+        speed = max(
+            sum(map(abs, row), Fraction(0)) for row in files.tables["grid.csv"].numbers(VELOCITY)
+        )
     rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
-    return int(min(1e15, float(files.scene.exact.t_end) * (rate + float(speed / files.scene.exact.length))))
+    return int(
+        min(1e15, float(files.scene.exact.t_end) * (rate + float(speed / files.scene.exact.length)))
+    )
 
 
 def _run(files: Files, prec: int, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
     times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
     sections = files.manifest.sections
-    undecided = [word for word, possible in sections.possible.items() if possible] if sections else []
+    undecided = (
+        [word for word, possible in sections.possible.items() if possible] if sections else []
+    )
     words = tuple(word for word in files.scene.run.zeros if word not in undecided)
     plan = limbs.plan(inputs, prec, tuple(times), words)
     return run(plan, report and (lambda t: report(t, float(inputs.t_end))))
@@ -106,21 +119,34 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
         outside, differing = _outside_intervals(files, fine.plan, fine.transits)
         sheet, count = files.tables.get("transits.csv"), files.manifest.counts.transits
         expected = [fine.directions[k] for k in outside]
-        listed = [direction for (direction,) in sheet.numbers(("direction",))] if sheet else expected
+        listed = (
+            [direction for (direction,) in sheet.numbers(("direction",))] if sheet else expected
+        )
         if listed != expected or count != len(expected):
             where = "transits.csv" if sheet else MANIFEST
-            differing.append(f"{where}: {count} transits are not the motion's, which are {len(expected)}")
+            differing.append(
+                f"{where}: {count} transits are not the motion's, which are {len(expected)}"
+            )
         elif expected:
-            tables = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
+            tables = [
+                replace(run, values=[run.values[k] for k in outside])
+                for run in (coarse.transits, fine.transits)
+            ]
             kinds.append(("transits", tables[0], tables[1]))
     if sheet := files.tables.get("sections.csv"):
         passages = sections_of(fine.zeros)
         decided = [row for row in sheet.rows if row[0] in passages]
-        signs = [(word, f"{sign:+d}") for word, zeros in passages.items() for sign in zeros.directions]
+        signs = [
+            (word, f"{sign:+d}") for word, zeros in passages.items() for sign in zeros.directions
+        ]
         if [(row[0], row[3]) for row in decided] != signs:
-            differing.append(f"sections.csv: {len(decided)} passages are not the motion's, which are {len(signs)}")
+            differing.append(
+                f"sections.csv: {len(decided)} passages are not the motion's, which are {len(signs)}"
+            )
         elif signs:
-            files = replace(files, tables={**files.tables, "sections.csv": replace(sheet, rows=decided)})
+            files = replace(
+                files, tables={**files.tables, "sections.csv": replace(sheet, rows=decided)}
+            )
             kinds.append(("sections", _joined(sections_of(coarse.zeros)), _joined(passages)))
     for kind, rough, table in kinds:
         columns = table.only({"grid": GRID, "transits": TRANSITS, "sections": SECTION}[kind])
@@ -158,18 +184,29 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
         zeros: their times and states.
     """
     parts, times, slopes, refuted = files.manifest.possible, zeros.exact("t"), zeros.exact("ax"), []
-    near, jerk, outside = GRAZES * files.manifest.bound("grid", "vx"), largest_jerk(files), {*range(len(times))}
+    near, jerk, outside = (
+        GRAZES * files.manifest.bound("grid", "vx"),
+        largest_jerk(files),
+        {*range(len(times))},
+    )
     spans = [(Fraction(part.from_s), Fraction(part.to_s)) for part in parts]
     moments = (Fraction(0), *((low + high) / 2 for low, high in spans))
     middles = engines()["limbs"].run(replace(plan, times=moments, zeros=())).grid
-    for part, (low, high), vx, ax in zip(parts, spans, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True):
+    for part, (low, high), vx, ax in zip(
+        parts, spans, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True
+    ):
         inside, half = range(bisect_left(times, low), bisect_right(times, high)), (high - low) / 2
         outside.difference_update(inside)
-        shown = any(slopes[k] ** 2 > near * jerk for k in inside) or part.parity == ("odd", "even")[len(inside) % 2]
+        shown = (
+            any(slopes[k] ** 2 > near * jerk for k in inside)
+            or part.parity == ("odd", "even")[len(inside) % 2]
+        )
         shown = shown and not _ends_the_run(files, low, high, [slopes[k] for k in inside])
         if shown or abs(vx) > near + half * (abs(ax) + jerk * half / 2):
             place = f"possible: from {part.from_s} to {part.to_s} s"
-            refuted.append(f"{MANIFEST}: {place} the motion has {len(inside)} transits, and that is decided")
+            refuted.append(
+                f"{MANIFEST}: {place} the motion has {len(inside)} transits, and that is decided"
+            )
     return sorted(outside), refuted
 
 

@@ -24,7 +24,8 @@ from ..record import INVARIANT_BITS
 from ..sheets import Sheet
 
 STEEP = 4  # where |z| is below l/4, z does not follow well enough from x and y
-NEAR = 64  # a nudge of z is at most its size over this; where the bound of z is more, what is divided by z means little
+# a nudge of z is at most its size over this; where the bound of z is more, what is divided by z means little
+NEAR = 64
 NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 SLACK = Fraction(21, 20)
 
@@ -34,7 +35,11 @@ Quantity = Callable[[Vector, Vector, Constants], Any]  # of position and velocit
 def problems(files: Files) -> Iterator[str]:
     """Yield every row that breaks a law which holds at each moment."""
     kinds: tuple[Kind, ...] = ("grid", "sections", "transits")
-    tables = [_moments(files, kind) for kind in kinds if (sheet := files.tables.get(f"{kind}.csv")) and sheet.rows]
+    tables = [
+        _moments(files, kind)
+        for kind in kinds
+        if (sheet := files.tables.get(f"{kind}.csv")) and sheet.rows
+    ]
     for moments in tables:
         yield from moments.off_the_sphere()
         if moments.transits is None:
@@ -56,7 +61,10 @@ def _moments(files: Files, kind: Kind) -> _Moments:
     bounds = [files.manifest.bound(kind, name) for name in printed]
     if kind == "transits":  # xdot is zero by definition, and zdot follows
         zero, exact = integers([0] * len(sheet.rows)), Fraction(0)
-        columns, bounds = [*columns[:3], zero, columns[3], zero], [*bounds[:3], exact, bounds[3], exact]
+        columns, bounds = (
+            [*columns[:3], zero, columns[3], zero],
+            [*bounds[:3], exact, bounds[3], exact],
+        )
     numbers = [number * unit for number in (files.scene.exact.length, *bounds)]
     finer = math.lcm(*(number.denominator for number in numbers))
     length, *whole = (int(number * finer) for number in numbers)
@@ -104,7 +112,9 @@ class _Moments:
 
     def not_along_the_sphere(self) -> Iterator[str]:
         """Check r·v = 0."""
-        pairs = list(zip(self.columns[:3], self.columns[3:], self.bounds[:3], self.bounds[3:], strict=True))
+        pairs = list(
+            zip(self.columns[:3], self.columns[3:], self.bounds[:3], self.bounds[3:], strict=True)
+        )
         off = abs(sum(q * v for q, v, _, _ in pairs))
         for i in np.flatnonzero(off > sum(abs(q) * e + abs(v) * d + d * e for q, v, d, e in pairs)):
             yield f"{self.names[i]}: the velocity is not along the sphere"
@@ -116,7 +126,9 @@ class _Moments:
     def with_another_invariant(self, release: _Moments) -> Iterator[str]:
         """Check that h is that of the release."""
         (first,), (allowed_first,) = release.values(invariant), release.allowed(energy)
-        rows = zip(self.names, self.values(invariant), self.allowed(energy), self._whole, strict=True)
+        rows = zip(
+            self.names, self.values(invariant), self.allowed(energy), self._whole, strict=True
+        )
         for name, h, allowed, whole in rows:
             if whole and abs(h - first) > allowed + allowed_first:
                 yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
@@ -126,7 +138,9 @@ class _Moments:
         assert self.transits is not None
         (printed,), unit = self.transits.integers(("ax",))
         bound = self.files.manifest.bound("transits", "ax")
-        rows = zip(self.names, self.values(_xddot), self.allowed(_xddot), printed, self._whole, strict=True)
+        rows = zip(
+            self.names, self.values(_xddot), self.allowed(_xddot), printed, self._whole, strict=True
+        )
         for name, value, allowed, ax, whole in rows:
             if whole and abs(value - Fraction(ax, unit)) > allowed + bound:
                 yield f"{name}: ax = {ax / unit:.17g}, the equations of motion give {float(value):.17g}"
@@ -134,13 +148,16 @@ class _Moments:
     def values(self, quantity: Quantity) -> list[Fraction]:
         """Return a quantity of each state."""
         bits = 2 * bits_of(self.files.manifest.digits) + INVARIANT_BITS
-        k = constants(self.files.scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
+        k = constants(self.files.scene.exact, context(bits)).converted(
+            lambda number: FixedPoint.of(number, bits)
+        )
         columns = [FixedPoint.column(column, self.unit, bits) for column in self.columns]
         deep = self._deep
         side = np.where(self.columns[2][deep] > 0, 1, -1)
         x, y = (column[deep] for column in columns[:2])
         columns[2].values[deep] = _depth(x, y, k.length, side, FixedPoint.sqrt).values
-        follows = self._follows & np.asarray(columns[2].values != 0, dtype=bool)  # beyond the sphere, z comes out 0
+        # beyond the sphere, z comes out 0
+        follows = self._follows & np.asarray(columns[2].values != 0, dtype=bool)
         x, y, z, vx, vy = (column[follows] for column in columns[:5])
         columns[5].values[follows] = _vertical_velocity(x, y, z, vx, vy).values
         return list(quantity(*_over_length(columns, k), k).fractions())
@@ -158,7 +175,11 @@ class _Moments:
 
         def of(changed: list[Array]) -> Array:
             x, y, z, vx, vy, vz = changed
-            z = np.where(self._deep, _depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))), z)
+            z = np.where(
+                self._deep,
+                _depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))),
+                z,
+            )
             vz = np.where(self._follows, _vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy), vz)
             return np.asarray(quantity(*_over_length([x, y, z, vx, vy, vz], k), k) + 0.0 * z)
 
@@ -171,7 +192,9 @@ class _Moments:
             if j == 2:  # what follows by dividing by z bends within |z|
                 step = np.where(columns[2], np.minimum(step, np.abs(columns[2]) / NEAR), step)
             step = np.maximum(step, float(bound))
-            ends = (of([*columns[:j], columns[j] + side * step, *columns[j + 1 :]]) for side in (1, -1))
+            ends = (
+                of([*columns[:j], columns[j] + side * step, *columns[j + 1 :]]) for side in (1, -1)
+            )
             slopes = np.max([np.abs(end - value) for end in ends], axis=0) / step
             if not np.isfinite(slopes).all():
                 raise OverflowError
@@ -195,7 +218,11 @@ class _Moments:
     @property
     def _follows(self) -> Array:
         """Whether vz is taken as it follows from the others."""
-        return np.asarray(self.columns[2] != 0, dtype=bool) if self.transits is not None else self._deep
+        return (
+            np.asarray(self.columns[2] != 0, dtype=bool)
+            if self.transits is not None
+            else self._deep
+        )
 
 
 def _depth(x: Any, y: Any, length: Any, side: Any, sqrt: Callable[[Any], Any]) -> Any:

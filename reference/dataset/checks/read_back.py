@@ -23,7 +23,16 @@ VECTORS, PAGE = "vectors.json", "certified.txt"
 MOST = 16  # states, and as many transits
 SAMPLE = 10  # of as many rows of a grid a sampled confirmation has one
 INPUTS = "Inputs (SI units, angles in degrees)"
-UNITS = {"t": "s", "x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s", "ax": "m/s^2"}
+UNITS = {
+    "t": "s",
+    "x": "m",
+    "y": "m",
+    "z": "m",
+    "vx": "m/s",
+    "vy": "m/s",
+    "vz": "m/s",
+    "ax": "m/s^2",
+}
 SAME = ("schema_version", "id", "level", "digits", "inputs", "frame", "scene")  # as in the manifest
 
 
@@ -64,7 +73,11 @@ def _states(files: Files) -> Iterator[dict[str, Any]]:
     last = len(grid.rows)
     for row in _evenly(last, MOST):
         flags = ["release"] * (row == 1) + ["end"] * (row == last)
-        yield {"row": row, "flags": flags, "values": _values(files, "grid", row, ("t", *GRID), bounds)}
+        yield {
+            "row": row,
+            "flags": flags,
+            "values": _values(files, "grid", row, ("t", *GRID), bounds),
+        }
 
 
 def _transits(files: Files) -> Iterator[dict[str, Any]]:
@@ -102,7 +115,10 @@ def _values(
     if doubles is not None:
         cells = dict(zip(doubles.header, doubles.rows[row - 1], strict=True))
         hexfloats = {name: cells[f"{name}_hex"] for name in names}
-    return {name: {"decimal": decimals[name], "hexfloat": hexfloats[name], "bound": bounds[name]} for name in names}
+    return {
+        name: {"decimal": decimals[name], "hexfloat": hexfloats[name], "bound": bounds[name]}
+        for name in names
+    }
 
 
 def _page(files: Files, lines: list[str]) -> Iterator[str]:
@@ -117,7 +133,9 @@ def _page(files: Files, lines: list[str]) -> Iterator[str]:
     expected = [f"Level: {manifest.level}. {MEANING[manifest.level]}"]
     words = manifest.command.split()
     if "--confirm" in words:
-        proof = "FLINT alone proves the same digits." if "--audit" in words else "It is not audited."
+        proof = (
+            "FLINT alone proves the same digits." if "--audit" in words else "It is not audited."
+        )
         confirmation = CONFIRMED[words[words.index("--confirm") + 1]]  # type: ignore[index]
         rows = manifest.counts.grid - 1
         expected.append(f"{proof} {confirmation.format(-(-rows // SAMPLE), rows)}")

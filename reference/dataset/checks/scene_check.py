@@ -24,7 +24,8 @@ from ..sheets import NUMBERS, Sheet, by_field
 
 PREC = 128  # bits; only exact zeros matter here
 SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
-SIGNIFICANT = 8  # a column is noise, and has no digits of its own, if no number is this many times its bound
+# a column is noise, and has no digits of its own, if no number is this many times its bound
+SIGNIFICANT = 8
 _BOUNDED = ("position_m", "velocity_m_s", "transit_s")  # what a run or a proof may be off in
 
 
@@ -62,7 +63,10 @@ def _digits(files: Files) -> Iterator[str]:
     """Check that the largest number of each column of the grid has the digits asked for."""
     sheet, manifest = files.tables["grid.csv"], files.manifest
     for name in GRID:
-        largest, bound = max(abs(row[0]) for row in sheet.numbers((name,))), manifest.bound("grid", name)
+        largest, bound = (
+            max(abs(row[0]) for row in sheet.numbers((name,))),
+            manifest.bound("grid", name),
+        )
         fewest = decimals_for(largest + bound, manifest.digits)
         if largest > SIGNIFICANT * bound and manifest.decimals["grid"][name] < fewest:
             yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
@@ -80,12 +84,18 @@ def _doubles(files: Files, kind: str) -> Iterator[str]:
         for row, double_row in zip(plain.rows, doubles.rows, strict=True):
             bound = Fraction(row[-1]) if kind == "transits" and name == "t" else column
             value, double = Fraction(row[i]), float(double_row[i])
-            if double.hex() != double_row[j] or not float(value - bound) <= double <= float(value + bound):
+            if double.hex() != double_row[j] or not float(value - bound) <= double <= float(
+                value + bound
+            ):
                 yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not the double nearest to {row[i]}"
             elif f"{double:.16e}" != double_row[i]:
                 yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not written with the digits of {double!r}"
     for row, double_row in zip(plain.rows, doubles.rows, strict=True):
-        if any(row[i] != double_row[i] for i, name in enumerate(plain.header) if name not in NUMBERS[kind]):
+        if any(
+            row[i] != double_row[i]
+            for i, name in enumerate(plain.header)
+            if name not in NUMBERS[kind]
+        ):
             yield f"{kind}.binary64.csv: row {row[0]} has another direction, number or bound than {kind}.csv"
 
 
@@ -108,7 +118,10 @@ def _order(files: Files, transits: Sheet) -> Iterator[str]:
 
 
 def _signs_on_grid(
-    files: Files, times: tuple[Fraction, ...], bounds: tuple[Fraction, ...], directions: tuple[Fraction, ...]
+    files: Files,
+    times: tuple[Fraction, ...],
+    bounds: tuple[Fraction, ...],
+    directions: tuple[Fraction, ...],
 ) -> Iterator[str]:
     """Check the sign of vx between transits, in every grid row where the bounds leave it certain."""
     dv, passed = files.manifest.bound("grid", "vx"), 0
@@ -117,7 +130,11 @@ def _signs_on_grid(
             passed += 1
         near = (k for k in (passed - 1, passed) if 0 <= k < len(times))
         expected = directions[passed - 1] if passed else -directions[0]
-        if abs(vx) > dv and vx * expected < 0 and not any(abs(times[k] - t) <= bounds[k] for k in near):
+        if (
+            abs(vx) > dv
+            and vx * expected < 0
+            and not any(abs(times[k] - t) <= bounds[k] for k in near)
+        ):
             yield f"grid.csv: t = {float(t):.17g}: the sign of vx contradicts the transits before it"
 
 
@@ -159,13 +176,19 @@ def problems(files: Files) -> Iterator[str]:
         yield f"{MANIFEST}: run.formulation = {run.formulation} is none"
         return
     vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
-    counts, possible, sought = manifest.counts, manifest.possible, scene.run.transits and not vanishes
+    counts, possible, sought = (
+        manifest.counts,
+        manifest.possible,
+        scene.run.transits and not vanishes,
+    )
     expected = manifest.model_copy(
         update={
             **following(scene, run.formulation, run.number, files.tables.get("grid.csv")),
             "level": scene.run.level,
             "digits": scene.run.digits,
-            "counts": counts.model_copy(update={"transits": counts.transits * sought, "possible": len(possible)}),
+            "counts": counts.model_copy(
+                update={"transits": counts.transits * sought, "possible": len(possible)}
+            ),
             "possible": possible * sought,
             "bounds": bounds_of(manifest.bounds.grid, manifest.bounds.transits),
             "transits": completeness(scene, vanishes, bool(possible)),
@@ -174,7 +197,8 @@ def problems(files: Files) -> Iterator[str]:
     for place, *values in differences(manifest.model_dump(), expected.model_dump()):
         old, new = (shortened(str(value), LONGEST_VALUE) for value in values)
         yield f"{MANIFEST}: {place} = {old} does not follow from the scene and the tables, which give {new}"
-    if (manifest.scene, manifest.notes) != (expected.scene, expected.notes):  # what is checked below needs them whole
+    # what is checked below needs them whole
+    if (manifest.scene, manifest.notes) != (expected.scene, expected.notes):
         return
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
@@ -223,7 +247,9 @@ def _sections(files: Files) -> Iterator[str]:
     words = files.scene.run.sections or ()
     if not tuple(record.counts) == tuple(record.possible) == words:
         yield f"{MANIFEST}: sections are not those of the scene: {', '.join(words)}"
-    numbered = [(word, str(k)) for word, count in record.counts.items() for k in range(1, count + 1)]
+    numbered = [
+        (word, str(k)) for word, count in record.counts.items() for k in range(1, count + 1)
+    ]
     if sheet and [row[:2] for row in sheet.rows] != numbered:
         yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
     for name, bound in record.bounds.items():
@@ -242,22 +268,38 @@ def _bounds(manifest: Manifest) -> Iterator[str]:
 
 def _evidence(manifest: Manifest) -> Iterator[str]:
     """Check the level against what stands behind it: other runs, or a proof, as close as the bounds say."""
-    checks, bounds, run, proof = manifest.cross_checks, manifest.bounds, manifest.run, manifest.enclosure
+    checks, bounds, run, proof = (
+        manifest.cross_checks,
+        manifest.bounds,
+        manifest.run,
+        manifest.enclosure,
+    )
     confirming = [check for check in checks if check.formulation != run.formulation]
     if manifest.level == "confirmed" and not confirming:
         yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
-    same_run = [(check.formulation, check.number) == (run.formulation, run.number) for check in checks]
+    same_run = [
+        (check.formulation, check.number) == (run.formulation, run.number) for check in checks
+    ]
     if manifest.level == "self_consistent" and all(same_run):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
     if proof is not None:
         close = [check for check in confirming if not any(_too_far(check, manifest))]
-        seen = manifest.transits != "complete" or any(check.transit_s for check in close)  # a sample sees no transits
+        # a sample sees no transits
+        seen = manifest.transits != "complete" or any(check.transit_s for check in close)
         confirm = Making.of(manifest.command).confirm
-        if not {"whole": close and seen, "sampled": any(not check.transit_s for check in close), "none": True}[confirm]:
+        if not {
+            "whole": close and seen,
+            "sampled": any(not check.transit_s for check in close),
+            "none": True,
+        }[confirm]:
             yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {confirm}"
         radii = proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s
         for name, radius in zip(_BOUNDED, radii, strict=True):
-            if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):
+            if (
+                radius is not None
+                and (bound := getattr(bounds, name))
+                and Fraction(radius) > SLACK * Fraction(bound)
+            ):
                 yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
     for check in checks:
         if check.formulation not in FORMULATIONS:

@@ -45,7 +45,8 @@ class BoxBalls(SceneBalls):
         # an interval from 0 on is a ball that reaches a little beyond
         super().__init__(replace(box.inputs, **wide | {"drag": box.low.drag}), prec)
         with ctx.workprec(prec):
-            self.given = [ball(q) for q in wide["position"] or ()]  # in m and m/s, without the length
+            # in m and m/s, without the length
+            self.given = [ball(q) for q in wide["position"] or ()]
             self.inputs, self.wide, self.own, self.c = box, wide, own, own.c
             self.measure(wide)
             self.paces = interval(self.pace)
@@ -57,11 +58,20 @@ class BoxBalls(SceneBalls):
     def measure(self, wide: dict[str, Any]) -> None:
         """Take what follows from inputs, balls or series of balls: length, pace, axes, Ω, γ and the release (11.1)."""
         (m, w), (lean, pull), self.length = self.c[1:], plumb(wide), ball(wide["length"])
-        self.pace, turn = (pull / self.length / (m * m + w * w).sqrt()).sqrt(), arb.atan2(-w, m) - lean
+        self.pace, turn = (
+            (pull / self.length / (m * m + w * w).sqrt()).sqrt(),
+            arb.atan2(-w, m) - lean,
+        )
         axis, self.tilt = (turn - ball(wide["latitude"]) * arb.pi() / 180).sin_cos(), turn.sin_cos()
         self.turning = times(ball(wide["rotation_rate"]) / self.pace, [arb(0), *axis])
-        self.damping, self.release = ball(wide["drag"]) / self.pace, self._release(replace(self.inputs.inputs, **wide))
-        self.r, self.v = self.turned(self.release[0], 1), times(1 / self.pace, self.turned(self.release[1], 1))
+        self.damping, self.release = (
+            ball(wide["drag"]) / self.pace,
+            self._release(replace(self.inputs.inputs, **wide)),
+        )
+        self.r, self.v = (
+            self.turned(self.release[0], 1),
+            times(1 / self.pace, self.turned(self.release[1], 1)),
+        )
 
     def varied(self, name: str, scale: arb) -> Any:
         """Return what `measure` takes of series: their first coefficients are derivatives to an input, scaled."""
@@ -73,7 +83,8 @@ class BoxBalls(SceneBalls):
         with ctx.workprec(self.prec):
             if name in RELEASES[kind]:
                 wide[kind] = tuple(
-                    series(x) if n == name else x for n, x in zip(RELEASES[kind], wide[kind], strict=True)
+                    series(x) if n == name else x
+                    for n, x in zip(RELEASES[kind], wide[kind], strict=True)
                 )
             elif name == "inverse_flattening":
                 wide["flattening"] = 1 / series(1 / ball(wide["flattening"]))
@@ -87,7 +98,8 @@ def plumb(wide: dict[str, Any]) -> tuple[Any, Any]:
     """Return by what angle the plumb line leans, and the strength of the pull along it."""
     names = ("gravity", "altitude", "rotation_rate", "equatorial_radius", "flattening")
     gravity, altitude, rate, radius, f = (ball(wide[name]) for name in names)
-    sin, cos = ball(wide["latitude"] / 90).sin_cos_pi()  # of twice the latitude, so that a ball of it stays narrow
+    # of twice the latitude, so that a ball of it stays narrow
+    sin, cos = ball(wide["latitude"] / 90).sin_cos_pi()
     push = rate * rate * (radius / (1 - f * (2 - f) * (1 - cos) / 2).sqrt() + altitude)
     push *= 0 if wide["gravity_is"] == "effective" else 1
     aside, down = push * sin / 2, gravity - push * (1 + cos) / 2
@@ -115,10 +127,24 @@ class BoxRadius(Radius):
             whole.defects = lambda: norms  # type: ignore[method-assign]
             d: Sizes = Piece.sizes.func(whole)  # type: ignore[attr-defined]
             v1, gap = size(norms[4:7]), size(jump[:3])
-            along = sum((total(f, piece.step.bits) * x.abs_upper() for f, x in zip(piece.p, off, strict=True)), arb(0))
-            more = 2 * along * v1 + turn * norms[7] + d.p**2 * turn * (k.omega_size + piece.k.omega_size)
+            along = sum(
+                (
+                    total(f, piece.step.bits) * x.abs_upper()
+                    for f, x in zip(piece.p, off, strict=True)
+                ),
+                arb(0),
+            )
+            more = (
+                2 * along * v1
+                + turn * norms[7]
+                + d.p**2 * turn * (k.omega_size + piece.k.omega_size)
+            )
             moved = size(jump[3:]) + 2 * turn / h * gap * (2 * d.p + gap)
-            return whole, d._replace(d2=upper(d.d2 + more + slow * d.p * v1)), upper(gap + moved / balls.w0)
+            return (
+                whole,
+                d._replace(d2=upper(d.d2 + more + slow * d.p * v1)),
+                upper(gap + moved / balls.w0),
+            )
 
     def advance(self, piece: Piece) -> Covered:
         """Carry the radius over a piece, with a bound of |e| that what follows has to confirm (Lemma 11.4)."""
@@ -130,7 +156,9 @@ class BoxRadius(Radius):
             k, w, span = whole.k, whole.k.w, ball(whole.step.high - whole.step.low)
             ck, gw = k.c_size + d.k**2, k.drag_size * k.omega_size * d.p
             start = upper(self.eta + jump + span * (ck * d.tau / (2 * w) + d.d2 / w + d.d1))
-            far = upper(2 * start * (span * (k.below.max(k.above + k.speed**2) + gw) / (2 * w)).exp())
+            far = upper(
+                2 * start * (span * (k.below.max(k.above + k.speed**2) + gw) / (2 * w)).exp()
+            )
             rate = k.below.max(k.above + (k.speed + (w + d.k) * far) ** 2) + ck * far + gw
             self.eta = upper(start * (span * rate / (2 * w)).exp())
             demand(self.eta < far, "a bound has outgrown what it rests on")
@@ -157,7 +185,9 @@ class Windows:
             if low > covered.piece.end:
                 break
             parts = between(covered, max(low, covered.piece.begin), min(high, covered.piece.end))
-            self.hulls[n : n + 1] = [[reduce(arb.union, x) for x in zip(*self.hulls[n : n + 1], *parts, strict=True)]]
+            self.hulls[n : n + 1] = [
+                [reduce(arb.union, x) for x in zip(*self.hulls[n : n + 1], *parts, strict=True)]
+            ]
             self.done += high <= covered.piece.end
 
     def finish(self) -> ProvedBox:
@@ -180,7 +210,9 @@ class Windows:
         factors = {"t": 1 / pace, "vx": pace, "vy": pace, "vz": pace, "ax": pace**2}
         for z in zeros:
             old = {name: getattr(z, name, None) for name in factors}
-            new = {name: interval(hull(x.low, x.high) * factors[name]) for name, x in old.items() if x}
+            new = {
+                name: interval(hull(x.low, x.high) * factors[name]) for name, x in old.items() if x
+            }
             moved += [replace(z, **new)] if new["t"].low <= self.times[-1] else []
         return tuple(moved)
 
@@ -220,7 +252,10 @@ def spread(piece: Piece, begin: Fraction, end: Fraction) -> list[arb]:
     """Return balls of s that cover a time of a step."""
     low, high = ((time - piece.step.centre) / piece.step.h for time in (begin, end))
     count = 1 + (high - low) * PARTS // 1
-    return [ball(hull(low + (high - low) * k / count, low + (high - low) * (k + 1) / count)) for k in range(count)]
+    return [
+        ball(hull(low + (high - low) * k / count, low + (high - low) * (k + 1) / count))
+        for k in range(count)
+    ]
 
 
 def near(f: Any, s: arb) -> arb:

@@ -47,7 +47,9 @@ class Course:
         demand(self.open, "the run is closed: a step failed")
         self.open = False
         covered = self.bound.advance(Piece(self.balls, step), *proposal)
-        while len(self.states) < len(self.times) and self.times[len(self.states)] <= covered.piece.end:
+        while (
+            len(self.states) < len(self.times) and self.times[len(self.states)] <= covered.piece.end
+        ):
             self.states.append(output(covered, self.times[len(self.states)]))
         for follower in (*self.scans.values(), *self.followers):
             follower.advance(covered)
@@ -59,7 +61,11 @@ class Course:
         reached = {part.time for part in (self.bound, *self.scans.values())}
         demand(complete and (not end or reached == {end}), "the steps do not end with the run")
         zeros = {word: tuple(scan.finish() if end else ()) for word, scan in self.scans.items()}
-        FINISHED.add(proved := Proved(self.balls.inputs, self.times, tuple(self.states), zeros, self.balls.still))
+        FINISHED.add(
+            proved := Proved(
+                self.balls.inputs, self.times, tuple(self.states), zeros, self.balls.still
+            )
+        )
         return proved
 
 

@@ -36,10 +36,16 @@ class Piece:
 
     def __init__(self, balls: SceneBalls, step: TaylorStep) -> None:
         step = frozen(step)
-        demand(-1 <= step.low < step.high <= 1 and step.h > 0, "a step must lie in -1 <= s <= 1, where its sizes hold")
+        demand(
+            -1 <= step.low < step.high <= 1 and step.h > 0,
+            "a step must lie in -1 <= s <= 1, where its sizes hold",
+        )
         rows: Any = step.rows
         if isinstance(rows, Digits):
-            demand(step.bits == DIGIT_BITS * rows.table.shape[1] - 1, "coefficients have 22 bits a digit, but one")
+            demand(
+                step.bits == DIGIT_BITS * rows.table.shape[1] - 1,
+                "coefficients have 22 bits a digit, but one",
+            )
         self.balls, self.step, self.k = balls, step, scaled(balls, step.h, step.bits)
         self.unit, self.rows, self.p = fmpz(1) << step.bits, rows, polynomials(rows, slice(3))
         self.v = [f.derivative() for f in self.p]
@@ -58,7 +64,10 @@ class Piece:
             v1, size_p, n = size([x, m, w]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
             defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, (n - 1 + k.omega_size) * v1
-            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + (2 * n - 1) * t1 * size_p / 2
+            first, second = (
+                t * speed + t1 * size_p / 2,
+                t1 * speed + t * rate + (2 * n - 1) * t1 * size_p / 2,
+            )
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
     def defects(self) -> list[arb]:
@@ -73,7 +82,11 @@ class Piece:
         """Return d (three components), τ, p' (three components), τ' over 2^(2 bits)."""
         k, p, v, unit = self.k, self.p, self.v, self.unit
         (tension,) = polynomials(self.rows, slice(3, 4))
-        (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], tension - k.whole[1]
+        (turn, _, drag, cm, cw), a, lift = (
+            k.whole,
+            [f.derivative() for f in v],
+            tension - k.whole[1],
+        )
         d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, tension), p, strict=True)]
         d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
         tau = dot(p, p) - unit * unit
@@ -84,6 +97,12 @@ def polynomials(rows: Any, part: slice) -> list[fmpz_poly]:
     """Return a part of the rows of coefficients as polynomials."""
     if not isinstance(rows, Digits):
         return [fmpz_poly(row) for row in rows[part]]
-    table, odd, unit = rows.table[part].astype(np.int64), rows.table.shape[1] % 2, fmpz(1) << 2 * DIGIT_BITS
-    pairs = np.concatenate([table[:, :odd], (table[:, odd::2] << DIGIT_BITS) + table[:, odd + 1 :: 2]], 1).tolist()
+    table, odd, unit = (
+        rows.table[part].astype(np.int64),
+        rows.table.shape[1] % 2,
+        fmpz(1) << 2 * DIGIT_BITS,
+    )
+    pairs = np.concatenate(
+        [table[:, :odd], (table[:, odd::2] << DIGIT_BITS) + table[:, odd + 1 :: 2]], 1
+    ).tolist()
     return [reduce(lambda f, pair: f * unit + fmpz_poly(pair), row, fmpz_poly()) for row in pairs]

@@ -18,7 +18,17 @@ from .course import FINISHED, scan_of
 from .defect import Piece
 from .printed_box import end_of
 from .radius import Radius
-from .shapes import XDOT, Covered, EnclosedZero, Interval, Led, ProvedDerivatives, Sizes, State, Tangent
+from .shapes import (
+    XDOT,
+    Covered,
+    EnclosedZero,
+    Interval,
+    Led,
+    ProvedDerivatives,
+    Sizes,
+    State,
+    Tangent,
+)
 from .six_columns import cut
 from .tube import output, tube
 from .zeros import Scan
@@ -32,7 +42,10 @@ class Way:
 
     def __init__(self, balls: BoxBalls, name: str, half: Fraction, scale: int) -> None:
         self.scale, self.error = arb((fmpz(1), fmpz(scale))), arb(0)
-        self.half, self.twin = ball(half) / self.scale, balls.varied(name.partition(".")[2], self.scale)
+        self.half, self.twin = (
+            ball(half) / self.scale,
+            balls.varied(name.partition(".")[2], self.scale),
+        )
         with ctx.workprec(balls.prec):
             momentum = cross(self.twin.r, add(self.twin.v, cross(self.twin.turning, self.twin.r)))
             self.last = [first(x) for x in (*self.twin.r, *momentum)]
@@ -47,7 +60,9 @@ def first(x: Any) -> arb:
 class Tangents(BoxRadius):
     """Lemmas 12.2 and 12.4 for all inputs of a box, and Theorem C for the scene's own: they bound all motions."""
 
-    def __init__(self, balls: BoxBalls, halves: dict[str, Fraction], scales: dict[str, int]) -> None:
+    def __init__(
+        self, balls: BoxBalls, halves: dict[str, Fraction], scales: dict[str, int]
+    ) -> None:
         super().__init__(balls)
         texts = {name: str(half) for name, half in halves.items()}
         ends = [end_of(balls.inputs.inputs, texts, side) for side in (-1, 1)]
@@ -62,16 +77,28 @@ class Tangents(BoxRadius):
         self.scene, sizes, polynomials = [self.point.advance(own)], list[list[arb]](), list[Any]()
         with ctx.workprec(2 * SHORT):
             omega = times(piece.k.h, self.balls.omega)
-            p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in part] for part in (piece.p, piece.v))
+            p, v = (
+                [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in part]
+                for part in (piece.p, piece.v)
+            )
             K = [cut(f, TERMS) for f in cross(p, add(v, cross(omega, p)))]
             for way, (rows, bits) in zip(self.ways, proposal, strict=True):
                 f, unit, inverse = [fmpz_poly(row) for row in rows], fmpz(1) << bits, 1 / piece.k.h
-                start, end = ([g(ball(s)) / unit for g in f] for s in (piece.step.low, piece.step.high))
+                start, end = (
+                    [g(ball(s)) / unit for g in f] for s in (piece.step.low, piece.step.high)
+                )
                 start, end = ([*x[:3], *times(inverse, x[3:])] for x in (start, end))
                 jump = [(a - b).abs_upper() for a, b in zip(start, way.last, strict=True)]
-                way.error, way.last = way.error + size(jump[:3]) + size(jump[3:]) / self.balls.w0, end
+                way.error, way.last = (
+                    way.error + size(jump[:3]) + size(jump[3:]) / self.balls.w0,
+                    end,
+                )
                 with ctx.workprec(SHORT):
-                    sizes.append(residuals(whole, omega, p, K, way, [arb_poly(g) * (1 / arb(unit)) for g in f]))
+                    sizes.append(
+                        residuals(
+                            whole, omega, p, K, way, [arb_poly(g) * (1 / arb(unit)) for g in f]
+                        )
+                    )
                 polynomials.append((f[:3], unit))
         with ctx.workprec(SHORT):
             k, near_by = whole.k, self.scene[0].tube.eta
@@ -79,7 +106,8 @@ class Tangents(BoxRadius):
 
             def bounds(e: arb, g: arb) -> tuple[arb, arb, list[list[arb]]]:
                 found = [
-                    carried(self.balls, whole, way, part, e, g) for way, part in zip(self.ways, sizes, strict=True)
+                    carried(self.balls, whole, way, part, e, g)
+                    for way, part in zip(self.ways, sizes, strict=True)
                 ]
                 parts = list(zip(self.ways, sizes, found, strict=True))
                 far = sum((way.half * (x[0] + y[0]) for way, x, y in parts), near_by)
@@ -87,14 +115,20 @@ class Tangents(BoxRadius):
                 return upper(far), upper(fast), found
 
             sure = self.by_radius(whole, d, joined, off)
-            e, g = (upper(2 * x + TINY).min(y) for x, y in zip(bounds(arb(0), arb(0))[:2], sure, strict=True))
+            e, g = (
+                upper(2 * x + TINY).min(y)
+                for x, y in zip(bounds(arb(0), arb(0))[:2], sure, strict=True)
+            )
             eta, gamma, found = bounds(e, g)
             holds = (eta < e or e == sure[0]) and (gamma < g or g == sure[1])
             demand(holds, "a bound has outgrown what it rests on")
             self.eta, gamma = eta.min(sure[0]), gamma.min(sure[1])
             for way, part in zip(self.ways, found, strict=True):
                 way.error = part[0]
-            self.tangents = [Tangent(f, unit, x[0], x[2]) for (f, unit), x in zip(polynomials, found, strict=True)]
+            self.tangents = [
+                Tangent(f, unit, x[0], x[2])
+                for (f, unit), x in zip(polynomials, found, strict=True)
+            ]
             return Covered(whole, tube(k, d, self.eta, gamma + d.p**2 * off))
 
     def by_radius(self, whole: Piece, d: Sizes, jump: arb, off: arb) -> Vector:
@@ -130,7 +164,9 @@ def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g
     W = k.omega_size.max(size(omega))
     s1 = (Q + turn) * e + (g + off) * P
     s2 = Q * off + g * turn + gap * (Q + turn * (1 + d.p**2) + 2 * W * d.p * P)
-    s2 += k.drag_size * (turn * e * (1 + d.p) + 2 * P * (off + W * e)) + slow * (g + 2 * off + W * e * (1 + d.p))
+    s2 += k.drag_size * (turn * e * (1 + d.p) + 2 * P * (off + W * e)) + slow * (
+        g + 2 * off + W * e * (1 + d.p)
+    )
     aside, tilt = along + e * P, across + g * P + e * Q
     source = s1 + r1 + (s2 + r2 + aside * k.c_size + tilt * k.speed) / w
     rate = k.below.max(k.above + k.speed**2) + k.drag_size * k.omega_size
@@ -146,7 +182,9 @@ class Watched:
         self.scan, self.own, self.apsis = scan, own, apsis
         self.kept, self.zeros = list[tuple[Covered, list[Tangent]]](), list[list[Vector]]()
 
-    def advance(self, covered: Covered, tangents: list[Tangent], scene: Covered, ways: list[Way]) -> None:
+    def advance(
+        self, covered: Covered, tangents: list[Tangent], scene: Covered, ways: list[Way]
+    ) -> None:
         """Take the next step."""
         self.kept.append((covered, tangents))
         self.close(ways)
@@ -183,10 +221,22 @@ class Watched:
 class Derivatives:
     """Follows a box's windows: derivatives of states at their times; of transits, highest and lowest points."""
 
-    def __init__(self, windows: Windows, halves: dict[str, Fraction], scales: dict[str, int]) -> None:
-        self.windows, self.balls, self.course, self.names = windows, windows.balls, windows.course, tuple(halves)
+    def __init__(
+        self, windows: Windows, halves: dict[str, Fraction], scales: dict[str, int]
+    ) -> None:
+        self.windows, self.balls, self.course, self.names = (
+            windows,
+            windows.balls,
+            windows.course,
+            tuple(halves),
+        )
         self.bound = self.course.bound = Tangents(self.balls, halves, scales)
-        self.done, self.hulls, self.states, self.watched = 0, list[list[Vector]](), list[State](), dict[str, Watched]()
+        self.done, self.hulls, self.states, self.watched = (
+            0,
+            list[list[Vector]](),
+            list[State](),
+            dict[str, Watched](),
+        )
         for word, scan in self.course.scans.items():
             # these in axes in which the plumb line is the same for all
             if word in (XDOT, "highest", "lowest"):
@@ -203,7 +253,9 @@ class Derivatives:
             low, high = windows.pace.low * time, windows.pace.high * time
             if low > covered.piece.end:
                 break
-            parts = spread(covered.piece, max(low, covered.piece.begin), min(high, covered.piece.end))
+            parts = spread(
+                covered.piece, max(low, covered.piece.begin), min(high, covered.piece.end)
+            )
             motions = [(s, motion(covered, s)) for s in parts]
             rows = [
                 [values(covered, own, tangent, way, s, ball(time)) for s, own in motions]
@@ -211,9 +263,14 @@ class Derivatives:
             ]
             before = self.hulls[n] if n < len(self.hulls) else [[] for _ in rows]
             together = [[x, *row] if x else row for x, row in zip(before, rows, strict=True)]
-            self.hulls[n : n + 1] = [[[reduce(arb.union, x) for x in zip(*row, strict=True)] for row in together]]
+            self.hulls[n : n + 1] = [
+                [[reduce(arb.union, x) for x in zip(*row, strict=True)] for row in together]
+            ]
             self.done += high <= covered.piece.end
-        while len(self.states) < len(windows.times) and windows.times[len(self.states)] <= scene.piece.end:
+        while (
+            len(self.states) < len(windows.times)
+            and windows.times[len(self.states)] <= scene.piece.end
+        ):
             self.states.append(output(scene, windows.times[len(self.states)]))
         for watched in self.watched.values():
             watched.advance(covered, tangents, scene, self.bound.ways)
@@ -221,17 +278,25 @@ class Derivatives:
     def finish(self) -> ProvedDerivatives:
         """Return what is proved, with states and zeros that are as narrow as the derivatives make them."""
         proved, ways = self.windows.finish(), self.bound.ways
-        demand(self.done == len(self.states) == len(self.windows.times), "the steps do not end with the run")
+        demand(
+            self.done == len(self.states) == len(self.windows.times),
+            "the steps do not end with the run",
+        )
         with ctx.workprec(self.balls.prec):
             states = tuple(
                 tuple(
-                    within(x, y, ways, [row[i] for row in rows]) for i, (x, y) in enumerate(zip(wide, own, strict=True))
+                    within(x, y, ways, [row[i] for row in rows])
+                    for i, (x, y) in enumerate(zip(wide, own, strict=True))
                 )
                 for wide, own, rows in zip(proved.states, self.states, self.hulls, strict=True)
             )
             made = {word: self.narrowed(word, proved.zeros[word]) for word in self.watched}
         derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
-        narrow = replace(proved, states=states, zeros=proved.zeros | {word: zeros for word, (zeros, _) in made.items()})
+        narrow = replace(
+            proved,
+            states=states,
+            zeros=proved.zeros | {word: zeros for word, (zeros, _) in made.items()},
+        )
         FINISHED.add(narrow)
         led = {word: rows for word, (_, rows) in made.items()}
         FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, led))
@@ -242,18 +307,29 @@ class Derivatives:
         watched, zeros, led = self.watched[word], list[Any](), list[Led]()
         watched.close(self.bound.ways)
         own_zeros = pairwise(watched.own.finish())
-        demand(all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in own_zeros), "zeros must be in order")
+        demand(
+            all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in own_zeros),
+            "zeros must be in order",
+        )
         for z, q, row in zip(proved, watched.scan.found, watched.zeros, strict=False):
             known = row if all(x.is_finite() for parts in row for x in parts) else []
-            own = watched.centre(q) if known else None  # in the scene's own clock, which is that of the course
-            zeros.append(replace(z, t=within(z.t, own.t, self.bound.ways, [x[0] for x in row])) if own else z)
-            led.append(Led(own, *(tuple(map(interval, column)) for column in zip(*known, strict=True))))
+            # in the scene's own clock, which is that of the course
+            own = watched.centre(q) if known else None
+            zeros.append(
+                replace(z, t=within(z.t, own.t, self.bound.ways, [x[0] for x in row])) if own else z
+            )
+            led.append(
+                Led(own, *(tuple(map(interval, column)) for column in zip(*known, strict=True)))
+            )
         return tuple(zeros), tuple(led)
 
 
 def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) -> Interval:
     """Return where a number is for all inputs: near the scene's own, as far as its derivatives reach; and in `wide`."""
-    far = sum((way.half * way.scale * x.abs_upper() for way, x in zip(ways, derivatives, strict=True)), arb(0))
+    far = sum(
+        (way.half * way.scale * x.abs_upper() for way, x in zip(ways, derivatives, strict=True)),
+        arb(0),
+    )
     if not far.is_finite():
         return wide
     reach = interval(far).high
@@ -267,31 +343,50 @@ def motion(covered: Covered, s: arb) -> list[Vector]:
     """Return balls of r, r', r'' at `s`."""
     (piece, (eta, u, a)), h = covered, covered.piece.k.h
     with ctx.workprec(piece.balls.prec):
-        forms = zip((piece.p, piece.v, [g.derivative() for g in piece.v]), (eta, u, a), (1, h, h**2), strict=True)
-        return [[(near(f, s) / piece.unit + arb(0, radius)) / power for f in part] for part, radius, power in forms]
+        forms = zip(
+            (piece.p, piece.v, [g.derivative() for g in piece.v]),
+            (eta, u, a),
+            (1, h, h**2),
+            strict=True,
+        )
+        return [
+            [(near(f, s) / piece.unit + arb(0, radius)) / power for f in part]
+            for part, radius, power in forms
+        ]
 
 
 def change(covered: Covered, tangent: Tangent, s: arb) -> list[Vector]:
     """Return balls of ρ, ρ' at `s`."""
     h, rates = covered.piece.k.h, [g.derivative() for g in tangent.rows]
     rho, rate = ([near(f, s) / tangent.unit for f in part] for part in (tangent.rows, rates))
-    return [[q + arb(0, tangent.error) for q in rho], [(q + arb(0, tangent.rate)) / h for q in rate]]
+    return [
+        [q + arb(0, tangent.error) for q in rho],
+        [(q + arb(0, tangent.rate)) / h for q in rate],
+    ]
 
 
-def late_and_turned(covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, apsis: bool) -> Vector:
+def late_and_turned(
+    covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, apsis: bool
+) -> Vector:
     """Return the derivatives of time and azimuth of a zero at `s`: of r·r' across the plumb line, or of xdot (12.5)."""
     piece, (_, m, w) = covered.piece, covered.piece.balls.c
     with ctx.workprec(piece.balls.prec):
         north = times(1 / (m * m + w * w).sqrt(), [arb(0), -w, m])
         both = own + change(covered, tangent, s)
         (x, y), (vx, vy), (ax, ay), (dx, dy), (ux, uy) = ([q[0], dot(q, north)] for q in both)
-        late = -(dx * vx + dy * vy + x * ux + y * uy) / (vx**2 + vy**2 + x * ax + y * ay) if apsis else -ux / ax
+        late = (
+            -(dx * vx + dy * vy + x * ux + y * uy) / (vx**2 + vy**2 + x * ax + y * ay)
+            if apsis
+            else -ux / ax
+        )
         turned = (x * dy - y * dx + late * (x * vy - y * vx)) / (x**2 + y**2) * 180 / arb.pi()
         time = first(arb_series([ball(piece.step.centre) + s * piece.k.h, late], 2) / way.twin.pace)
         return [x / way.scale for x in ((time, turned) if apsis else (time,))]
 
 
-def values(covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, time: arb) -> Vector:
+def values(
+    covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, time: arb
+) -> Vector:
     """Return balls of the derivatives of position and velocity, in m and m/s, at the pendulum's own time (12.3)."""
     with ctx.workprec(covered.piece.balls.prec):
         (r, v, a), (rho, rate), twin = own, change(covered, tangent, s), way.twin

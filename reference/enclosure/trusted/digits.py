@@ -18,17 +18,29 @@ from .balls import demand
 # orders of a factor that are taken at once; rows in which a sum below 2^62 is carried on
 MASK, BLOCK, TOP_ROWS = (1 << DIGIT_BITS) - 1, 8, 3
 # sum, factor, constant and series of a term of `sums`: - ω² p, 2 Ω × p', - c, the - 1 of τ; and γ p', p'
-FEW = ((0, -1, 1, 0), (1, -1, 1, 1), (0, -2, 0, 5), (1, 2, 0, 4), (1, -1, 3, 7), (2, -1, 4, 7), (3, -1, 5, 7))
+FEW = (
+    (0, -1, 1, 0),
+    (1, -1, 1, 1),
+    (0, -2, 0, 5),
+    (1, 2, 0, 4),
+    (1, -1, 3, 7),
+    (2, -1, 4, 7),
+    (3, -1, 5, 7),
+)
 LINEAR = FEW + tuple(term for n in range(3) for term in ((n, 1, 2, 4 + n), (4 + n, 1, 5, 4 + n)))
 
 
 def check(rows: Any, constants: Any) -> int:
     """Return a bound of the products' sums in `norms`; raise ArithmeticError if a sum or factor may overflow."""
     (_, digits, orders), parts = rows.shape, (rows[:3], rows[3], constants)
-    p, tension, constant = (max(int(x.max()), -int(x.min())) for x in parts)  # -x.min() itself may overflow
+    # -x.min() itself may overflow
+    p, tension, constant = (max(int(x.max()), -int(x.min())) for x in parts)
     most: int = digits * orders * p * (tension + 5 * constant + 3 * p)
     linear = orders**2 * p + constant + (1 << DIGIT_BITS) << DIGIT_BITS
-    demand(most + linear < 1 << 62 and 2 * max(orders * p, tension, constant) < 1 << 31, "digits may overflow")
+    demand(
+        most + linear < 1 << 62 and 2 * max(orders * p, tension, constant) < 1 << 31,
+        "digits may overflow",
+    )
     return most
 
 
@@ -42,7 +54,8 @@ def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
         for q in range(min(r + 1 if alike else f.shape[0], len(to) - r)):
             for k in range(0, f.shape[1] - 2 * BLOCK, BLOCK):
                 s, out = f[q, BLOCK + k : 2 * BLOCK + k], to[q + r, i, k : k + len(row) - BLOCK]
-                a, b, c, d, e, u, v, w = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]  # held in registers
+                # held in registers
+                a, b, c, d, e, u, v, w = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]
                 for j in range(len(out) if a | b | c | d | e | u | v | w else 0):
                     x = a * row[j + 8] + b * row[j + 7] + c * row[j + 6] + d * row[j + 5]
                     x += e * row[j + 4] + u * row[j + 3] + v * row[j + 2] + w * row[j + 1]
@@ -85,7 +98,12 @@ def sums(series: Any, constants: Any, more: int) -> Any:
 def split(count: int, *whole: fmpz) -> Any:
     """Return the digits of integers, the highest first and signed."""
     low = range(DIGIT_BITS * (count - 2), -1, -DIGIT_BITS)
-    return np.array([[int(n >> DIGIT_BITS * (count - 1)), *(int(n >> bits) & MASK for bits in low)] for n in whole])
+    return np.array(
+        [
+            [int(n >> DIGIT_BITS * (count - 1)), *(int(n >> bits) & MASK for bits in low)]
+            for n in whole
+        ]
+    )
 
 
 def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
@@ -98,10 +116,20 @@ def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
     """
     (_, count, orders), last = rows.shape, 2 - DIGIT_BITS * (rows.shape[1] + 1 + more)
     series = np.zeros((8, count, orders + 2 * BLOCK), np.int32)
-    constants, inner = split(count, *whole, fmpz(1) << DIGIT_BITS * count - 1), series[..., BLOCK:-BLOCK]
+    constants, inner = (
+        split(count, *whole, fmpz(1) << DIGIT_BITS * count - 1),
+        series[..., BLOCK:-BLOCK],
+    )
     most = check(rows, constants[:5])
-    inner[:4], inner[4:7, :, :-1], inner[7, :, 0] = rows, np.arange(1, orders) * rows[:3, :, 1:], constants[5]
+    inner[:4], inner[4:7, :, :-1], inner[7, :, 0] = (
+        rows,
+        np.arange(1, orders) * rows[:3, :, 1:],
+        constants[5],
+    )
     # what is left out of at most 2 O coefficients, in units of the last row
     cut = 0 if more >= count - 1 else (4 * orders * most >> DIGIT_BITS) + 1
     own = enumerate(sums(series, constants, more)[:, ::-1].tolist())
-    return [arb((fmpz_poly(x)(1 << DIGIT_BITS) + cut * (2 * orders if i == 7 else 1), fmpz(last))) for i, x in own]
+    return [
+        arb((fmpz_poly(x)(1 << DIGIT_BITS) + cut * (2 * orders if i == 7 else 1), fmpz(last)))
+        for i, x in own
+    ]

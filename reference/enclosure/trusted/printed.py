@@ -14,7 +14,10 @@ from .course import FINISHED
 from .shapes import XDOT, Interval, Proved
 
 PLAIN = "length drag latitude altitude gravity rotation_rate equatorial_radius t_end grid_step"
-RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+RELEASES = {
+    "position": ("x", "y", "vx", "vy"),
+    "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate"),
+}
 OTHERS = ("digits", "level", "transits", "sections")  # no input of the motion
 GRID, TRANSITS = "t,x,y,z,vx,vy,vz", "k,t,direction,x,y,z,vy,ax,bound"
 SECTIONS = "k,t,direction,x,y,z,vx,vy,vz,bound"  # after the section's word
@@ -22,7 +25,14 @@ EXACT = ("k", "direction", "bound")  # columns whose doubles do not stand beside
 POSITION, VELOCITY = ("x", "y", "z"), ("vx", "vy", "vz")
 DECIMAL = frozenset("+-.0123456789")
 
-UNITS = {"t": "s", "x, y, z": "m", "vx, vy, vz": "m/s", "ax": "m/s^2", "bound": "s", "angles": "degrees"}
+UNITS = {
+    "t": "s",
+    "x, y, z": "m",
+    "vx, vy, vz": "m/s",
+    "ax": "m/s^2",
+    "bound": "s",
+    "angles": "degrees",
+}
 UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
 FRAME = "topocentric, axes x east, y north, {}, origin at the suspension, z < 0 below it"
 
@@ -45,7 +55,10 @@ read as binary64; this dataset reads them as """
 def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
     """Demand that manifest.json, the tables and certified.txt state what was proved, of just these inputs."""
     manifest = document(texts["manifest.json"])
-    demand(proved in FINISHED and asked(manifest) == (proved.inputs, proved.times), "the proof is of other inputs")
+    demand(
+        proved in FINISHED and asked(manifest) == (proved.inputs, proved.times),
+        "the proof is of other inputs",
+    )
     ones, others = single_and_other(proved.zeros.get(XDOT, ()))
     check_words(manifest, proved, others)
     check_radii(manifest["enclosure"], proved, ones)
@@ -68,7 +81,10 @@ def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
     table = texts.get("transits.csv", f"{TRANSITS}\n")
     transits = check_rows(table, TRANSITS, zeros, least, decimals.get("transits", {}))
     check_doubles(texts.get("transits.binary64.csv"), TRANSITS, zeros, transits)
-    demand(bounds["transit_s"] == bounds["transits"].get("t"), "misprint: the largest bound of the transits")
+    demand(
+        bounds["transit_s"] == bounds["transits"].get("t"),
+        "misprint: the largest bound of the transits",
+    )
 
     check_possible(others, manifest["possible"], proved.times[-1])
     counts = {"grid": len(grid), "transits": len(transits), "possible": len(others)}
@@ -90,13 +106,17 @@ def check_sections(texts: Mapping[str, str], manifest: Any, proved: Proved) -> N
     rows, names = list[Any](), list[str]()
     for word, zeros in sections.items():
         ones, others = single_and_other(zeros)
-        rows += [[k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)]
+        rows += [
+            [k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)
+        ]
         names += [word] * len(ones)
         check_possible(others, said["possible"][word], proved.times[-1])
         demand(said["counts"][word] == len(ones), "misprint: the count of passages")
 
     header, *lines = lines_of(texts["sections.csv"])
-    demand([line[0] for line in lines] == names and header[0] == "section", "misprint: other sections")
+    demand(
+        [line[0] for line in lines] == names and header[0] == "section", "misprint: other sections"
+    )
     text = "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
     least = {name: Fraction(bound) for name, bound in said["bounds"].items()}
     check_rows(text, SECTIONS, rows, least, said["decimals"])
@@ -122,7 +142,10 @@ def check_words(manifest: Any, proved: Proved, others: Sequence[Any]) -> None:
     """Demand that level, units, frame and the word on transits are those of what was proved."""
     run, up = manifest["scene"]["run"], UP[proved.inputs.gravity_is]
     demand(manifest["level"] == run["level"] == "enclosed", "misprint: the level")
-    demand(manifest["units"] == UNITS and manifest["frame"] == FRAME.format(up), "misprint: the units or the frame")
+    demand(
+        manifest["units"] == UNITS and manifest["frame"] == FRAME.format(up),
+        "misprint: the units or the frame",
+    )
     if run["transits"] == "false":
         word = "not asked for"
     elif proved.still:
@@ -138,7 +161,11 @@ def check_radii(said: Any, proved: Proved, ones: Sequence[Any]) -> None:
     """Demand that no interval is wider than the radii that are told of the proof."""
     positions = [x for state in proved.states for x in state[:3]]
     velocities = [x for state in proved.states for x in state[3:6]]
-    kinds = {"position_radius_m": positions, "velocity_radius_m_s": velocities, "transit_radius_s": [z.t for z in ones]}
+    kinds = {
+        "position_radius_m": positions,
+        "velocity_radius_m_s": velocities,
+        "transit_radius_s": [z.t for z in ones],
+    }
     for name, intervals in kinds.items():
         widest = max((x.high - x.low for x in intervals), default=None)
         demand((said[name] is None) == (widest is None), f"misprint: {name}")
@@ -157,14 +184,19 @@ def asked(said: Any) -> tuple[Inputs, tuple[Fraction, ...]]:
     """Return the inputs of a manifest's scene, each a decimal or the double nearest to it, and the times to t_end."""
     kind = "angles" if "angle" in said["scene"]["release"] else "position"
     given = {name: text for part in said["scene"].values() for name, text in part.items()}
-    demand(len(given) == sum(map(len, said["scene"].values())), "misprint: an input in two parts of the scene")
+    demand(
+        len(given) == sum(map(len, said["scene"].values())),
+        "misprint: an input in two parts of the scene",
+    )
     # rates that are not given are 0
     texts = dict.fromkeys(RELEASES[kind][2:], "0") | given
 
     def exact(name: str) -> Fraction:
         return Fraction({"decimal": str, "binary64": float}[said["inputs"]](texts.pop(name)))
 
-    numbers: dict[str, Any] = {"position": None, "angles": None} | {name: exact(name) for name in PLAIN.split()}
+    numbers: dict[str, Any] = {"position": None, "angles": None} | {
+        name: exact(name) for name in PLAIN.split()
+    }
     numbers |= {kind: tuple(map(exact, RELEASES[kind])), "gravity_is": texts.pop("gravity_is")}
     flat = texts["inverse_flattening"] == "inf"
     inputs = Inputs(**numbers, flattening=Fraction(0) if flat else 1 / exact("inverse_flattening"))
@@ -219,7 +251,9 @@ def check(number: str, x: Any) -> None:
     demand(all(near) and set(number) <= DECIMAL, f"misprint: {number}")
 
 
-def check_doubles(text: str | None, header: str, rows: Sequence[Any], cells: Sequence[list[str]]) -> None:
+def check_doubles(
+    text: str | None, header: str, rows: Sequence[Any], cells: Sequence[list[str]]
+) -> None:
     """Demand that a table of doubles, if it is there, has the doubles nearest to what was proved, also as hexfloats.
 
     Of an interval that is the double of some number in it, or of the decimal where that is 0.
@@ -238,9 +272,14 @@ def check_doubles(text: str | None, header: str, rows: Sequence[Any], cells: Seq
                 demand(said[name] == text, f"misprint: {said[name]} beside the doubles")
                 continue
             x, double = values[name], float(said[name])
-            ends = (float(x.low), float(x.high)) if isinstance(x, Interval) else (float(x), float(x))
+            ends = (
+                (float(x.low), float(x.high)) if isinstance(x, Interval) else (float(x), float(x))
+            )
             near = ends[0] <= double <= ends[1] or double == float(text) == 0
-            demand(near and said[f"{name}_hex"] == double.hex(), f"misprint: {said[name]} is not the double of {text}")
+            demand(
+                near and said[f"{name}_hex"] == double.hex(),
+                f"misprint: {said[name]} is not the double of {text}",
+            )
 
 
 def check_page(page: str, manifest: Any, grid: Any, transits: Any) -> None:
@@ -248,7 +287,10 @@ def check_page(page: str, manifest: Any, grid: Any, transits: Any) -> None:
     # what stands before the inputs are words of the scene as well
     words, _, rest = page.rpartition(INPUTS)
     head = words.split("\n")
-    demand(LEVEL in head and f"Inputs are read as: {manifest['inputs']}" in head, "misprint: certified.txt")
+    demand(
+        LEVEL in head and f"Inputs are read as: {manifest['inputs']}" in head,
+        "misprint: certified.txt",
+    )
     said = [line.split() for line in rest.split("\n")]
     expected = [line.split() for line in page_lines(manifest, grid, transits)]
     for words_said, words_expected in zip(said, expected, strict=True):
@@ -258,13 +300,23 @@ def check_page(page: str, manifest: Any, grid: Any, transits: Any) -> None:
 def page_lines(manifest: Any, grid: Any, transits: Any) -> list[str]:
     """Return the lines of the page from the inputs on, but for the spaces in them."""
     bounds, scene = manifest["bounds"], manifest["scene"]
-    lines = [f"{part}.{name} {text}" for part, table in scene.items() for name, text in table.items()]
+    lines = [
+        f"{part}.{name} {text}" for part, table in scene.items() for name, text in table.items()
+    ]
     lines += (MODEL + GRAVITY[scene["site"]["gravity_is"]]).split("\n")
     for word, row in (("State", grid[0]), ("Certified state", grid[-1])):
         lines += ["", f"{word} at t = {row[0]} s"]
         lines += [f"{name} {text}" for name, text in zip(GRID.split(",")[1:], row[1:], strict=True)]
-    lines += ["", "Bound on every position {position_m} m, on every velocity {velocity_m_s} m/s".format(**bounds)]
-    lines += ["by column: " + ", ".join(f"{name} {bound}" for name, bound in bounds["grid"].items()), ""]
+    lines += [
+        "",
+        "Bound on every position {position_m} m, on every velocity {velocity_m_s} m/s".format(
+            **bounds
+        ),
+    ]
+    lines += [
+        "by column: " + ", ".join(f"{name} {bound}" for name, bound in bounds["grid"].items()),
+        "",
+    ]
     lines += [f"Transits (xdot = 0, t > 0): {len(transits)} ({manifest['transits']})"]
     for word, row in zip(("first", "last"), transits[:1] + transits[-1:], strict=False):
         lines += [f"{word} t = {row[1]} s, direction {row[2]}, bound {row[-1]} s"]
@@ -276,4 +328,8 @@ def page_lines(manifest: Any, grid: Any, transits: Any) -> list[str]:
     lines += [text.format(**part) for part in manifest["possible"]]
     lines += f"{SCORE}{manifest['inputs']}.".split("\n")
     counts = manifest["sections"]["counts"] if "sections" in manifest else {}
-    return [*lines, *(f"Passages in sections.csv: {count} of {word}" for word, count in counts.items()), ""]
+    return [
+        *lines,
+        *(f"Passages in sections.csv: {count} of {word}" for word, count in counts.items()),
+        "",
+    ]

@@ -23,13 +23,19 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     inputs, times = asked(said)
     ends = (end_of(inputs, said["uncertain"], side) for side in (-1, 1))
     demand(
-        proved in FINISHED and (inputs, *ends) == proved.box and times == proved.times, "the proof is of other inputs"
+        proved in FINISHED and (inputs, *ends) == proved.box and times == proved.times,
+        "the proof is of other inputs",
     )
     demand(said["level"] == said["scene"]["run"]["level"] == "enclosed", "misprint: the level")
-    check_rows(texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True)))
+    check_rows(
+        texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True))
+    )
     # a table without transits is not one of which none was looked for
     looked_for = XDOT in proved.zeros or proved.still
-    demand((said["scene"]["run"]["transits"] == "true") == looked_for, "misprint: whether transits were looked for")
+    demand(
+        (said["scene"]["run"]["transits"] == "true") == looked_for,
+        "misprint: whether transits were looked for",
+    )
     ones, others = check_zeros(texts["transits.csv"], TRANSITS, found, said["possible"], times[-1])
     words = [*sections]
     header, *parts = lines_of(texts["sections.csv"]) if words else [["section"]]
@@ -51,33 +57,48 @@ def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     demand(said["counts"] == counts, "misprint: the counts")
 
 
-def check_zeros(text: str, names: tuple[str, ...], found: Any, possible: Any, end: Fraction) -> tuple[Any, Any]:
+def check_zeros(
+    text: str, names: tuple[str, ...], found: Any, possible: Any, end: Fraction
+) -> tuple[Any, Any]:
     """Demand that a table has the single zeros, and that the possible ones are listed; return both."""
     ones, others = single_and_other(found)
     rows = ([k, z.direction, *(getattr(z, name) for name in names)] for k, z in enumerate(ones, 1))
     check_rows(text, ["k", "direction"], names, rows)
     for z, part in zip(others, possible, strict=True):
         until = Interval(max(z.t.low, Fraction(0)), min(z.t.high, end))
-        demand(holds(part["from_s"], part["to_s"], until) and part["parity"] == z.parity, "misprint: a possible zero")
+        demand(
+            holds(part["from_s"], part["to_s"], until) and part["parity"] == z.parity,
+            "misprint: a possible zero",
+        )
     return ones, others
 
 
 def end_of(inputs: Inputs, uncertain: Mapping[str, str], side: int) -> Inputs:
     """Return inputs with half of a width added to each that is uncertain, or taken from it with `side` -1."""
-    off = {name.partition(".")[2]: side * Fraction(width.removeprefix("±")) for name, width in uncertain.items()}
+    off = {
+        name.partition(".")[2]: side * Fraction(width.removeprefix("±"))
+        for name, width in uncertain.items()
+    }
     kind = "position" if inputs.position else "angles"
     release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
     changes: dict[str, Any] = {kind: tuple(value + off.pop(name, 0) for name, value in release)}
     if "inverse_flattening" in off:
         changes["flattening"] = 1 / (1 / inputs.flattening + off.pop("inverse_flattening"))
     demand(off.keys() <= {*PLAIN.split()[:-2]}, "misprint: unknown inputs")
-    return replace(inputs, **changes, **{name: getattr(inputs, name) + half for name, half in off.items()})
+    return replace(
+        inputs, **changes, **{name: getattr(inputs, name) + half for name, half in off.items()}
+    )
 
 
-def check_rows(text: str, plain: list[str], names: tuple[str, ...], rows: Iterable[list[Any]]) -> None:
+def check_rows(
+    text: str, plain: list[str], names: tuple[str, ...], rows: Iterable[list[Any]]
+) -> None:
     """Demand that a table has these rows: exact numbers, then intervals within those that are printed."""
     header, *lines = lines_of(text)
-    demand(header == [*plain, *(f"{name}_{end}" for name in names for end in ("low", "high"))], "misprint: the header")
+    demand(
+        header == [*plain, *(f"{name}_{end}" for name in names for end in ("low", "high"))],
+        "misprint: the header",
+    )
     for cells, row in zip(lines, rows, strict=True):
         exact, ends = cells[: len(plain)], cells[len(plain) :]
         right = DECIMAL.issuperset("".join(exact)) and [*map(Fraction, exact)] == row[: len(plain)]

@@ -24,10 +24,16 @@ class CarriedState:
 
     def join(self, piece: Piece) -> Vector:
         """Return bounds of the jumps in p and K from the end of the step before to the start of `piece`."""
-        demand(piece.begin == self.time and piece.balls is self.balls, "steps must join, and be of one scene")
+        demand(
+            piece.begin == self.time and piece.balls is self.balls,
+            "steps must join, and be of one scene",
+        )
         with ctx.workprec(self.balls.prec):
             ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
-            start, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
+            start, end = (
+                [*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))]
+                for p, v in ends
+            )
             self.time, self.last, before = piece.end, end, self.last
             return [(a - b).abs_upper() for a, b in zip(start, before, strict=True)]
 
@@ -41,10 +47,23 @@ class Radius(CarriedState):
         """Carry the radius over a piece."""
         k, jump, d = piece.k, self.join(piece), piece.sizes
         with ctx.workprec(SHORT):
-            span, gw, ck = ball(piece.step.high - piece.step.low), k.drag_size * k.omega_size, k.c_size + d.k**2
-            start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.balls.w0), d.d2 / k.w + d.d1
+            span, gw, ck = (
+                ball(piece.step.high - piece.step.low),
+                k.drag_size * k.omega_size,
+                k.c_size + d.k**2,
+            )
+            start, source = (
+                upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.balls.w0),
+                d.d2 / k.w + d.d1,
+            )
             # Theorem N: |e| <= far
-            far = upper(((1 + d.k / k.w) * start + span * source) * (span * error_rate(k, d.p)).exp())
-            rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (2 * k.w)
-            self.eta = upper((start + span * (ck * d.tau / (2 * k.w) + source)) * (span * rate).exp())
+            far = upper(
+                ((1 + d.k / k.w) * start + span * source) * (span * error_rate(k, d.p)).exp()
+            )
+            rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (
+                2 * k.w
+            )
+            self.eta = upper(
+                (start + span * (ck * d.tau / (2 * k.w) + source)) * (span * rate).exp()
+            )
             return Covered(piece, tube(k, d, self.eta, (k.w + d.k) * self.eta))

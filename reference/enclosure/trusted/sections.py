@@ -5,7 +5,21 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpz_poly
 
-from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, fixed, size, times, total, upper
+from .balls import (
+    SHORT,
+    UNIT,
+    Vector,
+    add,
+    ball,
+    cross,
+    demand,
+    dot,
+    fixed,
+    size,
+    times,
+    total,
+    upper,
+)
 from .shapes import Covered
 from .six_columns import cut
 from .system import SceneBalls
@@ -18,7 +32,10 @@ WAYS = {"highest": -1, "lowest": 1}
 def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
     """Return the form a·r + b·v - d of a section's word, in the axes of the proof."""
     kind, _, azimuth = word.partition(" ")
-    zero, (sin, cos) = [arb(0)] * 3, ball(Fraction(azimuth.removesuffix("@0") or 0) / 180).sin_cos_pi()
+    zero, (sin, cos) = (
+        [arb(0)] * 3,
+        ball(Fraction(azimuth.removesuffix("@0") or 0) / 180).sin_cos_pi(),
+    )
     along, rest = balls.turned([cos, sin, arb(0)], 1), [UNIT] * 3
     if kind != "gate":
         return zero, along if kind == "turn" else times(-1, balls.c), arb(0)
@@ -26,7 +43,10 @@ def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
         return balls.turned([-sin, cos, arb(0)], 1), zero, arb(0)
     for _ in range(balls.prec):
         pull = add(balls.c, times(-1, cross(balls.turning, cross(balls.turning, rest))))
-        demand(dot(pull, pull) > 0, "so fast a rotation singles out no rest position, which the gate goes through")
+        demand(
+            dot(pull, pull) > 0,
+            "so fast a rotation singles out no rest position, which the gate goes through",
+        )
         rest = times(1 / dot(pull, pull).sqrt(), pull)
     return (across := cross(along, balls.c)), zero, dot(across, rest)
 
@@ -69,7 +89,11 @@ class SectionSlope(Slope):
         bending = max(map(len, piece.p)) * speed
         self.lost = a_miss * position + b_miss * speed + d_miss, a_miss * speed + b_miss * bending
 
-        terms = zip([*a_whole, *b_whole, *d_whole], [*piece.p, *piece.v, fmpz_poly([-piece.unit])], strict=True)
+        terms = zip(
+            [*a_whole, *b_whole, *d_whole],
+            [*piece.p, *piece.v, fmpz_poly([-piece.unit])],
+            strict=True,
+        )
         f = arb_poly(sum((n * g for n, g in terms if n), fmpz_poly()))
         a_size, b_size = h * size(a), size(b)
         self.hold(f, a_size * eta + b_size * u, a_size * u + b_size * bend)
@@ -85,7 +109,11 @@ class SectionSlope(Slope):
         """Return a ball that contains the form (n = 0) or its rate (n = 1) on the ball `s`."""
         plain = self.short[n](s) if ctx.prec == SHORT else super().at(n, s)
         # about the middle where the series about 0 shows no sign, and there may be one: both ends have the same
-        if ctx.prec == SHORT and not sign(plain) and self.short[n](s.lower()) * self.short[n](s.upper()) > 0:
+        if (
+            ctx.prec == SHORT
+            and not sign(plain)
+            and self.short[n](s.lower()) * self.short[n](s.upper()) > 0
+        ):
             return self.short[n](arb_poly([s.mid(), 1]))(s - s.mid())
         return plain
 
@@ -103,15 +131,26 @@ class Apsis(SectionSlope):
         piece, (eta, u, bend), long = self.piece, covered.tube, size(b)
         miss, bits = dot(piece.p, piece.v), piece.step.bits
         x = [f(UNIT) / piece.unit for f in (*piece.p, *piece.v, *(f.derivative() for f in piece.v))]
-        aside, low, most, lost = size(cross(x[:3], b)), dot(x[:3], b).abs_lower(), size(x[3:6]), miss.derivative()
+        aside, low, most, lost = (
+            size(cross(x[:3], b)),
+            dot(x[:3], b).abs_lower(),
+            size(x[3:6]),
+            miss.derivative(),
+        )
         if low > 0:
             first = aside * u + long * (eta * (most + u) + total(miss, 2 * bits))
             second = eta * (size(x[6:]) + bend) + u * (2 * most + u) + total(lost, 2 * bits)
-            self.hold(self.forms[0][0], long / low * first, long / low * (aside * bend + long * second))
+            self.hold(
+                self.forms[0][0], long / low * first, long / low * (aside * bend + long * second)
+            )
 
     def row(self, s: arb) -> Vector:
         """Return the state over the length, about the middle of `s`."""
-        piece, (eta, u, _), (middle, off) = self.piece, self.covered.tube, (arb_poly([s.mid(), 1]), s - s.mid())
+        piece, (eta, u, _), (middle, off) = (
+            self.piece,
+            self.covered.tube,
+            (arb_poly([s.mid(), 1]), s - s.mid()),
+        )
         x = [arb_poly(f)(middle)(off) / piece.unit for f in (*piece.p, *piece.v)]
         r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
         return [*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)]

@@ -46,7 +46,8 @@ class EnclosedZero:
         return "one" if self.parity == "one" else "possible"
 
 
-XDOT = "xdot"  # the word of the zeros that are called transits; every other word is that of a section
+# the word of the zeros that are called transits; every other word is that of a section
+XDOT = "xdot"
 Zeros = dict[str, tuple[EnclosedZero, ...]]  # by word
 
 
@@ -95,7 +96,8 @@ class Led(NamedTuple):
 
     own: Any
     times: tuple[Interval, ...] = ()
-    azimuths: tuple[Interval, ...] = ()  # about the plumb line, in degrees, at highest and lowest points
+    # about the plumb line, in degrees, at highest and lowest points
+    azimuths: tuple[Interval, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

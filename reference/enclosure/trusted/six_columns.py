@@ -22,17 +22,33 @@ class Columns(CarriedState):
 
     def advance(self, piece: Piece, proposal: Proposal) -> Covered:
         """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
-        k, step, d, columns = piece.k, piece.step, piece.sizes, [[fmpz_poly(f) for f in c] for c in proposal]
+        k, step, d, columns = (
+            piece.k,
+            piece.step,
+            piece.sizes,
+            [[fmpz_poly(f) for f in c] for c in proposal],
+        )
         with ctx.workprec(2 * SHORT):
             slack = add(self.join(piece), self.rest)
             inverse = matrix(columns, ball(step.low), k.h).inv()
             moved, self.carried = inverse * self.carried, matrix(columns, ball(step.high), k.h)
-            pairs = [(moved[i, j].abs_upper() * self.z[j], inverse[i, j].abs_upper() * slack[j]) for i, j in GRID]
-            self.z = [upper(sum((a + b for a, b in pairs[6 * i : 6 * i + 6]), arb(0))) for i in range(6)]
+            pairs = [
+                (moved[i, j].abs_upper() * self.z[j], inverse[i, j].abs_upper() * slack[j])
+                for i, j in GRID
+            ]
+            self.z = [
+                upper(sum((a + b for a, b in pairs[6 * i : 6 * i + 6]), arb(0))) for i in range(6)
+            ]
         with ctx.workprec(SHORT):
-            rows = [times(z, sizes) for z, sizes in zip(self.z, residuals(piece, columns), strict=True)]
+            rows = [
+                times(z, sizes) for z, sizes in zip(self.z, residuals(piece, columns), strict=True)
+            ]
             zp, zk, d1, d2 = add([arb(0), arb(0), d.d1, d.d2], *rows)
-            d1, d2, span = d1 + zp * zk, d2 + k.drag_size * k.omega_size * zp**2, ball(step.high - step.low)
+            d1, d2, span = (
+                d1 + zp * zk,
+                d2 + k.drag_size * k.omega_size * zp**2,
+                ball(step.high - step.low),
+            )
             left = upper(span * (d2 / k.w + d1) * (span * error_rate(k, d.p + zp)).exp())
             self.rest = [left] * 3 + [upper(left * self.balls.w0)] * 3
             return Covered(piece, tube(k, d, zp + left, zk + left * k.w))
@@ -64,6 +80,8 @@ def residuals(piece: Piece, columns: list[Vector]) -> list[list[arb]]:
         r1 = add(rates[:3], cross(p, Q), cross(P, turn))
         r2 = add(rates[3:], cross(k.c, P), cross(k.omega, Q))
         if not k.drag.is_zero():
-            r2 = add(r2, times(k.drag, add(Q, times(dot(k.omega, P), p), times(dot(k.omega, p), P))))
+            r2 = add(
+                r2, times(k.drag, add(Q, times(dot(k.omega, P), p), times(dot(k.omega, p), P)))
+            )
         out.append([size([f(UNIT) for f in part]) for part in (P, Q, r1, r2)])
     return out

@@ -14,7 +14,9 @@ def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
     demand(eta < 2, "a bound is as wide as the sphere")
     turn, gw = d.k + k.omega_size, k.drag_size * k.omega_size
     u = gamma + turn * eta + d.d1
-    torque = k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
+    torque = (
+        k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
+    )
     rate = d.p * k.c_size + d.k * k.omega_size + k.drag_size * d.k + gw * (1 + d.p**2) + d.d2
     a = torque + rate * eta + gamma * (turn * d.p + d.d1 + u) + turn * u + d.d1_rate
     return Tube(upper(eta), upper(u), upper(a))
@@ -33,4 +35,6 @@ def output(covered: Covered, time: Fraction) -> State:
         demand(piece.begin <= time <= piece.end, "the tube holds on its own step only")
         r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
         moving = [balls.turned(r, -1), balls.turned(times(1 / piece.k.h, v), -1)]
-        return tuple(interval(x * balls.length) for part in (moving if time else balls.release) for x in part)
+        return tuple(
+            interval(x * balls.length) for part in (moving if time else balls.release) for x in part
+        )

@@ -27,8 +27,17 @@ class Slope:
     names: tuple[str, ...] = ("x", "y", "z", "vy", "ax")  # what `row` returns
 
     def __init__(self, covered: Covered) -> None:
-        self.covered, self.piece, self.unit, (piece, tube) = covered, covered.piece, covered.piece.unit, covered
-        self.centre, self.slow, self.flat = ball(piece.step.centre), piece.balls.slow, piece.balls.flat
+        self.covered, self.piece, self.unit, (piece, tube) = (
+            covered,
+            covered.piece,
+            covered.piece.unit,
+            covered,
+        )
+        self.centre, self.slow, self.flat = (
+            ball(piece.step.centre),
+            piece.balls.slow,
+            piece.balls.flat,
+        )
         self.forms: Any = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> Any:
@@ -38,12 +47,21 @@ class Slope:
     def rate(self, s: arb) -> Any:
         """Return a ball that contains xddot on `s`; about the middle of `s` where the series about 0 shows no sign."""
         (f, off), plain = self.forms[1], self.at(1, s)
-        return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.unit + off
+        return (
+            plain
+            if sign(plain)
+            else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.unit + off
+        )
 
     def push(self, s: arb) -> int:
         """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
-        k, bend = self.piece.k, [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
-        return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
+        k, bend = (
+            self.piece.k,
+            [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v],
+        )
+        return (
+            sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
+        )
 
     def row(self, s: arb) -> Vector:
         """Return x, y, z, vy and ax over the length at a transit; xdot, the velocity's first component, is 0."""
@@ -65,12 +83,17 @@ class Scan:
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
         piece = covered.piece
-        demand(piece.begin == self.time and piece.balls is self.balls, "steps must join, and be of one scene")
+        demand(
+            piece.begin == self.time and piece.balls is self.balls,
+            "steps must join, and be of one scene",
+        )
         with ctx.workprec(self.balls.prec):
             slope, low, high = self.slope(covered), ball(piece.step.low), ball(piece.step.high)
             self.left = self.left if self.time else sign(slope.at(0, low))
             self.end, self.time, self.leaves = (slope, high), piece.end, 0
-            for part in pairwise([low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]):
+            for part in pairwise(
+                [low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]
+            ):
                 self._sort(slope, *part, 2)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
@@ -105,8 +128,13 @@ class Scan:
     def _close(self, right: int) -> None:
         leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
         steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
-        demand(product >= 0 or (leaves[0].bend == right if steady else bool(leaves)), "two enclosures contradict")
-        if not leaves or (steady and (product > 0 or (product < 0 and leaves[0].bend == -self.only))):
+        demand(
+            product >= 0 or (leaves[0].bend == right if steady else bool(leaves)),
+            "two enclosures contradict",
+        )
+        if not leaves or (
+            steady and (product > 0 or (product < 0 and leaves[0].bend == -self.only))
+        ):
             return
         ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
         begin, end = (slope.centre + s * slope.piece.k.h for slope, s in ends)
@@ -121,7 +149,9 @@ class Scan:
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
     """Return the leaves that the time ball `t` may touch, each with the part of `t` in it as s."""
-    parts = [(x.slope, (t - x.slope.centre) / x.slope.piece.k.h, x.low.union(x.high)) for x in leaves]
+    parts = [
+        (x.slope, (t - x.slope.centre) / x.slope.piece.k.h, x.low.union(x.high)) for x in leaves
+    ]
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 
 
@@ -130,6 +160,8 @@ def narrowed(leaves: list[Leaf], begin: arb, end: arb, sides: tuple[int, int]) -
     ends = [begin, end]
     for n, t in enumerate(around_zero(leaves)):
         # outside the leaves nothing is known
-        if begin < t < end and {sign(f.at(0, s)) for f, s in touched(leaves, t)} == {sides[n]} != {0}:
+        if begin < t < end and {sign(f.at(0, s)) for f, s in touched(leaves, t)} == {sides[n]} != {
+            0
+        }:
             ends[n] = t
     return ends[0].union(ends[1])

@@ -25,7 +25,10 @@ SHORT_RUN = 20_000  # in hardware numbers
 SHORT_WORK = 4e9  # beyond them: times the cube of the bits
 KEPT = 24  # integrators, of 1 to 5 MB each, that are kept for further runs of their equations
 # type, and that of arrays
-_HARDWARE: dict[NumberType, Any] = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}
+_HARDWARE: dict[NumberType, Any] = {
+    DOUBLE: (float, np.float64),
+    LONG_DOUBLE: (np.longdouble, np.longdouble),
+}
 
 
 class Numbers:
@@ -43,17 +46,24 @@ class Numbers:
         exact = value if isinstance(value, int | Fraction) else to_fraction(value)
         if self.number == DOUBLE:
             return exact.numerator / exact.denominator
-        sign, mantissa, shift, _ = from_rational(exact.numerator, exact.denominator, self.number.prec, "n")
+        sign, mantissa, shift, _ = from_rational(
+            exact.numerator, exact.denominator, self.number.prec, "n"
+        )
         rounded = -int(mantissa) if sign else int(mantissa)
         if not self.number.hardware:
-            prec = self.number.prec  # of a product with a power, whose exponent has 64 bits, it would be 64 at least
+            # of a product with a power, whose exponent has 64 bits, it would be 64 at least
+            prec = self.number.prec
             return hy.real(hy.real(rounded, prec) * hy.real(2, prec) ** shift, prec)
         high = rounded >> 32 << 32
         return np.ldexp(np.longdouble(high) + np.longdouble(rounded - high), shift)
 
     def all_of(self, values: Sequence[Any] | Array) -> Any:
         """Return each value as a number of the type; doubles that are wanted as doubles are taken as they are."""
-        if self.number == DOUBLE and getattr(values, "dtype", None) == np.float64 and np.isfinite(values).all():
+        if (
+            self.number == DOUBLE
+            and getattr(values, "dtype", None) == np.float64
+            and np.isfinite(values).all()
+        ):
             return values
         return [self.of(value) for value in values]
 
@@ -65,7 +75,9 @@ class Numbers:
         """Return each number of an array as an integer over 2**bits, cut off towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
-    def integrator(self, system: Any, state: Sequence[Any], *, radians: float = math.inf, **options: Any) -> Any:
+    def integrator(
+        self, system: Any, state: Sequence[Any], *, radians: float = math.inf, **options: Any
+    ) -> Any:
         """Return heyoka's integrator of a system of pairs (variable, rate), compiled unless it was so before.
 
         `radians` is how far the run goes, by which compiling is thorough or quick; `events` are expressions, each with
@@ -96,13 +108,17 @@ class Numbers:
 
 
 @lru_cache(maxsize=KEPT)
-def _compiled(number: NumberType, system: Any, varied: bool = False, events: Any = (), **options: Any) -> Any:
+def _compiled(
+    number: NumberType, system: Any, varied: bool = False, events: Any = (), **options: Any
+) -> Any:
     """Return an integrator that begins at zero; a copy of it shares its code, and takes a millisecond."""
     keep_on_disk(number)
     numbers, pairs = Numbers(number), list(system)
     if "tol" in options:
         options["tol"] = numbers.of(options["tol"])
-    options["nt_events"] = [hy.nt_event(zero, callback=call, fp_type=numbers.type) for zero, call in events]
+    options["nt_events"] = [
+        hy.nt_event(zero, callback=call, fp_type=numbers.type) for zero, call in events
+    ]
     equations = hy.var_ode_sys(pairs, [hy.par[0]], order=1) if varied else pairs
     zero = np.array([numbers.of(0)] * len(pairs), numbers.dtype)
     return hy.taylor_adaptive(equations, zero, fp_type=numbers.type, **numbers.keywords, **options)

@@ -24,7 +24,9 @@ class Heyoka(Engine):
     start_s = 0.0  # its import, 0.1 s, is not worth counting
     proof_step_s = 1.6e-3
 
-    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()) -> Plan:
+    def plan(
+        self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()
+    ) -> Plan:
         """Return the run of `momentum` in the cheapest type with `prec` bits."""
         return Plan(inputs, self.formulation, cheapest_type(prec), times, zeros, self.name)
 

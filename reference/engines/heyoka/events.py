@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from .stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
-SHORTER = Fraction(79, 128)  # a step taken again is cut by this factor: no simple ratio, so that no edge returns
+# a step taken again is cut by this factor: no simple ratio, so that no edge returns
+SHORTER = Fraction(79, 128)
 AT_ONCE = 100  # steps that are checked together
 
 
@@ -77,7 +78,8 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     """
     coefficients, h = stepper.coefficients()
     scaled: list[Any] = [abs((k + 1) * a * h**k) for k, a in enumerate(coefficients[0][1:])]
-    head, tail = scaled[multiplicity], scaled[multiplicity + 1 :]  # not numbers where h is infinite, as at rest
+    # not numbers where h is infinite, as at rest
+    head, tail = scaled[multiplicity], scaled[multiplicity + 1 :]
     for halvings in range(stepper.number.prec):
         weight = stepper.numbers.power_of_two(-halvings)
         if head > 2 * sum((b * weight ** (j + 1) for j, b in enumerate(tail)), start=0 * head):
@@ -86,7 +88,10 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
 
 
 def march(
-    stepper: Stepper, times: Sequence[Any], multiplicity: int = 0, report: Callable[[float], None] | None = None
+    stepper: Stepper,
+    times: Sequence[Any],
+    multiplicity: int = 0,
+    report: Callable[[float], None] | None = None,
 ) -> tuple[Any, list[Zero]]:
     """Step to the last of `times`; return the states, shape (times, variables), and the zeros of xdot.
 
@@ -120,7 +125,9 @@ def march(
                 i, contradiction = wrong
                 retries += 1
                 if retries > MAX_RETRIES:
-                    raise IntegrationError(f"zeros of xdot near t = {float(steps[i].end)} s: {contradiction}.", AT_REST)
+                    raise IntegrationError(
+                        f"zeros of xdot near t = {float(steps[i].end)} s: {contradiction}.", AT_REST
+                    )
                 limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(SHORTER**retries)
                 before = steps[max(i - 1, 0)]
                 stepper.back(before.mark)
@@ -141,10 +148,17 @@ def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int,
     k = np.arange(1, x.shape[1] + 1)
     series = x.astype(float) * k
     ends = np.sign([*series[:, 0], float(polyval(1, x[-1] * k))])
-    changes = np.count_nonzero(np.diff(signs_of(forms(series, abs(series)), ends[:-1], ends[1:])), axis=1)
+    changes = np.count_nonzero(
+        np.diff(signs_of(forms(series, abs(series)), ends[:-1], ends[1:])), axis=1
+    )
     crossings = np.array([len(step.directions) for step in steps])
     first = np.array([step.directions[0] if step.directions else 0 for step in steps])
-    for i in map(int, np.flatnonzero((changes != crossings) | (crossings > 1) | (first + ends[:-1] * crossings != 0))):
+    for i in map(
+        int,
+        np.flatnonzero(
+            (changes != crossings) | (crossings > 1) | (first + ends[:-1] * crossings != 0)
+        ),
+    ):
         signs = [ends[i], *steps[i].directions, ends[i + 1]]
         if ends[i] == 0 or any(b != -a for a, b in pairwise(signs[:-1])):
             return i, "two crossings in a row have the same direction"

@@ -28,7 +28,8 @@ from .system import as_pairs, rates
 
 PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
 STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
-SAMPLES_PER_SWING = 12  # at least, between which a rate may dip to zero; a step of a tiny swing lasts half of one
+# at least, between which a rate may dip to zero; a step of a tiny swing lasts half of one
+SAMPLES_PER_SWING = 12
 LEAST_STEPS = 10_000  # that are granted to any row
 
 # the zeros that are looked for, whether they are those of any form, whether there is drag, and the tolerance
@@ -74,7 +75,11 @@ class Integrator:
                 return self._ta.state.copy(), 1, True
         outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=most)
         state = self._ta.state.copy()
-        return state, int(steps) + short, outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all()
+        return (
+            state,
+            int(steps) + short,
+            outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all(),
+        )
 
     def zeros(self, kind: int) -> RowZeros:
         """Return the zeros of a kind that were passed, in order."""
@@ -137,15 +142,24 @@ def solve(rows: Rows, options: RunOptions, tolerance: float) -> Outcomes:
             transits.append(_solve(outcomes, row, release, k, state, options, tolerance))
         x, p, u, vx, vp, vu = outcomes.state.T
         sin, cos = axes.sin.high, axes.cos.high
-        at_end = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))  # in the Earth's axes
+        # in the Earth's axes
+        at_end = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))
         outcomes.state[:] = np.transpose(at_end) * rows.length[:, :1]
     if not options.times:
         return outcomes
-    return outcomes.with_transits([zeros.times for zeros in transits], [zeros.directions for zeros in transits])
+    return outcomes.with_transits(
+        [zeros.times for zeros in transits], [zeros.directions for zeros in transits]
+    )
 
 
 def _solve(
-    outcomes: Outcomes, row: int, release: RowRelease, k: Constants, state: Any, options: RunOptions, tolerance: float
+    outcomes: Outcomes,
+    row: int,
+    release: RowRelease,
+    k: Constants,
+    state: Any,
+    options: RunOptions,
+    tolerance: float,
 ) -> RowZeros:
     """Solve a row, its state at the end left in these axes and over l; return its transits."""
     sought, kind, form = _sought(options), (bool(k.drag), tolerance), release.forms[TRANSIT]
@@ -166,7 +180,9 @@ def _solve(
         if TRANSIT in sought and not release.still:
             samples = seen.finer(transits, at_transits, release, TRANSIT)
             if len(samples) > len(seen.times):  # the plane passes north-south
-                seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, form, kind)
+                seen, at_transits, at_heights = _seen(
+                    samples, transits, heights, k, state, form, kind
+                )
             describe_transits(outcomes, row, release, transits, at_transits, seen)
         if HEIGHT in sought:
             describe_highest_points(outcomes, row, release, heights, at_heights, seen)
@@ -174,11 +190,21 @@ def _solve(
 
 
 def _seen(
-    samples: Array, transits: RowZeros, heights: RowZeros, k: Constants, state: Any, form: Any, kind: tuple[bool, float]
+    samples: Array,
+    transits: RowZeros,
+    heights: RowZeros,
+    k: Constants,
+    state: Any,
+    form: Any,
+    kind: tuple[bool, float],
 ) -> tuple[Samples, RowMotion, RowMotion]:
     """Return the motion at samples, at transits and at zeros of the height's rate, by one more run."""
-    times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
-    at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
+    times, places = np.unique(
+        np.concatenate([samples, transits.times, heights.times]), return_inverse=True
+    )
+    at_samples, at_transits, at_heights = np.split(
+        places, np.cumsum([len(samples), len(transits.times)])
+    )
     with _lent((), False, *kind) as second:
         second.begin(k, state, form)
         motion = RowMotion.of(second.at(times), k)

@@ -24,7 +24,8 @@ from .propagator import Propagator
 from .system import rates
 
 hy.install_custom_numpy_mem_handler()
-hy.set_logger_level_critical()  # its log is the process's stdout; what it would tell of lost roots is found otherwise
+# its log is the process's stdout; what it would tell of lost roots is found otherwise
+hy.set_logger_level_critical()
 
 
 class RoundedModel:
@@ -55,7 +56,9 @@ class RoundedModel:
     def propagator(self, tolerance: float | None = None, radians: float = math.inf) -> Propagator:
         """Compile the equations, without events; the tolerance is the type's epsilon if None."""
         variables, equations = self.formulation.variables, rates(self.formulation, self.symbols)
-        made = Propagator(variables, equations, self.numbers.number, tolerance=tolerance, radians=radians)
+        made = Propagator(
+            variables, equations, self.numbers.number, tolerance=tolerance, radians=radians
+        )
         made.parameters = self.parameters
         return made
 
@@ -71,7 +74,9 @@ class RoundedModel:
             return Table(RUN, bits, [])
         n, v = self._cartesian(states)
         ax = acceleration(n, v, self.k)[0]
-        fixed = [self.numbers.fixed(np.asarray(column) * self.k.length, bits) for column in (*n, *v, ax)]
+        fixed = [
+            self.numbers.fixed(np.asarray(column) * self.k.length, bits) for column in (*n, *v, ax)
+        ]
         return Table(RUN, bits, list(zip(*fixed, strict=True)))
 
     def _cartesian(self, states: Any) -> Any:

@@ -16,7 +16,9 @@ from .conversions import Numbers
 from .system import as_pairs
 
 
-def compiled(variables: Sequence[str], parameters: int, change: Callable[..., Sequence[Any]]) -> Any:
+def compiled(
+    variables: Sequence[str], parameters: int, change: Callable[..., Sequence[Any]]
+) -> Any:
     """Return a map of doubles as machine code, called with an array of states and `pars`.
 
     Args:
@@ -67,7 +69,9 @@ class Propagator:
         self.parameters: Sequence[Any] = ()  # where none are given
         self.steps = 0
 
-    def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:
+    def from_zero(
+        self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0
+    ) -> Any:
         """Return the states at increasing times (the first is 0), shape (times, variables).
 
         With variational equations, `start` holds the state and then its derivative with respect to the first

@@ -31,7 +31,8 @@ from .stepper import Stepper, Zero
 
 SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits
 DECAYS = 5.0  # with a fast drag γ the step size is at most DECAYS MOST_TURN/γ
-STEP_BITS = 6  # mantissa of a step size: equal steps share their scaled constants, and times stay short
+# mantissa of a step size: equal steps share their scaled constants, and times stay short
+STEP_BITS = 6
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
@@ -51,10 +52,18 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         beyond, started = stepper.time > grid[-1], time.process_time()
         t, h, series = stepper.expand(limit, coefficient_bits)
         spent += time.process_time() - started
-        yield TaylorStep(t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series[:3]), LOCAL)
+        yield TaylorStep(
+            t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series[:3]), LOCAL
+        )
         stepper.sample(grid, states)
         limit = stepper.numbers.of(min(_next_step(h, series, coefficient_bits), longest))
-    return result(plan, stepper, np.array(states, dtype=stepper.numbers.dtype), None, time.process_time() - spent)
+    return result(
+        plan,
+        stepper,
+        np.array(states, dtype=stepper.numbers.dtype),
+        None,
+        time.process_time() - spent,
+    )
 
 
 def _integers(series: Any) -> tuple[list[int], ...]:
@@ -68,8 +77,12 @@ def _next_step(h: Fraction, series: Any, bits: int) -> Fraction:
     The rule: h = ρ exp(-2 - 0.7/(p - 1)), ρ the smaller of |c_k|^(-1/k) of the last two orders.
     """
     order = series.shape[1] - 1
-    largest = {k: max(abs(int(c)).bit_length() for c in series[:, k]) - bits for k in (order - 1, order)}
-    power = min(-log2 / k for k, log2 in largest.items()) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
+    largest = {
+        k: max(abs(int(c)).bit_length() for c in series[:, k]) - bits for k in (order - 1, order)
+    }
+    power = min(-log2 / k for k, log2 in largest.items()) - (2 + 0.7 / (order - 1)) * math.log2(
+        math.e
+    )
     return _few_bits(float(h) * 2**power * SHRINK)
 
 
@@ -79,9 +92,11 @@ def _few_bits(h: float) -> Fraction:
     return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
 
 
-OTHER_STEPS = Fraction(5, 8)  # of the span: the longest step of a run that takes other steps, if one would do
+# of the span: the longest step of a run that takes other steps, if one would do
+OTHER_STEPS = Fraction(5, 8)
 UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
-SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
+# results carry this many bits below the run's epsilon, for swings much smaller than the cord
+SMALL_SWING_BITS = 80
 
 
 class EarlyZero(NamedTuple):
@@ -117,14 +132,18 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     watching = plan.transits and not xdot_vanishes(start)
     longest = plan.times[-1] * OTHER_STEPS if plan.other_steps else None
     formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
-    stepper = Stepper(formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest)
+    stepper = Stepper(
+        formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest
+    )
     times = [stepper.numbers.of(t) for t in plan.times]
     zeros: list[Zero] = []
     started = time.process_time()
     if watching:
         early = early_zero(start, plan.number.prec)
         release = stepper.state
-        states, zeros = march(stepper, times, zero_at_release(start) or int(early is not None), report)
+        states, zeros = march(
+            stepper, times, zero_at_release(start) or int(early is not None), report
+        )
         if early is not None and early.time_s > 0:
             zeros.insert(0, Zero(stepper.numbers.of(early.time_s), early.direction, release))
     else:
@@ -132,7 +151,9 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     return result(plan, stepper, states, zeros if watching else None, started)
 
 
-def run_between(plan: Plan, rows: Table, starts: Sequence[int], report: Report | None = None) -> Run:
+def run_between(
+    plan: Plan, rows: Table, starts: Sequence[int], report: Report | None = None
+) -> Run:
     """Integrate from some rows of a grid, each to the time of the next; return a run with the states reached.
 
     Args:
@@ -150,15 +171,21 @@ def run_between(plan: Plan, rows: Table, starts: Sequence[int], report: Report |
     stepper = Stepper(formulation, start, plan.number, span=sum(lengths, Fraction(0)))
     states, reached, zero = rows.only(STATE).values, [], stepper.numbers.of(0)
     for i, length in zip(starts, lengths, strict=True):
-        x, y, z, vx, vy, vz = (to_mpf(Fraction(value, 1 << rows.bits), start.ctx) for value in states[i])
-        stepper.back((zero, stepper.model.release(replace(start, position=(x, y, z), velocity=(vx, vy, vz)))))
+        x, y, z, vx, vy, vz = (
+            to_mpf(Fraction(value, 1 << rows.bits), start.ctx) for value in states[i]
+        )
+        stepper.back(
+            (zero, stepper.model.release(replace(start, position=(x, y, z), velocity=(vx, vy, vz))))
+        )
         reached.append(stepper.propagate([zero, stepper.numbers.of(length)])[-1])
         if report is not None:
             report(float(plan.times[i + 1]))
     return result(plan, stepper, np.array(reached, dtype=stepper.numbers.dtype), None, started)
 
 
-def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, started: float) -> Run:
+def result(
+    plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, started: float
+) -> Run:
     """Return the states and zeros of a stepper that has reached the end, in SI units.
 
     Args:
@@ -184,5 +211,9 @@ def _transits(stepper: Stepper, zeros: list[Zero], bits: int) -> Zeros[Table]:
     dtype = stepper.numbers.dtype
     states = stepper.model.table(np.array([zero.state for zero in zeros], dtype=dtype), bits)
     times = stepper.numbers.fixed(np.array([zero.t for zero in zeros], dtype=dtype), bits)
-    table = Table(("t", *states.columns), bits, [(t, *row) for t, row in zip(times, states.values, strict=True)])
+    table = Table(
+        ("t", *states.columns),
+        bits,
+        [(t, *row) for t, row in zip(times, states.values, strict=True)],
+    )
     return Zeros(table, [zero.direction for zero in zeros])

@@ -21,7 +21,8 @@ from .model import RoundedModel
 from .system import system_of
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
-TIME_BITS = 64  # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
+# a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
+TIME_BITS = 64
 
 
 class Zero(NamedTuple):
@@ -32,7 +33,8 @@ class Zero(NamedTuple):
     state: Any
 
 
-_at_work = threading.local()  # `zeros` of the stepper that takes a step: integrators of one system share a callback
+# `zeros` of the stepper that takes a step: integrators of one system share a callback
+_at_work = threading.local()
 
 
 def _record(integrator: Any, t: Any, direction: int) -> None:
@@ -70,7 +72,9 @@ class Stepper:
         equations, xdot = system_of(formulation, self.model.symbols)
         sought, radians = ((xdot, _record),) if events else (), float(span) * start.rate
         started = time.process_time()
-        self._ta = self.numbers.integrator(equations, self.model.release(start), radians=radians, events=sought)
+        self._ta = self.numbers.integrator(
+            equations, self.model.release(start), radians=radians, events=sought
+        )
         self._ta.pars[:] = self.model.parameters[: len(self._ta.pars)]
         self.compile_s = time.process_time() - started
         self.order = int(self._ta.order)
@@ -94,12 +98,16 @@ class Stepper:
         """
         self.zeros.clear()
         _at_work.zeros = self.zeros
-        self._count_step(self._ta.step(limit if self._longest is None else min(limit, self._longest))[0])
+        self._count_step(
+            self._ta.step(limit if self._longest is None else min(limit, self._longest))[0]
+        )
 
     def _count_step(self, outcome: Any) -> None:
         """Count a step, or raise if it failed."""
         if outcome not in (hy.taylor_outcome.success, hy.taylor_outcome.time_limit):
-            raise IntegrationError(f"heyoka stopped at t = {float(self.time)} s with outcome {outcome}.")
+            raise IntegrationError(
+                f"heyoka stopped at t = {float(self.time)} s with outcome {outcome}."
+            )
         if not all(map(math.isfinite, self._ta.state.astype(float).tolist())):
             raise IntegrationError(f"the state is not finite at t = {float(self.time)} s.")
         self.steps += 1
@@ -149,7 +157,9 @@ class Stepper:
 
     def _row_powers(self, h: Fraction, bits: int) -> Any:
         """Return h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
-        powers = np.cumprod([self.numbers.power_of_two(bits), *[self.numbers.of(h)] * (self.order + 1)])
+        powers = np.cumprod(
+            [self.numbers.power_of_two(bits), *[self.numbers.of(h)] * (self.order + 1)]
+        )
         half = len(self._ta.state) // 2
         return np.array([powers[:-1]] * half + [powers[1:]] * half)
 
@@ -157,7 +167,9 @@ class Stepper:
         bits = 2 * self.number.prec + TIME_BITS
         return Fraction(sum(self.numbers.fixed(np.array(self._ta.dtime), bits)), 1 << bits)
 
-    def propagate(self, times: Sequence[Any], report: Report | None = None, pace: Pace | None = None) -> Any:
+    def propagate(
+        self, times: Sequence[Any], report: Report | None = None, pace: Pace | None = None
+    ) -> Any:
         """Return the states at increasing times from the one reached, shape (times, variables); not with events."""
         count = 0
 

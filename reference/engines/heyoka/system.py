@@ -23,7 +23,8 @@ from ...numbers.precision import DOUBLE, LONG_DOUBLE, NumberType
 if TYPE_CHECKING:
     from ...scenes.scene import Scene
 
-FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
+# in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
+FOLDER = "foucault"
 MOST_BYTES = 1 << 25
 EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
 
@@ -85,13 +86,17 @@ def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]
     except TypeError:
         raise InputError("derivatives", rates, "a list of rates, numbers or expressions") from None
     if len(expressions) != len(state):
-        raise InputError("derivatives", f"{len(expressions)} rates", f"{len(state)}, one a variable")
+        raise InputError(
+            "derivatives", f"{len(expressions)} rates", f"{len(state)}, one a variable"
+        )
     return [*zip(state, expressions, strict=True)]
 
 
 def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -> list[Any]:
     """Return heyoka's equations of L; linear drag, Rayleigh function γ α0/2, adds -γ q' to each q'' whatever q is."""
-    derived = hy.lagrangian(formulation.lagrangian(state, constants, hy), list(state[:2]), list(state[2:]))
+    derived = hy.lagrangian(
+        formulation.lagrangian(state, constants, hy), list(state[:2]), list(state[2:])
+    )
     rates = {str(name): rate for name, rate in derived}
     for velocity in state[2:]:
         rates[str(velocity)] = minus(rates[str(velocity)], product(constants.drag, velocity))
@@ -116,19 +121,34 @@ def lines_and_left_out(scene: Scene, formulation: str, number: str) -> tuple[lis
     """
     inputs, system, run = scene.exact, FORMULATIONS[formulation], scene.run
     start = Start.of(inputs, EQUATIONS_PREC)
-    turns, at_pole, effective = inputs.rotation_rate != 0, abs(inputs.latitude) == 90, inputs.gravity_is == "effective"
+    turns, at_pole, effective = (
+        inputs.rotation_rate != 0,
+        abs(inputs.latitude) == 90,
+        inputs.gravity_is == "effective",
+    )
     sentences = (
         (not turns, "Coriolis and centrifugal terms: rotation_rate is 0."),
-        (turns and at_pole, "the distance R from the axis and the terms with Omega_y: the latitude is a pole."),
+        (
+            turns and at_pole,
+            "the distance R from the axis and the terms with Omega_y: the latitude is a pole.",
+        ),
         (turns and inputs.latitude == 0, "the terms with Omega_z and c_y: the latitude is 0."),
         (effective, "the centrifugal force at the pivot: gravity is effective and contains it."),
         (inputs.drag == 0, "drag: it is 0."),
-        *((True, f"the rate of {name}: it is constant.") for name in constant_variables(system, start.k)),
+        *(
+            (True, f"the rate of {name}: it is constant.")
+            for name in constant_variables(system, start.k)
+        ),
         (inputs.gravity == 0, "gravity: it is 0."),
         (not run.transits, "event detection: transits are off."),
         (run.transits and xdot_vanishes(start), "event detection: xdot is identically zero."),
         (number == str(DOUBLE), f"extended precision: double serves {run.digits} digits."),
-        (number == str(LONG_DOUBLE), f"precision beyond long double: it serves {run.digits} digits."),
+        (
+            number == str(LONG_DOUBLE),
+            f"precision beyond long double: it serves {run.digits} digits.",
+        ),
         (run.level != "enclosed", "the enclosure: the level does not ask for it."),
     )
-    return equations_text(system, start.k), [sentence for left_out, sentence in sentences if left_out]
+    return equations_text(system, start.k), [
+        sentence for left_out, sentence in sentences if left_out
+    ]

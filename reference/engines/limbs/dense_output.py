@@ -5,9 +5,31 @@ from __future__ import annotations
 import numpy as np
 
 from ...numbers.precision import Array
-from ..simd.lanes import LANES, compiled, load, merged, occupied, plus_product, shuffled, spread, store
+from ..simd.lanes import (
+    LANES,
+    compiled,
+    load,
+    merged,
+    occupied,
+    plus_product,
+    shuffled,
+    spread,
+    store,
+)
 from .limb import DOUBLED, RADIX, UNIT, add_product, carry, carry_scalar, divide, double_of
-from .series import TENSION, VM, VX, LimbSeries, M, Step, X, partner, positions, to_positions, to_speeds
+from .series import (
+    TENSION,
+    VM,
+    VX,
+    LimbSeries,
+    M,
+    Step,
+    X,
+    partner,
+    positions,
+    to_positions,
+    to_speeds,
+)
 from .step import GRAINS, LimbModel, lane_products
 
 _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")

@@ -9,7 +9,8 @@ from ...scenes.inputs import Inputs
 from ..plan import Engine, Plan
 from .size import LEAST_PREC, MOST_PREC
 
-STEP_S = 1.2e-5  # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
+# CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
+STEP_S = 1.2e-5
 
 
 class Limbs(Engine):
@@ -24,7 +25,9 @@ class Limbs(Engine):
     start_s = 0.5
     proof_step_s = 4e-4  # its steps are twice as long as heyoka's
 
-    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()) -> Plan:
+    def plan(
+        self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], zeros: tuple[str, ...] = ()
+    ) -> Plan:
         """Return the run that keeps `prec` bits of a number as large as the swing."""
         return Plan(inputs, self.formulation, NumberType("limbs", prec), times, zeros, self.name)
 

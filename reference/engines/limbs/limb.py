@@ -49,7 +49,9 @@ def nearest_whole(value: Any, bits: int) -> int:
 def rows_of(numbers: Sequence[Any], limb_count: int) -> Array:
     """Return up to eight mpf or rationals side by side, shape (limb_count * 8,)."""
     rows = np.zeros((limb_count, LANES))
-    rows[:, : len(numbers)] = split([nearest_whole(x, fraction_bits(limb_count)) for x in numbers], limb_count).T
+    rows[:, : len(numbers)] = split(
+        [nearest_whole(x, fraction_bits(limb_count)) for x in numbers], limb_count
+    ).T
     return rows.ravel()
 
 

@@ -28,7 +28,8 @@ from .step import (
 from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search, polish
 
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
-TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
+# in `MarchState.counts`
+TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)
 # why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
 GOOD, FULL, STUCK, DOUBTFUL = range(4)
 
@@ -82,7 +83,10 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: LimbMod
     rows = aligned(LANES * (limb_count + 2))
     now = aligned(len(start))
     now[:] = start
-    step, search = Step(empty_series(order, limb_count), terms, rows), empty_search(order, limb_count)
+    step, search = (
+        Step(empty_series(order, limb_count), terms, rows),
+        empty_search(order, limb_count),
+    )
     return MarchState(now, counts, step, search)
 
 
@@ -117,14 +121,20 @@ def _write_zeros(state: MarchState, model: LimbModel, out: Outputs) -> bool:
         for q in range(limb_count):
             out.places[n * limb_count + q] = z.place[q]
         to_cartesian(out.zero_states, n * limb_count * LANES, state.step, model, m)
-        out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = counts[TIME], m, z.direction[i]
+        out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = (
+            counts[TIME],
+            m,
+            z.direction[i],
+        )
         counts[ZEROS] += 1
     counts[SIGN] = after
     return True
 
 
 @kept(*Path(__file__).parent.glob("*.py"), **OPTIONS)
-def march(state: MarchState, model: LimbModel, out: Outputs, until: int, steps: int, seek: bool) -> int:
+def march(
+    state: MarchState, model: LimbModel, out: Outputs, until: int, steps: int, seek: bool
+) -> int:
     """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
     s, counts, limb_count, order = state.step.s, state.counts, model.limb_count, model.order
     for i in range(steps):
@@ -135,7 +145,8 @@ def march(state: MarchState, model: LimbModel, out: Outputs, until: int, steps: 
         m = counts[LENGTH]
         sum_series(state.step.rows, s, order, limb_count)
         if seek and counts[STEPS] == 0:
-            leading = (counts[MULTIPLICITY] + 1) * limb_count * LANES + X  # the first coefficient of xdot that is not 0
+            # the first coefficient of xdot that is not 0
+            leading = (counts[MULTIPLICITY] + 1) * limb_count * LANES + X
             counts[SIGN] = int(np.sign(double_of(s.c, limb_count, leading, LANES)))
         project(state.now, state.step.rows, s, m, limb_count)
         if seek and not _write_zeros(state, model, out):

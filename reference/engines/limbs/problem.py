@@ -23,10 +23,13 @@ from .series import LinearTerms
 from .size import MOST_PREC, highest_prec, limb_count_for
 from .step import GRAINS, MOST_GRAINS, LimbModel
 
-TAIL_BITS = 9  # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
+# a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
+TAIL_BITS = 9
 ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
-MOST_SWING_BITS = 64  # bits added at most for a swing smaller than l; none are added where there is no swing
-OTHER_STEPS = Fraction(7, 8)  # of the order, and of the first and the longest step, in a run that takes other steps
+# bits added at most for a swing smaller than l; none are added where there is no swing
+MOST_SWING_BITS = 64
+# of the order, and of the first and the longest step, in a run that takes other steps
+OTHER_STEPS = Fraction(7, 8)
 GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
 
 
@@ -54,7 +57,9 @@ class LimbProblem:
         return self.unit / GRAINS
 
 
-def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_steps: bool = False) -> LimbProblem:
+def limb_problem(
+    inputs: Inputs, prec: int, order: int | None = None, other_steps: bool = False
+) -> LimbProblem:
     """Return a scene's problem, in which numbers as large as the swing keep about `prec` bits a step.
 
     `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps. With
@@ -74,14 +79,18 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
     swing = h * ctx.sqrt(ctx.norm(pull))  # the rate of a small one
     longest = min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / swing))) if swing else MOST_GRAINS
     if other_steps:
-        order, first, longest = (max(1, int(size * OTHER_STEPS)) for size in (order, first, longest))
+        order, first, longest = (
+            max(1, int(size * OTHER_STEPS)) for size in (order, first, longest)
+        )
     model = LimbModel(
         limb_count=limb_count,
         order=order,
         drag=bool(k.drag),
         tolerance=math.ldexp(1.0, -(prec + TAIL_BITS)),
         longest=longest,
-        terms=_linear_terms(turn[2] * h, pull[1] * h * h, pull[2] * h * h, k.drag * h, limb_count + 1),
+        terms=_linear_terms(
+            turn[2] * h, pull[1] * h * h, pull[2] * h * h, k.drag * h, limb_count + 1
+        ),
         powers=LinearTerms(*(np.array(row, dtype=float) for row in _POWERS)),
         along=rows_of([1, sin, sin, 1, sin, sin, 1], limb_count),
         across=2 * rows_of([0, cos, -cos, 0, cos, -cos], limb_count),
@@ -109,7 +118,9 @@ def _swing_bits(start: Start) -> int:
     """Return by how many bits the swing is smaller than l: limbs count from l, so that many more bits are needed."""
     ctx, k, n, v = start.ctx, start.k, start.n, start.v
     rate = ctx.sqrt(ctx.norm(k.pull))
-    swing = max(abs(n[0]), abs(n[1]), 1 + n[2] if k.pull[1] else 0, ctx.norm(v) / rate if rate else 1)
+    swing = max(
+        abs(n[0]), abs(n[1]), 1 + n[2] if k.pull[1] else 0, ctx.norm(v) / rate if rate else 1
+    )
     return min(MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2))))) if swing else 0
 
 

@@ -113,9 +113,13 @@ def add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool)
                 plane, factor = (r - 1 - p) * PLANES * WIDTH + j, PLANES * LANES * p
                 axial, tension = load(planes, plane + 2 * WIDTH), load(planes, plane + 3 * WIDTH)
                 fw, f = load(factors, factor + 2 * LANES), load(factors, factor + 3 * LANES)
-                x = plus_product(plus_product(x, f, load(planes, plane)), load(factors, factor), tension)
+                x = plus_product(
+                    plus_product(x, f, load(planes, plane)), load(factors, factor), tension
+                )
                 m = plus_product(
-                    plus_product(m, f, load(planes, plane + WIDTH)), load(factors, factor + LANES), tension
+                    plus_product(m, f, load(planes, plane + WIDTH)),
+                    load(factors, factor + LANES),
+                    tension,
                 )
                 w = plus_product(plus_product(w, f, axial), fw, tension)
                 if drag:
@@ -140,7 +144,9 @@ def copy_to_planes(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
 
 
 @compiled
-def taylor_coefficients(s: LimbSeries, terms: LinearTerms, order: int, limb_count: int, drag: bool) -> bool:
+def taylor_coefficients(
+    s: LimbSeries, terms: LinearTerms, order: int, limb_count: int, drag: bool
+) -> bool:
     """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
 
     Of λ n only the products with order 0 are needed at once; the others of an order are added to the sums while the
@@ -178,7 +184,8 @@ def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int
     while first < limb_count and not occupied(load(c, block + LANES * first)):
         first += 1
     firsts[k] = first
-    small = at_least(spread(LARGEST), magnitude(load(c, block)))  # 0 also where a lane is not a number
+    # 0 also where a lane is not a number
+    small = at_least(spread(LARGEST), magnitude(load(c, block)))
     return first > 0 or not occupied(small - spread(1.0))
 
 
@@ -198,7 +205,9 @@ def _set_derivative(s: LimbSeries, terms: LinearTerms, k: int, first: int, limb_
             turned = plus_product(turned, load(turn, p), partner(v))
             pulled = plus_product(pulled, spread(c[block + LANES * q + TENSION]), load(zeroth, p))
             pulled = plus_product(pulled, spread(zeroth[p + TENSION]), v)
-        value = _turned(turned) + (_tension_axial(turned) + _tension_turned(turned)) - to_speeds(pulled)
+        value = (
+            _turned(turned) + (_tension_axial(turned) + _tension_turned(turned)) - to_speeds(pulled)
+        )
         if first <= r < limb_count:
             value = value + to_positions(load(c, block + LANES * r))
         if k == 0:

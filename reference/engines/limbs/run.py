@@ -24,7 +24,18 @@ from ...system.machine_code import prepare
 from ..plan import AT_REST, Pace, Plan, Report, Run
 from ..simd.lanes import LANES, aligned
 from .limb import joined, split
-from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
+from .march import (
+    COLUMNS,
+    DOUBTFUL,
+    GOOD,
+    STEPS,
+    STUCK,
+    TIME,
+    ZEROS,
+    Outputs,
+    march,
+    state_at_release,
+)
 from .problem import limb_problem
 from .series import TENSION, M, W, X
 from .size import MOST_PREC, fraction_bits
@@ -33,10 +44,12 @@ from .zeros import MOST_ZEROS
 STEPS_PER_CALL = 1024
 COMPILE_S = 18  # what compiling takes, about, of which users are told
 ROWS = np.array((X, M, W, TENSION))
-ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since every step must be proved
+# of the series: more than a run alone would take, since every step must be proved
+ORDER_PER_BIT = 0.5
 POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
-SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
+# SI values carry this much below the last limb: l need not be a short binary fraction
+SPARE_BITS = 32
 
 
 class Integration:
@@ -54,12 +67,20 @@ class Integration:
     def __init__(self, plan: Plan, polynomials: int = 0, order: int | None = None) -> None:
         prec = plan.number.prec
         if prec > MOST_PREC:
-            raise InputError("precision", prec, f"at most {MOST_PREC} bits", "Use the engine heyoka for more digits.")
+            raise InputError(
+                "precision",
+                prec,
+                f"at most {MOST_PREC} bits",
+                "Use the engine heyoka for more digits.",
+            )
         self.problem = problem = limb_problem(plan.inputs, prec, order, plan.other_steps)
         self.seek = seek = plan.transits and not xdot_vanishes(problem.start)
         limb_count, model = problem.model.limb_count, problem.model
         unit, grain = 1 << fraction_bits(limb_count), problem.grain
-        fixed = [unit * t.numerator * grain.denominator // (t.denominator * grain.numerator) for t in plan.times]
+        fixed = [
+            unit * t.numerator * grain.denominator // (t.denominator * grain.numerator)
+            for t in plan.times
+        ]
         whole, remainders = zip(*(divmod(t, unit) for t in fixed), strict=True)
         multiplicity = zero_at_release(problem.start) if seek else 0
         self.state = state_at_release(problem.state, problem.first, multiplicity, model)
@@ -75,7 +96,8 @@ class Integration:
             aligned(polynomials * (model.order + 1) * limb_count * LANES),
         )
         self.until = FOR_EVER if polynomials else whole[-1] + 1
-        self.zeros: list[Any] = []  # of xdot, of each call: time in grains and state, over 2**fraction_bits, and sign
+        # of xdot, of each call: time in grains and state, over 2**fraction_bits, and sign
+        self.zeros: list[Any] = []
         cpu_start = time.process_time()
         prepare(march, "limbs", COMPILE_S, *self._arguments(0))
         self.compile_s = time.process_time() - cpu_start
@@ -105,7 +127,8 @@ class Integration:
             raise IntegrationError(f"no step is short enough at t = {self.time} s.")
         if outcome == DOUBTFUL:
             raise IntegrationError(
-                f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.", AT_REST
+                f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.",
+                AT_REST,
             )
         return bool(outcome == GOOD)
 
@@ -124,7 +147,9 @@ class Integration:
     def table(self, rows: Array, count: int) -> Any:
         """Return rows of limbs as integers over 2**fraction_bits, shape (count, COLUMNS)."""
         limb_count = self.problem.model.limb_count
-        limbs = np.moveaxis(rows[: count * limb_count * LANES].reshape(count, limb_count, LANES), 1, 2)
+        limbs = np.moveaxis(
+            rows[: count * limb_count * LANES].reshape(count, limb_count, LANES), 1, 2
+        )
         return joined(limbs[:, :COLUMNS])
 
 
@@ -137,16 +162,24 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
     """
     integration = Integration(plan, POLYNOMIALS_PER_CALL, round(ORDER_PER_BIT * coefficient_bits))
     spent = 0.0
-    grain, limb_count, last = integration.problem.grain, integration.problem.model.limb_count, plan.times[-1]
+    grain, limb_count, last = (
+        integration.problem.grain,
+        integration.problem.model.limb_count,
+        plan.times[-1],
+    )
     start, end, bits = Fraction(0), Fraction(1), fraction_bits(limb_count)
     while True:
         cpu_start = time.process_time()
         integration.advance(POLYNOMIALS_PER_CALL)
         spent += time.process_time() - cpu_start
         series = integration.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
-        for (grains, length), of_step in zip(integration.out.steps.reshape(-1, 2).tolist(), series, strict=True):
+        for (grains, length), of_step in zip(
+            integration.out.steps.reshape(-1, 2).tolist(), series, strict=True
+        ):
             t = grains * grain
-            yield TaylorStep(t, length * grain, start, end, bits, partial(_digits, of_step, limb_count))
+            yield TaylorStep(
+                t, length * grain, start, end, bits, partial(_digits, of_step, limb_count)
+            )
             if t > last:
                 return result(integration, plan, time.process_time() - spent)
 
@@ -197,5 +230,7 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
 def _si(table: Any, factors: Sequence[Fraction]) -> list[tuple[int, ...]]:
     """Return the rows of a table of integers, each column times a factor, over 2**SPARE_BITS times their unit."""
     scaled = [factor * 2**SPARE_BITS for factor in factors]
-    columns = [column * f.numerator // f.denominator for column, f in zip(table.T, scaled, strict=True)]
+    columns = [
+        column * f.numerator // f.denominator for column, f in zip(table.T, scaled, strict=True)
+    ]
     return list(zip(*columns, strict=True))

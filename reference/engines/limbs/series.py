@@ -14,14 +14,16 @@ from ...numbers.precision import Array
 from ..simd.lanes import LANES, aligned, shuffled
 
 X, M, W, VX, VM, VW, TENSION, SPIN = range(LANES)
-PLANES = 4  # x, m, w and the tension λ, each limb's coefficients one after another; those of sums are λ x, λ m, λ w, w²
+# x, m, w and the tension λ, each limb's coefficients one after another; those of sums are λ x, λ m, λ w, w²
+PLANES = 4
 WIDTH = 35 * LANES  # from plane to plane, known to the compiler; an odd number of cache lines
 MOST_ORDER = WIDTH - 3 * LANES
 
 Counts = npt.NDArray[np.int64]
 
 # lane i takes the value of lane order[i], or 0 where that is -1
-partner = shuffled((1, 0, 0, 4, 3, 5, 4, 0), "partner")  # of `LinearTerms.turn`: m, x, x, Vm, Vx, Vw, Vm, x
+# of `LinearTerms.turn`: m, x, x, Vm, Vx, Vw, Vm, x
+partner = shuffled((1, 0, 0, 4, 3, 5, 4, 0), "partner")
 positions = shuffled((X, M, W, -1, -1, -1, -1, -1), "positions")
 to_positions = shuffled((VX, VM, VW, -1, -1, -1, -1, -1), "to_positions")
 to_speeds = shuffled((-1, -1, -1, 0, 1, 2, -1, -1), "to_speeds")

@@ -6,7 +6,8 @@ from ...numbers.precision import LONG_DOUBLE_BITS
 
 LIMB_BITS = 22
 MOST_LIMBS = 18  # with more, and the order that goes with them, sums could pass 2**53
-ROUNDING_BITS = 9  # the limbs go this much below the precision, as the sums of a step round at the last limb
+# the limbs go this much below the precision, as the sums of a step round at the last limb
+ROUNDING_BITS = 9
 
 
 def fraction_bits(limb_count: int) -> int:

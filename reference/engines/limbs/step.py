@@ -20,10 +20,13 @@ from .size import LIMB_BITS
 GRAINS = 1024
 MOST_GRAINS = 4 * GRAINS
 SHIFT = RADIX / GRAINS  # times m, and one limb down: a multiplication by m / GRAINS
-LEAST_FACTOR = 0.9  # a step with at least this step-size factor is accepted as it is; the order is chosen accordingly
+# a step with at least this step-size factor is accepted as it is; the order is chosen accordingly
+LEAST_FACTOR = 0.9
 SAFETY_FACTOR = 0.98  # of the next length, against the one that the last coefficients allow
-RESOLVED = 4.0  # units of the last limb: smaller coefficients say nothing about the decay of the series
-KEEP_FROM, KEEP_TO = 0.94, 1.03  # the length stays as it is while the new one would be within these multiples of it
+# units of the last limb: smaller coefficients say nothing about the decay of the series
+RESOLVED = 4.0
+# the length stays as it is while the new one would be within these multiples of it
+KEEP_FROM, KEEP_TO = 0.94, 1.03
 STEADY = LinearTerms._fields.index("steady")
 LN_2, ROOT_HALF = 0.6931471805599453, 0.7071067811865476
 
@@ -73,7 +76,9 @@ def scale_terms(to: LinearTerms, model: LimbModel, m: int) -> None:
 @compiled
 def _multiply(rows: Array, powers: Array, power: int, m: int, limb_count: int) -> None:
     """Multiply the lanes that hold at least this power of m by m / GRAINS; the others stay as they are."""
-    f = spread(SHIFT * GRAINS) + at_least(load(powers, 0), spread(power - 0.5)) * spread(SHIFT * (m - GRAINS))
+    f = spread(SHIFT * GRAINS) + at_least(load(powers, 0), spread(power - 0.5)) * spread(
+        SHIFT * (m - GRAINS)
+    )
     for r in range(limb_count, -1, -1):
         store(rows, LANES * (r + 1), load(rows, LANES * r) * f)
     store(rows, 0, spread(0.0))

@@ -23,15 +23,20 @@ from .step import LimbModel
 
 MOST_ZEROS = 24  # of one step
 GRAZING = -1  # returned when a grazing zero cannot be resolved
-ROUNDING = 2.0**-46  # of a polynomial evaluated in double, against the sum of its coefficients' sizes
-SHALLOW = 2.0**26  # a dip whose bottom is less than this many times that rounding is solved as a parabola
-NEGLIGIBLE = 2.0**-60  # the series is cut where two coefficients in a row are smaller, against the largest
-NOISE_BITS = 12  # last bits of a number in limbs that rounding may have spoilt: they do not decide a sign
+# of a polynomial evaluated in double, against the sum of its coefficients' sizes
+ROUNDING = 2.0**-46
+# a dip whose bottom is less than this many times that rounding is solved as a parabola
+SHALLOW = 2.0**26
+# the series is cut where two coefficients in a row are smaller, against the largest
+NEGLIGIBLE = 2.0**-60
+# last bits of a number in limbs that rounding may have spoilt: they do not decide a sign
+NOISE_BITS = 12
 NARROWEST = 2.0**-40  # half of the shortest interval that is cut
 DEEPEST = 256  # intervals, one in another, down to the narrowest
 NEWTON_STEPS = 30
 DERIVATIVE_BITS = 44  # correct bits of the derivative, a double, that Newton's method divides by
-NEAR_BITS = 46  # of a step: after a smaller correction the next is smaller by the bits of the derivative
+# of a step: after a smaller correction the next is smaller by the bits of the derivative
+NEAR_BITS = 46
 EDGE = 2.0**-30  # of a step: a zero may lie this far outside its interval
 
 
@@ -70,7 +75,9 @@ def empty_search(order: int, limb_count: int) -> Search:
 
 
 @compiled
-def bracket_zeros(z: Search, step: Step, before: int, after: int, multiplicity: int, model: LimbModel) -> int:
+def bracket_zeros(
+    z: Search, step: Step, before: int, after: int, multiplicity: int, model: LimbModel
+) -> int:
     """Bracket the zeros on 0 < s <= 1, in order; return their number, or GRAZING.
 
     Args:
@@ -130,7 +137,9 @@ def _polynomial(z: Search, s: LimbSeries, multiplicity: int, model: LimbModel) -
 
 
 @merged
-def _sign_at(z: Search, place: float, value: float, noise: float, step: Step, model: LimbModel) -> int:
+def _sign_at(
+    z: Search, place: float, value: float, noise: float, step: Step, model: LimbModel
+) -> int:
     """Return the sign of xdot at a place where its value in double is known within the noise."""
     if abs(value) > noise:
         return 1 if value > 0.0 else -1
@@ -147,7 +156,15 @@ def _record(z: Search, count: int, low: float, high: float, guess: float, direct
 
 @merged
 def _dip(
-    z: Search, count: int, size: int, low: float, high: float, side: int, noise: float, step: Step, model: LimbModel
+    z: Search,
+    count: int,
+    size: int,
+    low: float,
+    high: float,
+    side: int,
+    noise: float,
+    step: Step,
+    model: LimbModel,
 ) -> int:
     """Record none or two zeros where xdot has one sign at both ends and bends towards zero.
 

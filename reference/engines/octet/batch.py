@@ -38,8 +38,13 @@ class OctetBatch(Batch):
         """Compile the kernel, or read it from the disk, once a process: later calls find it done."""
         from .march import empty_march, empty_moments, march
 
-        arguments = _arguments(empty_march(), options, np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
-        what, kernel = "steps of eight rows at once" + " with sections" * options.form, cast("Any", march)
+        arguments = _arguments(
+            empty_march(), options, np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0
+        )
+        what, kernel = (
+            "steps of eight rows at once" + " with sections" * options.form,
+            cast("Any", march),
+        )
         prepare(kernel, what, round(self.compile_s[bool(kernel.stats.cache_misses)]), *arguments)
 
     def solve(self, rows: Rows, options: RunOptions) -> Outcomes:
@@ -57,7 +62,9 @@ class OctetBatch(Batch):
             pieces.append([column[: moments.number[0]].copy() for column in moments[1:]])
         row, t, direction = (np.concatenate(column) for column in zip(*pieces, strict=True))
         order = np.argsort(row, kind="stable")  # a row's own are in order of time
-        return outcomes(rows, numbers, results, (row[order], t[order], direction[order].astype(np.int8)))
+        return outcomes(
+            rows, numbers, results, (row[order], t[order], direction[order].astype(np.int8))
+        )
 
     def compiling_s(self, sections: bool) -> float:
         """Return what compiling takes here; the variant for sections is kept beside that of all rows."""

@@ -15,14 +15,28 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...numbers.precision import Array
-from ..simd.lanes import LANES, aligned, at_least, compiled, fma, inlined, larger, load, magnitude, spread, store, where
+from ..simd.lanes import (
+    LANES,
+    aligned,
+    at_least,
+    compiled,
+    fma,
+    inlined,
+    larger,
+    load,
+    magnitude,
+    spread,
+    store,
+    where,
+)
 from ..simd.polynomial import FREE, MONOTONE, classify, crossing, value_and_slope
 from .series import MOST_ORDER, LaneSeries
 
 NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
 NEWTON_STEPS = 3
 CONVERGED = 2.0**-27  # of a step: a larger last correction leaves digits to be gained
-TURNED = 2.0**-20  # of a step: a zero of u' is so nearly symmetric that the next correction would be none
+# of a step: a zero of u' is so nearly symmetric that the next correction would be none
+TURNED = 2.0**-20
 MOST_ZEROS = 16  # of one step
 DOUBT = -1  # returned where a sign is lost in rounding
 _CUT = 0.4871  # of an interval: no special place, where symmetry could put a zero
@@ -163,7 +177,11 @@ def place_highest(top: Array, c: LaneSeries, z: LaneZeros, order: int) -> None:
     x = p = u = spread(0.0)
     for k in range(order, -1, -1):
         at = LANES * k
-        x, p, u = fma(load(c.x, at), x, place), fma(load(c.p, at), p, place), fma(load(c.u, at), u, place)
+        x, p, u = (
+            fma(load(c.x, at), x, place),
+            fma(load(c.p, at), p, place),
+            fma(load(c.u, at), u, place),
+        )
     store(top, 0, x)
     store(top, LANES, p)
     store(top, 2 * LANES, u)
@@ -180,11 +198,15 @@ class Bisection(NamedTuple):
 
 def empty_bisection() -> Bisection:
     """Return working arrays."""
-    return Bisection(np.zeros(MOST_ORDER + 1), np.zeros(2 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS))
+    return Bisection(
+        np.zeros(MOST_ORDER + 1), np.zeros(2 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS)
+    )
 
 
 @compiled
-def all_zeros(w: Bisection, z: LaneZeros, f: Array, lane: int, length: float, multiplicity: int, order: int) -> int:
+def all_zeros(
+    w: Bisection, z: LaneZeros, f: Array, lane: int, length: float, multiplicity: int, order: int
+) -> int:
     """Write the zeros on 0 < s <= length, in order; return their number, or DOUBT.
 
     Args:
@@ -207,7 +229,8 @@ def all_zeros(w: Bisection, z: LaneZeros, f: Array, lane: int, length: float, mu
     # the polynomial is cut off: the state's own value has to be on the same side
     if abs(left) <= noise or abs(right) <= noise or (right > 0.0) != (z.after[lane] > 0.0):
         return DOUBT
-    low, n = 0.0, 0  # the stack holds the intervals' ends, and the values there: the next interval's on top
+    # the stack holds the intervals' ends, and the values there: the next interval's on top
+    low, n = 0.0, 0
     w.stack[0], w.stack[1] = length, right
     while n >= 0:
         high, right = w.stack[2 * n], w.stack[2 * n + 1]

@@ -71,11 +71,15 @@ class Moments(NamedTuple):
 
 def empty_moments(room: int) -> Moments:
     """Return room for times; none for none."""
-    return Moments(np.zeros(1, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room), np.zeros(room))
+    return Moments(
+        np.zeros(1, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room), np.zeros(room)
+    )
 
 
 @compiled
-def note_transit(out: Array, at: int, row: int, moments: Moments, time: float, slope: float, close: float) -> None:
+def note_transit(
+    out: Array, at: int, row: int, moments: Moments, time: float, slope: float, close: float
+) -> None:
     """Note a transit of a row whose results begin at `at`; `close` is what makes two of them a close pair, in s."""
     if out[at + rows.COUNT] == 0.0:
         out[at + rows.T_FIRST], out[at + rows.LEAST_SLOPE] = time, abs(slope)
@@ -86,12 +90,18 @@ def note_transit(out: Array, at: int, row: int, moments: Moments, time: float, s
     out[at + rows.LEAST_SLOPE] = min(out[at + rows.LEAST_SLOPE], abs(slope))
     n = moments.number[0]
     if n < len(moments.row):
-        moments.row[n], moments.time[n], moments.direction[n] = row, time, 1.0 if slope > 0.0 else -1.0
+        moments.row[n], moments.time[n], moments.direction[n] = (
+            row,
+            time,
+            1.0 if slope > 0.0 else -1.0,
+        )
         moments.number[0] = n + 1
 
 
 @compiled
-def note_highest(out: Array, at: int, time: float, x: float, p: float, u: float, fall: float, pull: float) -> None:
+def note_highest(
+    out: Array, at: int, time: float, x: float, p: float, u: float, fall: float, pull: float
+) -> None:
     """Note a highest point (x, p, u); half turns are counted where the direction, less a half turn, passes east."""
     bend = fall / (pull * u * (2.0 - u))
     side = 1.0
@@ -99,12 +109,18 @@ def note_highest(out: Array, at: int, time: float, x: float, p: float, u: float,
         side = -1.0
         x, p = -x, -p
     if out[at + rows.APSIDES] == 0.0:
-        out[at + rows.A_FIRST], out[at + rows.LEAST_BEND], out[at + rows.LEAST_FALL] = time, bend, fall
+        out[at + rows.A_FIRST], out[at + rows.LEAST_BEND], out[at + rows.LEAST_FALL] = (
+            time,
+            bend,
+            fall,
+        )
         out[at + rows.X_FIRST], out[at + rows.P_FIRST] = x, p
     else:
         along = out[at + rows.X_LAST] * x + out[at + rows.P_LAST] * p
         if along < 0.0:
-            out[at + rows.HALF_TURNS] += 1.0 if out[at + rows.X_LAST] * p - out[at + rows.P_LAST] * x < 0.0 else -1.0
+            out[at + rows.HALF_TURNS] += (
+                1.0 if out[at + rows.X_LAST] * p - out[at + rows.P_LAST] * x < 0.0 else -1.0
+            )
         if along * side * out[at + rows.SIDE_LAST] > 0.0:
             out[at + rows.SAME_SIDE] += 1.0
     out[at + rows.SIDE_LAST] = side
@@ -145,9 +161,13 @@ class March(NamedTuple):
 
 def empty_march() -> March:
     """Return lanes without rows."""
-    state, time, low, length, last, top = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
+    state, time, low, length, last, top = (
+        aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3)
+    )
     working = empty_series(), empty_zeros(), empty_zeros(), empty_bisection()
-    return March(state, *working, time, low, length, last, top, np.zeros(ROW + LANES, dtype=np.int64))
+    return March(
+        state, *working, time, low, length, last, top, np.zeros(ROW + LANES, dtype=np.int64)
+    )
 
 
 @compiled
@@ -174,7 +194,9 @@ def _take_row(m: March, lane: int, numbers: Array, results: Array) -> None:
 def _set_length(m: March, order: int) -> None:
     """Set the steps' lengths, none beyond its row's end."""
     left = load(m.state, LANES * rows.END) - load(m.time, 0)
-    left = (left + (load(m.state, LANES * rows.END_LOW) - load(m.time_low, 0))) / load(m.state, LANES * rows.UNIT)
+    left = (left + (load(m.state, LANES * rows.END_LOW) - load(m.time_low, 0))) / load(
+        m.state, LANES * rows.UNIT
+    )
     length = step_length(m.c, order)
     last = at_least(length, left)
     store(m.last, 0, last)
@@ -232,7 +254,11 @@ def _place_zeros(m: March, order: int, form: bool | None) -> None:
 @compiled
 def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Moments) -> bool:
     """Note what a lane has passed; return false if its transits or highest points stay in doubt."""
-    at, unit, close = row * rows.RESULTS, m.state[LANES * rows.UNIT + lane], m.state[LANES * rows.CLOSE_S + lane]
+    at, unit, close = (
+        row * rows.RESULTS,
+        m.state[LANES * rows.UNIT + lane],
+        m.state[LANES * rows.CLOSE_S + lane],
+    )
     since, low, n = m.time[lane], m.time_low[lane], 0
     results[at + rows.STEPS] += 1.0
     if m.transits.doubt[lane] != 0.0:
@@ -243,14 +269,19 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
     elif m.transits.hit[lane] != 0.0:
         m.w.places[0], m.w.slopes[0], n = m.transits.place[lane], m.transits.slope[lane], 1
     for i in range(n):
-        note_transit(results, at, row, moments, since + (low + m.w.places[i] * unit), m.w.slopes[i], close)
+        note_transit(
+            results, at, row, moments, since + (low + m.w.places[i] * unit), m.w.slopes[i], close
+        )
     pull = m.state[LANES * rows.PULL + lane]
     if m.highest.doubt[lane] != 0.0:
         # of a conical orbit u' is but rounding
         u = m.c.u[lane]
         if not abs(m.c.udot[LANES + lane]) < LEAST_BEND * pull * u * (2.0 - u):
             return False
-        results[at + rows.LEAST_BEND], results[at + rows.APSIDES] = 0.0, max(results[at + rows.APSIDES], 1.0)
+        results[at + rows.LEAST_BEND], results[at + rows.APSIDES] = (
+            0.0,
+            max(results[at + rows.APSIDES], 1.0),
+        )
     elif m.highest.hit[lane] != 0.0:
         x, p, u = m.top[lane], m.top[LANES + lane], m.top[2 * LANES + lane]
         place, fall = m.highest.place[lane], -m.highest.slope[lane]
@@ -260,7 +291,13 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
 
 @kept(*rows.SOURCES, nogil=True, **OPTIONS)
 def march(
-    m: March, order: int, form: bool | None, numbers: Array, results: Array, moments: Moments, steps: int
+    m: March,
+    order: int,
+    form: bool | None,
+    numbers: Array,
+    results: Array,
+    moments: Moments,
+    steps: int,
 ) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done.
 

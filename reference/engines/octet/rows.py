@@ -8,19 +8,60 @@ from pathlib import Path
 import numpy as np
 
 from ...numbers.precision import Array
-from ..batch_interface import CLOSE_PAIR, OK, Outcomes, PlumbAxes, Rows, RunOptions, moved, plumb_line, turned
+from ..batch_interface import (
+    CLOSE_PAIR,
+    OK,
+    Outcomes,
+    PlumbAxes,
+    Rows,
+    RunOptions,
+    moved,
+    plumb_line,
+    turned,
+)
 from ..batch_interface import LEAST_BEND as LEAST
 
 # of a row's numbers: state and constants in its unit of time, unit and span in s, what the release says of zeros
-X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, RISING, CLOSE_S, SEEKS_X, SEEKS_U = range(17)
+(
+    X,
+    P,
+    U,
+    W,
+    V,
+    S,
+    TURN_P,
+    TURN_U,
+    PULL,
+    UNIT,
+    END,
+    END_LOW,
+    ZEROS_X,
+    RISING,
+    CLOSE_S,
+    SEEKS_X,
+    SEEKS_U,
+) = range(17)
 FORM, COLUMNS = 17, 24  # the form of a section: a, b and d
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
-APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND, LEAST_FALL = range(13, 24)
+(
+    APSIDES,
+    A_FIRST,
+    A_LAST,
+    HALF_TURNS,
+    HIGHEST,
+    X_FIRST,
+    P_FIRST,
+    X_LAST,
+    P_LAST,
+    LEAST_BEND,
+    LEAST_FALL,
+) = range(13, 24)
 SIDE_LAST, SAME_SIDE, RESULTS = 24, 25, 26
 TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against the motion
 _ENGINES = Path(__file__).parents[1]
-SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]  # of the kernel
+# of the kernel
+SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]
 
 
 def packed(rows: Rows, options: RunOptions) -> Array:
@@ -53,7 +94,9 @@ def packed(rows: Rows, options: RunOptions) -> Array:
     return numbers
 
 
-def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, Array, Array]) -> Outcomes:
+def outcomes(
+    rows: Rows, numbers: Array, results: Array, moments: tuple[Array, Array, Array]
+) -> Outcomes:
     """Return what became of rows in SI units; `moments` are row, time and direction of transits."""
     r, length, unit = results.T, rows.length[:, 0], numbers[:, UNIT]
     turn_p, turn_u = numbers[:, TURN_P], numbers[:, TURN_U]
@@ -76,9 +119,13 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     has_apsides = result.apsides > 0
     result.same_side[:] = np.where(has_apsides, r[SAME_SIDE], 0)
     result.least_fall[:] = np.where(has_apsides, r[LEAST_FALL] / (unit * unit), np.nan)
-    result.apsis_first[:], result.apsis_last[:] = np.where(has_apsides, r[A_FIRST : A_LAST + 1], np.nan)
+    result.apsis_first[:], result.apsis_last[:] = np.where(
+        has_apsides, r[A_FIRST : A_LAST + 1], np.nan
+    )
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
     result.turn[:] = np.where(has_apsides, last - first + np.pi * r[HALF_TURNS], np.nan)
     result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
     result.state[result.fate != OK] = np.nan
-    return replace(result, transit_row=moments[0], transit_t=moments[1], transit_direction=moments[2])
+    return replace(
+        result, transit_row=moments[0], transit_t=moments[1], transit_direction=moments[2]
+    )

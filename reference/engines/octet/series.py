@@ -65,7 +65,11 @@ def empty_series() -> LaneSeries:
 def _next_order(c: LaneSeries, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
     """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
     at, to, share, less = LANES * k, LANES * (k + 1), spread(1.0 / (k + 1)), spread(-1.0 / (k + 1))
-    op, ou, pull = load(state, LANES * TURN_P), load(state, LANES * TURN_U), load(state, LANES * PULL)
+    op, ou, pull = (
+        load(state, LANES * TURN_P),
+        load(state, LANES * TURN_U),
+        load(state, LANES * PULL),
+    )
     x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
     w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
     # what comes last in the chain of dependent operations is added last
@@ -108,7 +112,12 @@ def taylor_coefficients(c: LaneSeries, state: Array, order: int) -> None:
         after = load(c.tension, LANES * (k - 1))
         for j in range(2, k):
             at = LANES * j
-            pull, x, p, u = load(c.tension, LANES * (k - j)), load(c.x, at), load(c.p, at), load(c.u, at)
+            pull, x, p, u = (
+                load(c.tension, LANES * (k - j)),
+                load(c.x, at),
+                load(c.p, at),
+                load(c.u, at),
+            )
             ax, ap, au = fma(ax, pull, x), fma(ap, pull, p), fma(au, pull, u)
             bx, bp, bu = fma(bx, after, x), fma(bp, after, p), fma(bu, after, u)
             after = pull
@@ -116,12 +125,24 @@ def taylor_coefficients(c: LaneSeries, state: Array, order: int) -> None:
         before, pull = load(c.tension, at - LANES), load(c.tension, at)
         x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
         ax, ap, au = fma(ax, before, x1), fma(ap, before, p1), fma(au, before, u1)
-        ax, ap, au = fma(fma(ax, pull, x0), l0, x), fma(fma(ap, pull, p0), l0, p), fma(fma(au, pull, u0), l0, u)
+        ax, ap, au = (
+            fma(fma(ax, pull, x0), l0, x),
+            fma(fma(ap, pull, p0), l0, p),
+            fma(fma(au, pull, u0), l0, u),
+        )
         _next_order(c, state, k, ax, ap, au)
-        bx, bp, bu = fma(fma(bx, pull, x1), l1, x), fma(fma(bp, pull, p1), l1, p), fma(fma(bu, pull, u1), l1, u)
+        bx, bp, bu = (
+            fma(fma(bx, pull, x1), l1, x),
+            fma(fma(bp, pull, p1), l1, p),
+            fma(fma(bu, pull, u1), l1, u),
+        )
         at += LANES
         pull, x, p, u = load(c.tension, at), load(c.x, at), load(c.p, at), load(c.u, at)
-        bx, bp, bu = fma(fma(bx, pull, x0), l0, x), fma(fma(bp, pull, p0), l0, p), fma(fma(bu, pull, u0), l0, u)
+        bx, bp, bu = (
+            fma(fma(bx, pull, x0), l0, x),
+            fma(fma(bp, pull, p0), l0, p),
+            fma(fma(bu, pull, u0), l0, u),
+        )
         _next_order(c, state, k + 1, bx, bp, bu)
 
 
@@ -136,7 +157,10 @@ def step_length(c: LaneSeries, order: int) -> Any:
 
     The height u is left out: what its tail lacks is put right when n is put back on the sphere.
     """
-    scale, zero = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE), spread(0.0)
+    scale, zero = (
+        larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE),
+        spread(0.0),
+    )
     last = log2_of(_size(c, order) / scale) * spread(1.0 / order)
     other = log2_of(_size(c, order - 1) / scale) * spread(1.0 / (order - 1))
     return exp2_of(zero - larger(larger(last, other), spread(-LONGEST)))
@@ -167,8 +191,12 @@ def sum_series(state: Array, c: LaneSeries, length: Array, order: int) -> None:
 def _form(state: Array, x: Any, p: Any, u: Any, xdot: Any, pdot: Any, udot: Any) -> Any:
     """Return a·n + b·n'."""
     total = fma(load(state, LANES * FORM) * x, load(state, LANES * (FORM + 1)), p)
-    total = fma(fma(total, load(state, LANES * (FORM + 2)), u), load(state, LANES * (FORM + 3)), xdot)
-    return fma(fma(total, load(state, LANES * (FORM + 4)), pdot), load(state, LANES * (FORM + 5)), udot)
+    total = fma(
+        fma(total, load(state, LANES * (FORM + 2)), u), load(state, LANES * (FORM + 3)), xdot
+    )
+    return fma(
+        fma(total, load(state, LANES * (FORM + 4)), pdot), load(state, LANES * (FORM + 5)), udot
+    )
 
 
 @compiled
@@ -177,7 +205,15 @@ def put_form(c: LaneSeries, state: Array, order: int) -> None:
     for k in range(order):
         at = LANES * k
         pdot = load(c.p, at + LANES) * spread(k + 1.0)
-        total = _form(state, load(c.x, at), load(c.p, at), load(c.u, at), load(c.xdot, at), pdot, load(c.udot, at))
+        total = _form(
+            state,
+            load(c.x, at),
+            load(c.p, at),
+            load(c.u, at),
+            load(c.xdot, at),
+            pdot,
+            load(c.udot, at),
+        )
         store(c.xdot, at, total - load(state, LANES * (FORM + 6)) if k == 0 else total)
 
 
@@ -186,7 +222,9 @@ def form_of(state: Array) -> Any:
     """Return the form of a state."""
     x, p, u = load(state, LANES * X), load(state, LANES * P), load(state, LANES * U)
     pdot = load(state, LANES * V) - load(state, LANES * TURN_U) * x
-    return _form(state, x, p, u, xdot_of(state), pdot, udot_of(state)) - load(state, LANES * (FORM + 6))
+    return _form(state, x, p, u, xdot_of(state), pdot, udot_of(state)) - load(
+        state, LANES * (FORM + 6)
+    )
 
 
 @inlined

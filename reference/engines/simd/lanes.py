@@ -25,7 +25,8 @@ from ...numbers.precision import Array
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}  # no reference counting: arrays come from the caller
+# no reference counting: arrays come from the caller
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
 _CALLEE = OPTIONS | {"no_cfunc_wrapper": True}  # C does not call it
 
 
@@ -87,7 +88,9 @@ _EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 
 def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
     """Return what LLVM's function of this name makes of vectors."""
-    function = _insert(builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64")
+    function = _insert(
+        builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64"
+    )
     return builder.call(function, vectors)
 
 
@@ -133,7 +136,9 @@ def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     """Write eight elements of a flat array from `index` on."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        write = builder.store(arguments[2], address(context, builder, signature.args[0], *arguments[:2]))
+        write = builder.store(
+            arguments[2], address(context, builder, signature.args[0], *arguments[:2])
+        )
         write.align = 8
         return context.get_dummy_value()
 
@@ -143,7 +148,9 @@ def store(_: Any, array: Any, index: Any, value: Any) -> Any:
 @partial(lanewise, taken=types.float64)
 def spread(builder: Any, value: Any) -> Any:
     """Return the same double in every lane."""
-    return builder.shuffle_vector(builder.insert_element(_BLANK, value, _FIRST), _BLANK, _EVERYWHERE)
+    return builder.shuffle_vector(
+        builder.insert_element(_BLANK, value, _FIRST), _BLANK, _EVERYWHERE
+    )
 
 
 @lanewise
@@ -217,7 +224,9 @@ def exp2_of(builder: Any, a: Any) -> Any:
 
 def shuffled(order: tuple[int, ...], name: str) -> Any:
     """Return a compiled function that takes lane order[i] to lane i; lane i becomes 0 where order[i] is negative."""
-    places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order])
+    places = ir.Constant(
+        ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order]
+    )
 
     def shuffle(builder: Any, a: Any) -> Any:
         return builder.shuffle_vector(a, ZERO, places)

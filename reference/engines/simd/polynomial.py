@@ -12,11 +12,14 @@ FREE, MONOTONE, CONVEX, UNDECIDED = range(4)
 
 
 @compiled
-def classify(f: Array, size: int, middle: float, half: float, noise: float) -> tuple[int, float, float]:
+def classify(
+    f: Array, size: int, middle: float, half: float, noise: float
+) -> tuple[int, float, float]:
     """Return the polynomial's character within `half` of the middle; its value and half its second derivative there."""
     high = middle + half
     value = slope = bend = 0.0
-    total = slopes = bends = third = 0.0  # bounds from the coefficients' sizes, to the third derivative
+    # bounds from the coefficients' sizes, to the third derivative
+    total = slopes = bends = third = 0.0
     for k in range(size - 1, -1, -1):
         bend, slope, value = bend * middle + slope, slope * middle + value, value * middle + f[k]
         third, bends, slopes = third * high + bends, bends * high + slopes, slopes * high + total

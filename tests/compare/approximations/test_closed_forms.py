@@ -82,7 +82,9 @@ def test_each_item_changes_the_equations_only_where_it_says(item):
     if item == 3:
         vx = vy = ctx.zero
     state, items = (x, y, vx, vy), frozenset({item})
-    assert derivatives(state, truncated(k, items), ctx, items) == pytest.approx(derivatives(state, k, ctx), abs=1e-25)
+    assert derivatives(state, truncated(k, items), ctx, items) == pytest.approx(
+        derivatives(state, k, ctx), abs=1e-25
+    )
 
 
 # Harmonic pendulum on a turntable --------------------------------------------------------------------------------
@@ -104,7 +106,9 @@ def test_the_solution_6_1_solves_the_system_of_section_5():
 
     states = integrate(("x", "y", "vx", "vy"), section_5, (*place[:2], *speed[:2]), DAY)
     rows = APPROXIMATIONS["gastebois_6_1"].trajectory(MOVING, DAY)
-    along = np.column_stack([np.asarray(part, dtype=float) for part in plumb.inward(tuple(rows.T[:3]))])
+    along = np.column_stack(
+        [np.asarray(part, dtype=float) for part in plumb.inward(tuple(rows.T[:3]))]
+    )
     assert np.max(np.abs(along[:, :2] - states[:, :2])) < 1e-10
 
 
@@ -138,7 +142,12 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
     plumb = case.plumb
     (x, y, z), (vx, vy, vz) = plumb.inward(case.position), plumb.inward(case.velocity)
     aside = case.ctx.hypot(x, y)
-    start = (case.ctx.atan2(aside, -z), case.ctx.atan2(y, x), vz / aside, (x * vy - y * vx) / aside**2)
+    start = (
+        case.ctx.atan2(aside, -z),
+        case.ctx.atan2(y, x),
+        vz / aside,
+        (x * vy - y * vx) / aside**2,
+    )
     fall, rate, latitude = (
         float(v) for v in (case.apparent_gravity / case.length, case.k.rate, case.apparent_latitude)
     )
@@ -155,11 +164,18 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
         )
 
     times = np.linspace(0.0, 600.0, 301)
-    theta, phi, _, _ = integrate(("theta", "phi", "theta_rate", "phi_rate"), section_7_2, start, times).T
+    theta, phi, _, _ = integrate(
+        ("theta", "phi", "theta_rate", "phi_rate"), section_7_2, start, times
+    ).T
     rows = APPROXIMATIONS["gastebois_general"].trajectory(scene, times)
     along = plumb.inward(tuple(rows.T[:3]))
-    expected = 67 * np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), -np.cos(theta)])
-    assert np.max(np.abs(np.array([np.asarray(part, dtype=float) for part in along]) - expected)) < 1e-10
+    expected = 67 * np.array(
+        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), -np.cos(theta)]
+    )
+    assert (
+        np.max(np.abs(np.array([np.asarray(part, dtype=float) for part in along]) - expected))
+        < 1e-10
+    )
 
 
 # Plane, cone, and the linear system --------------------------------------------------------------------------------
@@ -176,9 +192,16 @@ def test_the_fourier_series_are_jacobis_functions(modulus):
 
 @pytest.mark.parametrize("angle", ["5", "89", "135", "179"])
 def test_the_plane_pendulum_is_the_reference_without_rotation_at_any_amplitude(angle):
-    scene = parse_scene({"id": "plane", "site": {"rotation_rate": "0"}, "release": {"angle": angle, "azimuth": "127"}})
+    scene = parse_scene(
+        {
+            "id": "plane",
+            "site": {"rotation_rate": "0"},
+            "release": {"angle": angle, "azimuth": "127"},
+        }
+    )
     times = np.linspace(0.0, 200.0, 401)
-    truth = trajectory(scene, times, number=LONG_DOUBLE)  # near the top a rounding grows by four decades
+    # near the top a rounding grows by four decades
+    truth = trajectory(scene, times, number=LONG_DOUBLE)
     assert np.max(np.abs(APPROXIMATIONS["planar"].trajectory(scene, times) - truth)) < 1e-10
 
 
@@ -191,7 +214,9 @@ def test_the_conical_pendulum_goes_round_either_way():
 
 
 def test_the_linear_solution_is_the_exponential_of_its_matrix():
-    scene = MOVING.with_values(["site.equatorial_radius=500", "site.rotation_rate=0.05", "release.x=0.1"])
+    scene = MOVING.with_values(
+        ["site.equatorial_radius=500", "site.rotation_rate=0.05", "release.x=0.1"]
+    )
     case = PaperCase.of_scene(scene)
     a, b, turn = stiffness(case)
     plumb = plumb_line(case)
@@ -208,7 +233,9 @@ def test_the_linear_solution_is_the_exponential_of_its_matrix():
 
 
 def test_the_linear_system_is_the_derivative_of_the_model_at_its_point_of_rest():
-    case = PaperCase.of_scene(MOVING.with_values(["site.rotation_rate=0.02", "site.equatorial_radius=3000"]))
+    case = PaperCase.of_scene(
+        MOVING.with_values(["site.rotation_rate=0.02", "site.equatorial_radius=3000"])
+    )
     ctx = case.ctx
     a, b, turn = stiffness(case)
     plumb, rest = plumb_line(case), case.rest
@@ -221,7 +248,9 @@ def test_the_linear_system_is_the_derivative_of_the_model_at_its_point_of_rest()
 
     for axis, stiff in zip(axes, ((-a, 0), (0, -b)), strict=True):
         moved = felt(tuple(r + tiny * e for r, e in zip(rest, axis, strict=True)), (0, 0, 0))
-        assert [float(part / tiny) for part in moved] == pytest.approx([float(s) for s in stiff], abs=1e-18)
+        assert [float(part / tiny) for part in moved] == pytest.approx(
+            [float(s) for s in stiff], abs=1e-18
+        )
     pushed = felt(rest, tuple(tiny * e for e in axes[1]))
     assert float(pushed[0] / tiny) == pytest.approx(float(2 * turn), rel=1e-15)
 
@@ -230,7 +259,11 @@ def test_at_the_pole_the_linear_frequencies_are_those_of_a_turntable():
     a, b, turn = stiffness(PaperCase.of_scene(load_scene("pole")))
     rate = mpmath.mpf("7.292115e-5")
     assert float(turn) == pytest.approx(float(rate), rel=1e-15)
-    assert float(a) == float(b) == pytest.approx(float(mpmath.mpf("9.80665") / 67 - rate**2), rel=1e-15)
+    assert (
+        float(a)
+        == float(b)
+        == pytest.approx(float(mpmath.mpf("9.80665") / 67 - rate**2), rel=1e-15)
+    )
 
 
 # What every motion keeps ---------------------------------------------------------------------------------------------
@@ -270,6 +303,8 @@ def test_the_sense_of_rotation_follows_the_hemisphere():
             rows = APPROXIMATIONS[word].trajectory(scene, np.linspace(0.0, 7200.0, 4001))
             north = float(PaperCase.of_scene(scene).rest[1] * 67)
             far = np.argsort(-np.hypot(rows[:, 0], rows[:, 1] - north))[:200]
-            azimuth = np.unwrap(2 * np.arctan2(rows[far, 1] - north, rows[far, 0])[np.argsort(far)]) / 2
+            azimuth = (
+                np.unwrap(2 * np.arctan2(rows[far, 1] - north, rows[far, 0])[np.argsort(far)]) / 2
+            )
             assert np.sign(azimuth[-1] - azimuth[0]) == sense
             assert all(b * sense >= a * sense - 1e-2 for a, b in pairwise(azimuth))

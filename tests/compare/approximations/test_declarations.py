@@ -64,11 +64,15 @@ def test_a_motion_that_comes_to_the_horizontal_comes_to_an_end():
 def test_a_scene_outside_the_domain_is_refused_with_the_reason(word, change, reason):
     declared, scene = APPROXIMATIONS[word], PARIS.with_values([change])
     with pytest.raises(InputError, match=reason) as refused:
-        declared.trajectory(scene, [0.0, 1.0]) if isinstance(declared, Motion) else declared.value(scene)
+        declared.trajectory(scene, [0.0, 1.0]) if isinstance(declared, Motion) else declared.value(
+            scene
+        )
     assert word in str(refused.value)
 
 
-@pytest.mark.parametrize("word", ["linear_g", "mathar_item_1", "linear_3d", "gastebois_6_1", "conical"])
+@pytest.mark.parametrize(
+    "word", ["linear_g", "mathar_item_1", "linear_3d", "gastebois_6_1", "conical"]
+)
 def test_above_the_suspension_the_plane_forms_say_so(word):
     with pytest.raises(InputError, match="below the suspension"):
         APPROXIMATIONS[word].trajectory(load_scene("two_radians"), [0.0])

@@ -37,14 +37,18 @@ def gastebois(sidereal_hours="23.93", latitude="48.87"):
 def test_the_frequency_of_the_reference_is_the_papers_cut_off_after_nine_decimals():
     hertz = frequency(PARIS, 1000)
     assert math.floor(hertz * 1e9) == 60843633
-    assert float(APPROXIMATIONS["frequency_anharmonic"].value(PARIS)) == pytest.approx(hertz, rel=1e-8)
+    assert float(APPROXIMATIONS["frequency_anharmonic"].value(PARIS)) == pytest.approx(
+        hertz, rel=1e-8
+    )
 
 
 def test_the_series_47_comes_nearer_with_every_order():
     truth = APPROXIMATIONS["rest_equation"].value(PARIS)
     gaps = [abs(APPROXIMATIONS[f"rest_series_{i}"].value(PARIS) / truth - 1) for i in (1, 2, 3)]
     assert [f"{float(gap):.0e}" for gap in gaps] == ["1e-03", "1e-06", "1e-09"]
-    assert float(APPROXIMATIONS["rest_triangle"].value(PARIS) / truth - 1) == pytest.approx(67 / 6390000, rel=0.02)
+    assert float(APPROXIMATIONS["rest_triangle"].value(PARIS) / truth - 1) == pytest.approx(
+        67 / 6390000, rel=0.02
+    )
 
 
 # Gastebois -----------------------------------------------------------------------------------------------------------
@@ -91,7 +95,8 @@ def test_the_spherical_drift_is_nearer_to_the_truth_at_the_pole_than_without():
     scene = load_scene("pantheon", ["site.latitude=90"])
     truth = precession_period(scene)
     gaps = {
-        w: abs(float(APPROXIMATIONS[w].value(scene)) / truth - 1) for w in ("precession_tilted", "precession_spherical")
+        w: abs(float(APPROXIMATIONS[w].value(scene)) / truth - 1)
+        for w in ("precession_tilted", "precession_spherical")
     }
     assert gaps["precession_tilted"] == pytest.approx(3 / 8 * (6.5 / 67) ** 2, rel=0.01)
     assert gaps["precession_spherical"] < 0.02 * gaps["precession_tilted"]
@@ -103,7 +108,9 @@ def test_the_printed_45_has_no_solution_in_paris():
     ctx, cord, s, c, R = case.ctx, case.length, case.k.sin, case.k.cos, case.axis_distance
 
     def right_side(y):
-        inner = ctx.sqrt(cord**2 - y**2) * (y - R * s - 2 * y * c**2) + c * (R * y + (cord**2 - 2 * y**2) * s)
+        inner = ctx.sqrt(cord**2 - y**2) * (y - R * s - 2 * y * c**2) + c * (
+            R * y + (cord**2 - 2 * y**2) * s
+        )
         return inner * case.k.rate**2 / case.gravity
 
     rest = -cord * ctx.sin(APPROXIMATIONS["rest_equation"].value(PARIS))

@@ -16,11 +16,13 @@ def test_paris_as_it_is_read():
     folder = load("paris").path
     golden, zeros = read(folder / "grid.csv"), read_transits(folder / "transits.csv")
     assert len(golden.t) == 1441  # a row a minute for a day, and the release
-    assert np.hypot(golden.columns["x"][0], golden.columns["y"][0]) == pytest.approx(0.5)  # m: 3, 4, 5
+    # m: 3, 4, 5
+    assert np.hypot(golden.columns["x"][0], golden.columns["y"][0]) == pytest.approx(0.5)
     assert golden.columns["z"][0] == pytest.approx(
         -66.998, abs=1e-3
     )  # m: 0.5² / (2 * 67) = 0.002 above the lowest point
-    assert zeros[0] == pytest.approx(16.42 / 2, abs=0.02)  # s: from one end of a swing in x to the other
+    # s: from one end of a swing in x to the other
+    assert zeros[0] == pytest.approx(16.42 / 2, abs=0.02)
     assert len(zeros) == pytest.approx(86400 / 8.218, abs=2)
 
 

@@ -47,12 +47,16 @@ def children_s() -> float:
 
 
 def test_placeholders_are_the_scenes_own_words(paris):
-    words = arguments("prog {x0} --l={length} '{t_end} s' {latitude} {vx0} {inverse_flattening}", paris)
+    words = arguments(
+        "prog {x0} --l={length} '{t_end} s' {latitude} {vx0} {inverse_flattening}", paris
+    )
     assert words == ["prog", "0.3", "--l=67", "86400 s", "48.846111", "0.0", "298.257223564"]
 
 
 def test_what_a_scene_gives_in_angles_is_also_there_in_metres():
-    scene = make_scene(pendulum={"length": "2"}, release={"angle": "90", "azimuth": "0", "azimuth_rate": "90"})
+    scene = make_scene(
+        pendulum={"length": "2"}, release={"angle": "90", "azimuth": "0", "azimuth_rate": "90"}
+    )
     known = placeholders(scene)
     assert (known["angle"], known["azimuth_rate"], known["angle_rate"]) == ("90", "90", "0")
     assert float(known["x0"]) == 2.0
@@ -62,7 +66,14 @@ def test_what_a_scene_gives_in_angles_is_also_there_in_metres():
 
 def test_no_shell_is_between(paris):
     assert arguments("echo $HOME ';' rm '*'", paris) == ["echo", "$HOME", ";", "rm", "*"]
-    assert arguments("sh -c './a | ./b > c' '|' \\> it\\'s", paris) == ["sh", "-c", "./a | ./b > c", "|", ">", "it's"]
+    assert arguments("sh -c './a | ./b > c' '|' \\> it\\'s", paris) == [
+        "sh",
+        "-c",
+        "./a | ./b > c",
+        "|",
+        ">",
+        "it's",
+    ]
 
 
 def test_braces_that_are_no_placeholder_stay_and_doubled_ones_too(paris):
@@ -187,7 +198,9 @@ def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, l
 
 
 def test_nobody_elses_processes_are_ended_with_a_program():
-    with subprocess.Popen(python("import signal; signal.pause()"), start_new_session=True) as bystander:
+    with subprocess.Popen(
+        python("import signal; signal.pause()"), start_new_session=True
+    ) as bystander:
         run_program(python("print(1)"))[0].close()
         assert alive(bystander.pid)
         bystander.kill()
@@ -238,11 +251,15 @@ def test_repeats_are_timed_after_a_warm_up(tmp_path):
     assert (took.runs, took.warm, took.spread) == (1, False, 0.0)  # nothing warmed it up
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGHUP])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGHUP]
+)
 def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     words, note = parent(tmp_path, "signal.pause()")
     command = ["score", "paris", "--run", shlex.join(words)]
-    status, err, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", number)
+    status, err, group = interrupted(
+        command, lambda *_: note.exists() and note.read_text() != "", number
+    )
     assert status == 128 + number
     assert b"Traceback" not in err
     if number == signal.SIGINT:
@@ -251,14 +268,20 @@ def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     assert gone_within(group, PATIENCE_S)
 
 
-@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="what left the group is found in /proc")
-@pytest.mark.parametrize("program", [PARENT.format(then="signal.pause()"), DAEMON + "signal.pause()"])
+@pytest.mark.skipif(
+    not Path("/proc/self/environ").exists(), reason="what left the group is found in /proc"
+)
+@pytest.mark.parametrize(
+    "program", [PARENT.format(then="signal.pause()"), DAEMON + "signal.pause()"]
+)
 def test_killed_it_takes_the_program_with_it(tmp_path, program):
     """Nothing can be done on SIGKILL, such as that of a server which is out of memory."""
     note = tmp_path / "pid"
     begin = "import os, sys; open(sys.argv[1] + '.leader', 'w').write(str(os.getpid()))\n"
     command = ["score", "paris", "--run", shlex.join([*python(begin + program), str(note)])]
-    status, _, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", signal.SIGKILL)
+    status, _, group = interrupted(
+        command, lambda *_: note.exists() and note.read_text() != "", signal.SIGKILL
+    )
     assert status == -signal.SIGKILL
     leader, child = int((tmp_path / "pid.leader").read_text()), int(note.read_text().split()[0])
     assert ends_within(leader, PATIENCE_S) and ends_within(child, PATIENCE_S)
@@ -270,7 +293,9 @@ def test_a_script_of_ones_own_that_is_ended_ends_the_program_it_runs(tmp_path, n
     """As a method in C is run from Python, without the command line, which turns signals into exceptions itself."""
     words, note = parent(tmp_path, "signal.pause()")
     script = f"from compare.candidates.external import run_program; run_program({words!r})"
-    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, stderr=subprocess.DEVNULL) as process:
+    with subprocess.Popen(
+        [sys.executable, "-c", script], cwd=ROOT, stderr=subprocess.DEVNULL
+    ) as process:
         deadline = time.monotonic() + PATIENCE_S
         while not (note.exists() and note.read_text()):
             assert process.poll() is None and time.monotonic() < deadline

@@ -22,11 +22,27 @@ FILES = [
     HEAD + b"0,1\n", HEAD + b"0,1,2,3\n", HEAD + b'0,"1\n2",3\n', HEAD + b"1,1,1\n0,1,1\n", HEAD + b"0," + b"1" * 10**7,
     b"PK\x03\x04", b"PK\x05\x06" + bytes(18), b"\x93NUMPY\x01\0", b"\x80\x04.", GOOD.replace(b"\n", b"\r"), b"a" * 10**7
 ]  # fmt: skip
-ASSIGNED = [*("site.gravity=" + field for field in FIELDS), "title=a\rb", "id=\x1b", "flags=\x9b", "a.b.c.d=1"]
-COMMANDS = ["'", "{", "{nothing}", "| x", "/no/such/program \0", "/no/such/program \ud800", "/no/such/" + "x" * 10**5]
+ASSIGNED = [
+    *("site.gravity=" + field for field in FIELDS),
+    "title=a\rb",
+    "id=\x1b",
+    "flags=\x9b",
+    "a.b.c.d=1",
+]
+COMMANDS = [
+    "'",
+    "{",
+    "{nothing}",
+    "| x",
+    "/no/such/program \0",
+    "/no/such/program \ud800",
+    "/no/such/" + "x" * 10**5,
+]
 
 
-@pytest.mark.parametrize("hostile", [*FILES, *ASSIGNED, *COMMANDS], ids=lambda hostile: ascii(hostile)[:30])
+@pytest.mark.parametrize(
+    "hostile", [*FILES, *ASSIGNED, *COMMANDS], ids=lambda hostile: ascii(hostile)[:30]
+)
 def test_it_is_refused_in_one_short_line(paris, tmp_path, hostile):
     file = tmp_path / "file"
     with pytest.raises(FoucaultError) as caught:

@@ -47,7 +47,11 @@ PROGRAMS = {
         "for (double[] b : r) {{ double t = b[0], x = b[1], y = b[2];\n{each}\n}} }} }}\n",
         "{{{}, {}, {}}}",
     ),
-    "javascript": ("program.js", "{once}\nfor (const [t, x, y] of [{rows}]) {{\n{each}\n}}\n", "[{}, {}, {}]"),
+    "javascript": (
+        "program.js",
+        "{once}\nfor (const [t, x, y] of [{rows}]) {{\n{each}\n}}\n",
+        "[{}, {}, {}]",
+    ),
     "julia": ("program.jl", "{once}\nfor (t, x, y) in [{rows}]\n{each}\nend\n", "({}, {}, {})"),
     "octave": (
         "program.m",
@@ -60,7 +64,11 @@ PROGRAMS = {
         "{}, {}, {};",
     ),
     "python": ("program.py", "{once}\nfor t, x, y in [{rows}]:\n    {each}\n", "({}, {}, {})"),
-    "numpy": ("program.py", "import numpy as np\nt, x, y = np.array([{rows}]).T\n{once}\n{each}\n", "({}, {}, {})"),
+    "numpy": (
+        "program.py",
+        "import numpy as np\nt, x, y = np.array([{rows}]).T\n{once}\n{each}\n",
+        "({}, {}, {})",
+    ),
     "r": (
         "program.R",
         "{once}\nfor (a in list({rows})) {{ t <- a[1]; x <- a[2]; y <- a[3]\n{each}\n}}\n",
@@ -104,26 +112,41 @@ def test_the_lines_of_a_language_write_what_is_read_back(language, tmp_path, mon
     if tool is not None and shutil.which(tool) is None:
         pytest.skip(f"{tool} is not installed")
     golden = load("paris.binary64")
-    rows = [(0.0, 0.3, 0.4), (60.0, float(golden.x[1]), float(golden.y[1])), (86400 - 1 / 3, 1e-5 / 3, -1e-300)]
+    rows = [
+        (0.0, 0.3, 0.4),
+        (60.0, float(golden.x[1]), float(golden.y[1])),
+        (86400 - 1 / 3, 1e-5 / 3, -1e-300),
+    ]
     file, frame, row = PROGRAMS[language]
-    texts = [row.format(*map(repr, numbers)).replace("e-", "d-" if language == "fortran" else "e-") for numbers in rows]
+    texts = [
+        row.format(*map(repr, numbers)).replace("e-", "d-" if language == "fortran" else "e-")
+        for numbers in rows
+    ]
     if language == "fortran":
         texts = [text.replace("d0", "") if "d-" in text else text for text in texts]
     snippet = SNIPPETS[language]
     program = frame.format(
-        once=snippet.once, each=snippet.each, shell=snippet.shell, n=len(rows), rows=", ".join(texts).replace(";,", ";")
+        once=snippet.once,
+        each=snippet.each,
+        shell=snippet.shell,
+        n=len(rows),
+        rows=", ".join(texts).replace(";,", ";"),
     )
     (tmp_path / file).write_text(program)
     monkeypatch.chdir(tmp_path)
     if language in COMPILE:
         subprocess.run(shlex.split(COMPILE[language]), check=True, capture_output=True)
     command, *_ = snippet.shell.partition(" > ")
-    done = subprocess.run(shlex.split(RUN.get(language, command)), check=True, capture_output=True, text=True)
+    done = subprocess.run(
+        shlex.split(RUN.get(language, command)), check=True, capture_output=True, text=True
+    )
     path = Path("mine.csv")
     if not path.exists():
         path.write_text(done.stdout)
     found = read(path)
-    columns = zip(found.t.tolist(), found.columns["x"].tolist(), found.columns["y"].tolist(), strict=True)
+    columns = zip(
+        found.t.tolist(), found.columns["x"].tolist(), found.columns["y"].tolist(), strict=True
+    )
     if language == "numpy":  # savetxt prints 19 digits of its own accord
         assert path.read_text().startswith("# t,x,y\n")
     assert [*columns] == rows

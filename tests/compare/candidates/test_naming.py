@@ -63,7 +63,14 @@ def test_the_columns_own_name_wins_over_other_words_for_it():
 
 
 def test_lines_above_the_header_do_no_harm():
-    lines = ["Foucault pendulum, version 1.2", "% l = 67 m", "", "# t y x", "# all in SI units", "0 0.4 0.3"]
+    lines = [
+        "Foucault pendulum, version 1.2",
+        "% l = 67 m",
+        "",
+        "# t y x",
+        "# all in SI units",
+        "0 0.4 0.3",
+    ]
     found = read_stream(text(*lines), "run")
     assert (found.columns["x"][0], found.columns["y"][0]) == (0.3, 0.4)
     with pytest.raises(InputError, match="a row of numbers before it"):
@@ -74,12 +81,16 @@ def test_the_nearest_header_counts():
     assert read_stream(text("# t x y", "# t y x", "0 1 2"), "run").columns["x"][0] == 2
 
 
-@pytest.mark.parametrize(("count", "names"), [(3, "t, x, y"), (4, "t, x, y, z"), (7, "t, x, y, z, vx, vy, vz")])
+@pytest.mark.parametrize(
+    ("count", "names"), [(3, "t, x, y"), (4, "t, x, y, z"), (7, "t, x, y, z, vx, vy, vz")]
+)
 @pytest.mark.parametrize("separator", [",", ";", " ", "\t"])
 def test_without_a_header_the_number_of_columns_tells(count, names, separator):
     found = read_stream(text(separator.join(map(str, range(count)))), "run")
     assert ["t", *found.columns] == names.split(", ")
-    assert said(found) == {"no_header": f"no header: the columns are taken as {names} (--columns names others)"}
+    assert said(found) == {
+        "no_header": f"no header: the columns are taken as {names} (--columns names others)"
+    }
 
 
 def test_columns_named_by_the_user(tmp_path):
@@ -89,7 +100,8 @@ def test_columns_named_by_the_user(tmp_path):
     assert (found.t[0], found.columns["x"][0], found.columns["y"][0]) == (1.5, 0.3, 0.4)
     assert "no_header" not in said(found)
     path.write_text("a,b,c\n0,1,2\n")
-    assert read(path, columns=["t", "x", "y"]).columns["x"][0] == 1  # a header that says nothing is overruled
+    # a header that says nothing is overruled
+    assert read(path, columns=["t", "x", "y"]).columns["x"][0] == 1
 
 
 @pytest.mark.parametrize(
@@ -123,7 +135,9 @@ def test_units_of_the_user_hold_where_the_header_names_none():
         **dict.fromkeys("xyz", "cm"),
         **dict.fromkeys(("vx", "vy", "vz"), "cm/s"),
     }
-    found = read_stream(text("t,x,y,vx", "2000,30,40,5"), "run", naming=Naming((), ("milliseconds", "cm")))
+    found = read_stream(
+        text("t,x,y,vx", "2000,30,40,5"), "run", naming=Naming((), ("milliseconds", "cm"))
+    )
     assert (found.t[0], found.columns["x"][0], found.columns["vx"][0]) == (2.0, 0.3, 0.05)
     with pytest.raises(InputError, match="no other unit of t than min"):
         read_stream(text("t (min),x,y", "2,30,40"), "run", naming=Naming((), ("ms",)))
@@ -165,8 +179,13 @@ def test_every_unit_has_a_long_name_for_messages():
 
 def test_units_of_speed():
     assert size_of("km/h", "vx") * 36 == 10
-    assert all(size_of(word, "vx") == 1 for word in ("m/s", "mps", "m_s", "m s^-1", "m·s⁻¹", "ms", "m per s"))
-    assert size_of("m", "vx") is None and size_of("s", "x") is None and size_of("furlong", "x") is None
+    assert all(
+        size_of(word, "vx") == 1
+        for word in ("m/s", "mps", "m_s", "m s^-1", "m·s⁻¹", "ms", "m per s")
+    )
+    assert (
+        size_of("m", "vx") is None and size_of("s", "x") is None and size_of("furlong", "x") is None
+    )
 
 
 def score(foucault, tmp_path, scale, *words, times=1.0, name="mine.csv"):
@@ -178,9 +197,14 @@ def score(foucault, tmp_path, scale, *words, times=1.0, name="mine.csv"):
 
 @pytest.mark.parametrize(
     ("scale", "words", "id_"),
-    [(1000.0, "they are millimetres; --units mm reads them so", "scale"), (150.0, "are 150 pixels, or", "scale")],
+    [
+        (1000.0, "they are millimetres; --units mm reads them so", "scale"),
+        (150.0, "are 150 pixels, or", "scale"),
+    ],
 )
-def test_positions_beyond_the_cord_are_said_to_be_in_another_unit(foucault, tmp_path, scale, words, id_):
+def test_positions_beyond_the_cord_are_said_to_be_in_another_unit(
+    foucault, tmp_path, scale, words, id_
+):
     status, out, _ = score(foucault, tmp_path, scale, "--json")
     (convention,) = json.loads(out)["conventions"]
     assert status == 1
@@ -194,7 +218,10 @@ def test_pixels_with_another_origin_are_not_given_a_scale(foucault, tmp_path):
     status, out, _ = foucault("score", "paris", tmp_path / "px.csv", "--no-diagnosis", "--json")
     (convention,) = json.loads(out)["conventions"]
     assert status == 1
-    assert convention["id"] == "beyond_the_cord" and "pixels, another unit, or another pendulum?" in convention["text"]
+    assert (
+        convention["id"] == "beyond_the_cord"
+        and "pixels, another unit, or another pendulum?" in convention["text"]
+    )
 
 
 @pytest.mark.parametrize(
@@ -202,7 +229,10 @@ def test_pixels_with_another_origin_are_not_given_a_scale(foucault, tmp_path):
     [
         (1e3, "They look like milliseconds: --units ms reads them so, and they end at 1800 s."),
         (1e6, "They look like microseconds: --units us"),
-        (50.0, "--t-end 86400 leaves out later rows, --set run.t_end=90000 makes the scene longer."),
+        (
+            50.0,
+            "--t-end 86400 leaves out later rows, --set run.t_end=90000 makes the scene longer.",
+        ),
     ],
 )
 def test_times_beyond_the_end_are_told_what_they_may_be(foucault, tmp_path, times, said):

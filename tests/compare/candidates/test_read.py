@@ -77,12 +77,19 @@ def test_csv_is_read_from_a_stream_a_path_and_standard_input(tmp_path, monkeypat
 
 def test_columns_may_come_in_any_order_and_others_are_passed_over():
     rows = [(z, "tilt", y, 1 / 3, t, x) for t, x, y, z in ROWS]
-    lines = [",".join(item if isinstance(item, str) else repr(item) for item in row) for row in rows]
+    lines = [
+        ",".join(item if isinstance(item, str) else repr(item) for item in row) for row in rows
+    ]
     assert_read(read_stream(text("z,comment,y,energy,t,x", *lines), "run"))
 
 
 def test_spaces_quotes_capitals_a_byte_order_mark_and_windows_line_ends_do_no_harm():
-    lines = ['\ufeff "T", X ,y, z ', *(" , ".join(map(repr, row)) + " " for row in ROWS), "", "# the end"]
+    lines = [
+        '\ufeff "T", X ,y, z ',
+        *(" , ".join(map(repr, row)) + " " for row in ROWS),
+        "",
+        "# the end",
+    ]
     assert_read(read_stream(io.BytesIO("\r\n".join([*lines, ""]).encode()), "run"))
 
 
@@ -126,16 +133,27 @@ def test_what_numpy_savetxt_writes_is_read():
 
 
 @pytest.mark.parametrize("mark", ["", "# "])
-@pytest.mark.parametrize(("put", "named"), [(",", ","), (";", ";"), (" ", " "), ("\t", "  "), (" ", ","), (",", " ")])
+@pytest.mark.parametrize(
+    ("put", "named"), [(",", ","), (";", ";"), (" ", " "), ("\t", "  "), (" ", ","), (",", " ")]
+)
 def test_names_are_read_whatever_separates_them(mark, put, named):
     """White space under a header in another order was once taken for foucPend's t x y z."""
     rows = [put.join(map(repr, (z, y, t, x))) for t, x, y, z in ROWS]
-    assert_read(read_stream(text("# of a program of mine", mark + named.join(("z", "y", "t", "x")), *rows), "run"))
+    assert_read(
+        read_stream(
+            text("# of a program of mine", mark + named.join(("z", "y", "t", "x")), *rows), "run"
+        )
+    )
 
 
 def test_velocities_under_a_header_of_white_space_are_not_taken_for_z():
     found = read_stream(text("# t x y vx vy", "0 1 2 3 4"), "run")
-    assert {name: column[0] for name, column in found.columns.items()} == {"x": 1, "y": 2, "vx": 3, "vy": 4}
+    assert {name: column[0] for name, column in found.columns.items()} == {
+        "x": 1,
+        "y": 2,
+        "vx": 3,
+        "vy": 4,
+    }
 
 
 def test_the_output_of_the_papers_program_is_read_with_its_transits():
@@ -149,19 +167,26 @@ def test_the_output_of_the_papers_program_is_read_with_its_transits():
 
 def test_an_archive_is_read_with_its_transits():
     arrays = dict(zip("txyz", map(np.array, (TIMES, X, Y, Z)), strict=True))
-    found = read_stream(archive(**arrays, transits=np.array([8.2, 16.4]), other=np.array(["a"])), "run")
+    found = read_stream(
+        archive(**arrays, transits=np.array([8.2, 16.4]), other=np.array(["a"])), "run"
+    )
     assert_read(found)
     assert found.transits.tolist() == [8.2, 16.4]
 
 
 def test_digits_beyond_a_double_are_kept():
-    found = read_stream(text("t,x,y", "0,0.30000000000000000000,0.4", "0.1,0.12345678901234567890123,0.4"), "run")
+    found = read_stream(
+        text("t,x,y", "0,0.30000000000000000000,0.4", "0.1,0.12345678901234567890123,0.4"), "run"
+    )
     assert found.extended
     assert found.columns["x"][1] + found.low["x"][1] == found.columns["x"][1]
-    assert found.low["x"][1] == pytest.approx(0.12345678901234567890123 - 0.12345678901234568, abs=1e-17)
+    assert found.low["x"][1] == pytest.approx(
+        0.12345678901234567890123 - 0.12345678901234568, abs=1e-17
+    )
     exact = [0.0, 1.0 * (10**17 // 10) / 10**17]
     assert exact[1] == 0.1
-    assert found.low["t"][1] == pytest.approx(-5.551115123125783e-18, rel=1e-12)  # 1/10 minus its double
+    # 1/10 minus its double
+    assert found.low["t"][1] == pytest.approx(-5.551115123125783e-18, rel=1e-12)
 
 
 def test_a_double_printed_with_many_digits_is_still_a_double():
@@ -175,12 +200,15 @@ def test_an_archive_of_long_doubles_keeps_their_digits():
     x = np.array([1, 2], dtype=np.longdouble) / 3
     found = read_stream(archive(t=np.array([0.0, 1.0]), x=x, y=np.zeros(2)), "run")
     assert found.extended
-    assert np.array_equal(found.columns["x"].astype(np.longdouble) + found.low["x"].astype(np.longdouble), x)
+    assert np.array_equal(
+        found.columns["x"].astype(np.longdouble) + found.low["x"].astype(np.longdouble), x
+    )
 
 
 def test_an_exponent_beyond_reason_costs_nothing():
     found = read_stream(
-        text("t,x,y", "0,1.0000000000000000000001e-999999999,0.4", "1,0.30000000000000000001,0.4"), "run"
+        text("t,x,y", "0,1.0000000000000000000001e-999999999,0.4", "1,0.30000000000000000001,0.4"),
+        "run",
     )
     assert found.columns["x"][0] == 0
     assert found.low["x"][0] == 0
@@ -199,7 +227,9 @@ def test_a_text_in_another_encoding_is_told_as_that(order):
         read_stream(io.BytesIO("\ufefft,x,y\n0,0.3,0.4\n".encode(order)), "run")
 
 
-@pytest.mark.parametrize(("kind", "pack"), [("gzip", gzip.compress), ("bzip2", bz2.compress), ("xz", lzma.compress)])
+@pytest.mark.parametrize(
+    ("kind", "pack"), [("gzip", gzip.compress), ("bzip2", bz2.compress), ("xz", lzma.compress)]
+)
 def test_a_packed_file_is_told_as_that(kind, pack):
     with pytest.raises(InputError, match=f"got '{kind}', expected text in UTF-8. Unpack it first"):
         read_stream(io.BytesIO(pack(b"t,x,y\n0,0.3,0.4\n")), "run")
@@ -264,8 +294,14 @@ def test_what_is_wrong_with_a_text_is_said_with_its_place(lines, words):
         ({"t": [0.0], "x": [1j], "y": [1.0]}, ("run: x", "complex128", "real")),
         ({"t": [0.0], "x": ["a"], "y": [1.0]}, ("run: x", "real numbers")),
         ({"t": [True], "x": [1.0], "y": [1.0]}, ("run: t", "bool")),
-        ({"t": [0.0], "x": [1.0], "y": [1.0], "transits": [2.0, 1.0]}, ("run: transits", "1 as transit 2 after 2")),
-        ({"t": [0.0], "x": [1.0], "y": [1.0], "transits": [[2.0]]}, ("run: transits", "one-dimensional")),
+        (
+            {"t": [0.0], "x": [1.0], "y": [1.0], "transits": [2.0, 1.0]},
+            ("run: transits", "1 as transit 2 after 2"),
+        ),
+        (
+            {"t": [0.0], "x": [1.0], "y": [1.0], "transits": [[2.0]]},
+            ("run: transits", "one-dimensional"),
+        ),
     ],
 )
 def test_what_is_wrong_with_an_archive_is_said(arrays, words):
@@ -286,7 +322,10 @@ def test_a_zip_file_of_something_else_is_refused():
 
 def test_an_archive_that_unpacks_to_more_than_is_read_is_refused_unopened():
     stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as made, made.open("t.npy", "w") as member:
+    with (
+        zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as made,
+        made.open("t.npy", "w") as member,
+    ):
         zeros = bytes(1 << 24)
         for _ in range(MAX_UNPACKED // len(zeros) + 1):
             member.write(zeros)
@@ -295,7 +334,8 @@ def test_an_archive_that_unpacks_to_more_than_is_read_is_refused_unopened():
 
 
 @pytest.mark.parametrize(
-    "junk", [bytes(range(256)) * 4, b"\xff\xfe0\x00,\x00", b"PK\x03\x04 and nothing more", b"\0" * 64]
+    "junk",
+    [bytes(range(256)) * 4, b"\xff\xfe0\x00,\x00", b"PK\x03\x04 and nothing more", b"\0" * 64],
 )
 def test_binary_junk_is_refused(junk):
     refused(io.BytesIO(junk))
@@ -412,7 +452,8 @@ def test_a_truncated_or_overwritten_file_is_read_or_explained(cut, put):
 
 
 @given(
-    st.lists(st.lists(NUMBERS, min_size=2, max_size=5), min_size=1, max_size=6), st.permutations(["t", "x", "y", "z"])
+    st.lists(st.lists(NUMBERS, min_size=2, max_size=5), min_size=1, max_size=6),
+    st.permutations(["t", "x", "y", "z"]),
 )
 def test_shuffled_repeated_and_infinite_numbers_are_read_or_explained(rows, header):
     lines = [",".join(header), *(",".join(map(repr, row)) for row in rows)]
@@ -477,7 +518,9 @@ def test_a_stream_of_nothing_is_refused_in_bounded_memory(size):
     """Of a tenth of the rows and lines that are allowed a tenth of the memory is taken."""
     part, floods = size((10, FLOODS[:4]), (1, FLOODS))
     program = FLOOD.format(part=part, floods=[flood[:3] for flood in floods])
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True
+    )
     answers = done.stdout.splitlines()
     assert len(answers) == 2 * len(floods)
     for flood, message, megabytes in zip(floods, answers[::2], answers[1::2], strict=True):
@@ -487,6 +530,9 @@ def test_a_stream_of_nothing_is_refused_in_bounded_memory(size):
 
 @pytest.mark.parametrize("quotes", ['""', '"" ""', '" "', '"'])
 def test_a_line_of_quotes_alone_is_no_row(quotes):
-    assert list(read_stream(io.BytesIO(f"{quotes}\nt,x,y\n0,1,1\n1,2,1\n".encode()), "run").t) == [0.0, 1.0]
+    assert list(read_stream(io.BytesIO(f"{quotes}\nt,x,y\n0,1,1\n1,2,1\n".encode()), "run").t) == [
+        0.0,
+        1.0,
+    ]
     with pytest.raises(InputError):
         read_stream(io.BytesIO(quotes.encode()), "run")

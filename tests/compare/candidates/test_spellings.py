@@ -26,7 +26,9 @@ def columns_of(spelling, path):
         if spelling.alone:
             return {"t": read_transits(path).tolist()}
         candidate = read(path)
-        return {"t": candidate.t.tolist()} | {name: column.tolist() for name, column in candidate.columns.items()}
+        return {"t": candidate.t.tolist()} | {
+            name: column.tolist() for name, column in candidate.columns.items()
+        }
     except InputError as error:
         return error
 
@@ -68,21 +70,28 @@ def read_by_the_page(spellings: list[Spelling]) -> list[dict]:
     asked = [{"text": spelling.text, "alone": spelling.alone} for spelling in spellings]
     document = json.dumps({"words": vocabulary(), "texts": asked}, default=plain)
     script = source("reading.js") + RUN
-    done = subprocess.run(["node", "-e", script], input=document, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["node", "-e", script], input=document, capture_output=True, text=True, check=True
+    )
     return json.loads(done.stdout)
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
 def test_the_page_reads_every_spelling_as_the_command_does(tmp_path):
     path = tmp_path / "run.csv"
-    for (name, spelling), mine in zip(SPELLINGS.items(), read_by_the_page([*SPELLINGS.values()]), strict=True):
+    for (name, spelling), mine in zip(
+        SPELLINGS.items(), read_by_the_page([*SPELLINGS.values()]), strict=True
+    ):
         found = columns_of(spelling, path)
         if spelling.columns is None:
             assert mine.get("refused"), (name, mine)
             continue
         assert mine.get("columns") == found, (name, mine)
         if not spelling.alone:
-            wanted = [f"Reading: {one.text.partition(' (--columns')[0]}." for one in read(path).conventions]
+            wanted = [
+                f"Reading: {one.text.partition(' (--columns')[0]}."
+                for one in read(path).conventions
+            ]
             assert [note for note in mine["notes"] if note.startswith("Reading")] == wanted, name
             notes = [note.removesuffix(".") for note in mine["notes"] if "left out" in note]
             assert notes == [note for note in read(path).notes if "left out" in note], name
@@ -106,8 +115,12 @@ def test_what_is_drawn_is_read_as_written_or_refused_and_by_the_page_alike(size,
     found = [columns_of(spelling, tmp_path / "run.csv") for spelling in spellings]
     right = [columns for columns in found if not isinstance(columns, InputError)]
     for spelling, columns in zip(spellings, found, strict=True):
-        assert isinstance(columns, InputError) or is_what_was_written(columns, spelling), spelling.text
-    tally(f"spellings: {len(right)} of {len(spellings)} read as written, {len(spellings) - len(right)} refused")
+        assert isinstance(columns, InputError) or is_what_was_written(columns, spelling), (
+            spelling.text
+        )
+    tally(
+        f"spellings: {len(right)} of {len(spellings)} read as written, {len(spellings) - len(right)} refused"
+    )
     assert len(right) > len(spellings) / 2
     if shutil.which("node") is None:
         return

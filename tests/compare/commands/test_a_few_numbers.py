@@ -11,8 +11,10 @@ def test_a_sweep_from_the_pole_to_paris(foucault):
     pytest.importorskip("pyarrow")
     words = ("--over", "latitude=90,48.846111", "--t-end", "600", "--engine", "heyoka", "--json")
     pole, paris = json.loads(foucault("sweep", "paris", *words)[1])["rows"]
-    assert pole["precession_deg_per_h"] == pytest.approx(-15.04, abs=0.02)  # 360° in a sidereal day of 23.93 h
-    assert paris["precession_deg_per_h"] == pytest.approx(-11.33, abs=0.02)  # times sin 48.85° = 0.753
+    # 360° in a sidereal day of 23.93 h
+    assert pole["precession_deg_per_h"] == pytest.approx(-15.04, abs=0.02)
+    # times sin 48.85° = 0.753
+    assert paris["precession_deg_per_h"] == pytest.approx(-11.33, abs=0.02)
     assert 1 / paris["frequency_hz"] == pytest.approx(16.43, abs=0.01)  # s: 2π √(67 / 9.8)
 
 

@@ -23,7 +23,8 @@ SCENE = (
     'id = "{name}"\ninputs = "binary64"\n[pendulum]\nlength = "2"\n[release]\nx = "0.1"\ny = "0.2"\n'
     '[run]\nt_end = "20"\ngrid_step = "5"\ndigits = 22\n'
 )
-OFF = {"right": 0.0, "near": 1e-7, "wrong": 1e-3, "as_wrong": 1e-3 + 1e-7, "worse": 2e-3}  # m; the tolerance is 2e-7 m
+# m; the tolerance is 2e-7 m
+OFF = {"right": 0.0, "near": 1e-7, "wrong": 1e-3, "as_wrong": 1e-3 + 1e-7, "worse": 2e-3}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -42,13 +43,25 @@ def rows(tmp_path_factory):
     states = trajectory(load_scene(folder / "mine.toml"), t)[:, :2]
     for name, off in OFF.items():
         table = np.column_stack([t, states[:, 0] + off, states[:, 1]])
-        np.savetxt(folder / f"{name}.csv", table, delimiter=",", header="t,x,y", fmt="%.17g", comments="")
-    np.savetxt(folder / "short.csv", table[:20], delimiter=",", header="t,x,y", fmt="%.17g", comments="")
+        np.savetxt(
+            folder / f"{name}.csv", table, delimiter=",", header="t,x,y", fmt="%.17g", comments=""
+        )
+    np.savetxt(
+        folder / "short.csv", table[:20], delimiter=",", header="t,x,y", fmt="%.17g", comments=""
+    )
     return folder
 
 
 def judged(foucault, folder, new, old, *words):
-    words = ("score", folder / "mine.toml", folder / f"{new}.csv", "--baseline", old, "--no-diagnosis", *words)
+    words = (
+        "score",
+        folder / "mine.toml",
+        folder / f"{new}.csv",
+        "--baseline",
+        old,
+        "--no-diagnosis",
+        *words,
+    )
     status, out, err = foucault(*words, "--json")
     assert "Traceback" not in err
     document = json.loads(out)
@@ -76,7 +89,9 @@ CASES = [  # version, baseline, exit status, verdict, how the line begins
     ("kind", "new", "old", "status", "verdict", "begins"),
     [*(("file", *case) for case in CASES), *one_in(4, [("document", *case) for case in CASES])],
 )
-def test_the_status_tells_whether_it_became_worse(foucault, rows, tmp_path, kind, new, old, status, verdict, begins):
+def test_the_status_tells_whether_it_became_worse(
+    foucault, rows, tmp_path, kind, new, old, status, verdict, begins
+):
     baseline = rows / f"{old}.csv"
     if kind == "document":
         out = foucault("score", rows / "mine.toml", baseline, "--json", "--no-diagnosis")[1]
@@ -84,10 +99,14 @@ def test_the_status_tells_whether_it_became_worse(foucault, rows, tmp_path, kind
         baseline.write_text(out)
     done, document = judged(foucault, rows, new, baseline)
     since = document["baseline"]
-    assert (done, document["verdict"]) == (status, verdict) and since["text"].startswith(f"{begins} {baseline}: ")
+    assert (done, document["verdict"]) == (status, verdict) and since["text"].startswith(
+        f"{begins} {baseline}: "
+    )
     assert bool(since["worse"]) is bool(status) and since["better"] is begins.startswith("Better")
     expected = pytest.approx(abs(OFF.get(new, 2e-3) - OFF.get(old, 2e-3)), abs=1e-12)
-    assert since["apart_m"] == expected and (since["apart_m"] == 0) is ("no position changed" in since["text"])
+    assert since["apart_m"] == expected and (since["apart_m"] == 0) is (
+        "no position changed" in since["text"]
+    )
 
 
 def test_what_became_worse_is_said(foucault, rows):
@@ -99,7 +118,8 @@ def test_what_became_worse_is_said(foucault, rows):
     unknown = judged(foucault, rows, "worse", rows / "wrong.csv")[1]["baseline"]["text"]
     assert "what lies between them, 0.001 m, is no known mistake" in unknown
     lost = ("--transits", rows / "right.csv")
-    assert judged(foucault, rows, "wrong", rows / "wrong.csv", *lost)[0] == 0  # the baseline has no transits
+    # the baseline has no transits
+    assert judged(foucault, rows, "wrong", rows / "wrong.csv", *lost)[0] == 0
 
 
 def test_transits_that_moved_are_told_where_no_position_did(rows):
@@ -116,31 +136,43 @@ def test_transits_that_moved_are_told_where_no_position_did(rows):
         worse, better = version(2e-3, old).since, version(0.0, old).since
         assert worse.text.startswith("Worse since candidate: no position changed") and better.better
         (reason,) = worse.worse
-        assert reason.startswith("transits are off by 0.000") and "weighted by |ax|, and were by 0.000" in reason
+        assert (
+            reason.startswith("transits are off by 0.000")
+            and "weighted by |ax|, and were by 0.000" in reason
+        )
         assert better.text.startswith("Better since candidate: no position changed")
-        assert better.gains[0] == "it disagreed before" and better.gains[1].startswith("transits are off by ")
+        assert better.gains[0] == "it disagreed before" and better.gains[1].startswith(
+            "transits are off by "
+        )
     same = version(1e-3, late).since
     assert (same.worse, same.gains) == ((), ())
     fewer = judge(columns, scene, transits=zeros[1:], explain=False, baseline=right).since
     assert fewer.worse == ("it agreed before", "of transits 1 are missed or extra, and 0 were")
-    early = {name: column[:20] for name, column in columns.items()}  # what is missed later says nothing of this span
+    # what is missed later says nothing of this span
+    early = {name: column[:20] for name, column in columns.items()}
     short = judge(early, scene, transits=zeros[zeros < 9.5], explain=False)
-    assert judge(columns, scene, transits=zeros[:-1], explain=False, baseline=short).since.worse == (
-        "it agreed before",
-    )
+    assert judge(
+        columns, scene, transits=zeros[:-1], explain=False, baseline=short
+    ).since.worse == ("it agreed before",)
 
 
 def test_a_baseline_that_cannot_be_read_is_told_by_its_own_name(foucault, rows, tmp_path):
     words = ("score", rows / "mine.toml")
     for name in ("nowhere.csv", "nowhere.json"):
-        for more in ((rows / "right.csv",), ("--run", f"cat {shlex.quote(str(rows / 'right.csv'))}", "--repeats", "0")):
+        for more in (
+            (rows / "right.csv",),
+            ("--run", f"cat {shlex.quote(str(rows / 'right.csv'))}", "--repeats", "0"),
+        ):
             status, _, err = foucault(*words, *more, "--baseline", tmp_path / name)
             assert status == 2 and f"--baseline: got '{tmp_path / name}'" in err, err
     status, _, err = foucault(*words, rows / "right.csv", "--baseline", tmp_path)
     assert status == 2 and "--baseline: got" in err and "Is a directory" in err
     (tmp_path / "suite").mkdir()
     shutil.copy(rows / "right.csv", tmp_path / "suite" / "paris.csv")
-    assert "--baseline: got" in foucault("score", "--suite", tmp_path / "suite", "--baseline", "nowhere.json")[2]
+    assert (
+        "--baseline: got"
+        in foucault("score", "--suite", tmp_path / "suite", "--baseline", "nowhere.json")[2]
+    )
     for wrong in ("nowhere.csv", "nowhere.json", 3, [3]):
         with pytest.raises(InputError, match=r"^baseline: got '(nowhere|3|\[3)"):
             judge(rows / "right.csv", rows / "mine.toml", baseline=wrong)
@@ -156,7 +188,8 @@ def test_commands_are_compared_too(foucault, rows):
     earlier = rows / "base.json"
     earlier.write_text(foucault(*words, "--json")[1])
     status, out, _ = foucault(*words, "--baseline", earlier)
-    assert status == 0 and f"Since {earlier}: no position changed" in out  # both versions are "the program"
+    # both versions are "the program"
+    assert status == 0 and f"Since {earlier}: no position changed" in out
     status, _, err = foucault(*words, "--baseline", "no_such_program at all")
     assert status == 2 and "a program that can be started" in err
 
@@ -174,12 +207,16 @@ def test_commands_are_compared_too(foucault, rows):
     ],
 )
 def test_what_is_no_baseline_is_refused(foucault, rows, tmp_path, text, said):
-    document = json.loads(foucault("score", rows / "mine.toml", rows / "near.csv", "--json", "--no-diagnosis")[1])
+    document = json.loads(
+        foucault("score", rows / "mine.toml", rows / "near.csv", "--json", "--no-diagnosis")[1]
+    )
     change = {
         "other": {"scene": "paris"}, "words": {"max_error_m": "small"},
         "changed": {"problem": document["problem"] | {"release": {"x": "0.3", "y": "0.2"}}},
     }  # fmt: skip
-    (tmp_path / "old.json").write_text(json.dumps(document | change[text]) if text in change else text)
+    (tmp_path / "old.json").write_text(
+        json.dumps(document | change[text]) if text in change else text
+    )
     words = ("score", rows / "mine.toml", rows / "near.csv", "--no-diagnosis")
     status, out, err = foucault(*words, "--baseline", tmp_path / "old.json")
     assert (status, out) == (2, "") and said in err
@@ -207,32 +244,63 @@ def suites(rows, tmp_path):
 def test_a_suite_is_compared_with_an_earlier_one(foucault, suites, kind):
     baseline = suites / "old"
     if kind != "folder":
-        words = ("score", "--suite", baseline, "--no-diagnosis", "--json", "--out", suites / "before")
+        words = (
+            "score",
+            "--suite",
+            baseline,
+            "--no-diagnosis",
+            "--json",
+            "--out",
+            suites / "before",
+        )
         (suites / "old.json").write_text(foucault(*words)[1])
         baseline = suites / ("old.json" if kind == "document" else "before/suite.json")
-    words = ("score", "--suite", suites / "new", "--baseline", baseline, "--no-diagnosis", "--junit", suites / "j.xml")
+    words = (
+        "score",
+        "--suite",
+        suites / "new",
+        "--baseline",
+        baseline,
+        "--no-diagnosis",
+        "--junit",
+        suites / "j.xml",
+    )
     status, out, _ = foucault(*words, "--json", "--out", suites / "page")
     assert status == 2
     document = json.loads(out)
     jsonschema.validate(document, SCHEMA)
     told = {row["scene"]: row for row in document["rows"]}
     assert told["lost"]["verdict"] == "refused" and "no file for lost" in told["lost"]["error"]
-    assert told["new"]["baseline"] is None and "this verdict stands alone" in told["new"]["notes"][0]
+    assert (
+        told["new"]["baseline"] is None and "this verdict stands alone" in told["new"]["notes"][0]
+    )
     before = suites / "old/same.csv" if kind == "folder" else baseline
     assert told["same"]["baseline"]["text"].startswith(f"Since {before}: ")
-    assert told["same"]["baseline"]["worse"] == [] and "it agreed before" in told["worse"]["baseline"]["worse"]
+    assert (
+        told["same"]["baseline"]["worse"] == []
+        and "it agreed before" in told["worse"]["baseline"]["worse"]
+    )
     root = ElementTree.parse(suites / "j.xml").getroot()
     assert root.attrib == {"tests": "4", "failures": "1", "errors": "1"}
     kinds = {case.get("classname"): case[0] for case in root.iter("testcase")}
     tags = {name: kind.tag for name, kind in kinds.items()}
     names = ("same", "new", "worse", "lost")
-    assert [tags[f"foucault.{name}"] for name in names] == ["system-out", "system-out", "failure", "error"]
+    assert [tags[f"foucault.{name}"] for name in names] == [
+        "system-out",
+        "system-out",
+        "failure",
+        "error",
+    ]
     assert kinds["foucault.worse"].get("message").startswith("Worse since")
     assert "no position changed" in kinds["foucault.same"].text
     page = (suites / "page/index.html").read_text()
     assert "Worse since" in page and "no position changed" in page
     out = foucault(*words, "--github")[1]
-    signs = [line.partition(" ")[0] for line in out.splitlines() if line.startswith(("::error", "::notice"))]
+    signs = [
+        line.partition(" ")[0]
+        for line in out.splitlines()
+        if line.startswith(("::error", "::notice"))
+    ]
     assert signs == ["::notice", "::notice", "::error", "::error"]
 
 

@@ -10,11 +10,24 @@ BEYOND = "beyond the range of binary64"
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["study", "paris", "--methods", "heyoka_double", "--set", "site.rotation_rate=1e200"], BEYOND),
+        (
+            ["study", "paris", "--methods", "heyoka_double", "--set", "site.rotation_rate=1e200"],
+            BEYOND,
+        ),
         (["study", "paris", "--approximations", "--set", "site.rotation_rate=1e308"], BEYOND),
         (["show", "paris", "--sensitivity", "--set", "site.gravity=1e390"], BEYOND),
         (["generate", "paris", "--t-end", "60", "--set", "pendulum.length=1e390"], BEYOND),
-        (["score", "paris", "--approximation", "gastebois_6_1", "--set", "pendulum.length=1e200"], "no finite"),
+        (
+            [
+                "score",
+                "paris",
+                "--approximation",
+                "gastebois_6_1",
+                "--set",
+                "pendulum.length=1e200",
+            ],
+            "no finite",
+        ),
         (["pend", "-T", "10", "-O", "1e308"], BEYOND),
     ],
 )

@@ -80,12 +80,19 @@ def test_a_clock_that_began_in_1970_is_recognised(foucault, tmp_path, golden, un
     """Case 12 is in milliseconds, which the user has to say: a column called time may be in seconds as well."""
     size = 1000 if unit else 1
     path = tmp_path / "run.csv"
-    path.write_text(table("time,x,y", [(f"{(1760000000 + float(t)) * size:.3f}", x, y) for t, x, y in golden]))
-    status, out, err = foucault("score", "paris", path, *T_END, *(("--units", unit) if unit else ()))
+    path.write_text(
+        table("time,x,y", [(f"{(1760000000 + float(t)) * size:.3f}", x, y) for t, x, y in golden])
+    )
+    status, out, err = foucault(
+        "score", "paris", path, *T_END, *(("--units", unit) if unit else ())
+    )
     assert status == 0 and CLOCK in out, (out, err)
     if unit:
         status, _, err = foucault("score", "paris", path, *T_END)
-        assert status == 2 and "milliseconds: --units ms reads them so, from 1760000000 s since 1970" in err
+        assert (
+            status == 2
+            and "milliseconds: --units ms reads them so, from 1760000000 s since 1970" in err
+        )
 
 
 def test_a_clock_is_not_guessed_at(foucault, tmp_path, golden):
@@ -93,8 +100,14 @@ def test_a_clock_is_not_guessed_at(foucault, tmp_path, golden):
     path = tmp_path / "run.csv"
     path.write_text(table("t,x,y", [(f"{float(t) + 5000}", x, y) for t, x, y in golden[1:]]))
     status, _, err = foucault("score", "paris", path, *T_END)
-    assert status == 2 and "5060 s in the first row" in err and "Subtract what the clock showed at the release" in err
-    path.write_text(table("t,x,y", [(f"12:0{i}:00", x, y) for i, (_, x, y) in enumerate(golden[1:])]))
+    assert (
+        status == 2
+        and "5060 s in the first row" in err
+        and "Subtract what the clock showed at the release" in err
+    )
+    path.write_text(
+        table("t,x,y", [(f"12:0{i}:00", x, y) for i, (_, x, y) in enumerate(golden[1:])])
+    )
     status, _, err = foucault("score", "paris", path, *T_END)
     assert status == 2 and "43200 s in the first row" in err
     path.write_text(table("t,x,y", [(f"{float(t) + 200}", x, y) for t, x, y in golden]))
@@ -161,7 +174,10 @@ def hall(tmp_path_factory):
     path = tmp_path_factory.mktemp("hall") / "hall.toml"
     path.write_text(HALL)
     scene = load_scene(path)
-    return path, np.array(solve(scene.with_values({"run.sections": "gate 127"})).sections["gate 127"].table["t"], float)
+    return path, np.array(
+        solve(scene.with_values({"run.sections": "gate 127"})).sections["gate 127"].table["t"],
+        float,
+    )
 
 
 @pytest.mark.parametrize("start", [0.0, 12.34, -2.2, 5000.0, 1760000000.0])
@@ -194,7 +210,9 @@ def test_a_stopwatch_started_at_the_first_passage_is_a_clock(foucault, tmp_path,
     assert status == 0 and low <= -times[0] <= high, err
 
 
-def test_passages_of_exact_inputs_disagree_by_another_clock_and_are_told_it(foucault, tmp_path, hall):
+def test_passages_of_exact_inputs_disagree_by_another_clock_and_are_told_it(
+    foucault, tmp_path, hall
+):
     """A program's clock starts at the release: that all its times are late is an error, but it is said which."""
     scene, times = hall
     path = tmp_path / "passages.csv"

@@ -33,14 +33,18 @@ def refused(outcome: tuple[int, str, str], field: str) -> bool:
     assert "No space left on device" in err
     *notices, message = err.splitlines()
     assert message.startswith(f"foucault: {field}: ")
-    return status == 2 and all(": about " in line for line in notices)  # how long it will take, on a slow machine
+    # how long it will take, on a slow machine
+    return status == 2 and all(": about " in line for line in notices)
 
 
 def test_a_picture_stays_as_it_was(disk, foucault, candidate):
     pytest.importorskip("matplotlib")
     (disk / "picture.svg").write_text("years of work")
     fill(disk)
-    assert refused(foucault("score", "paris", candidate, "--no-diagnosis", "--plot", disk / "picture.svg"), "--plot")
+    assert refused(
+        foucault("score", "paris", candidate, "--no-diagnosis", "--plot", disk / "picture.svg"),
+        "--plot",
+    )
     assert (disk / "picture.svg").read_text() == "years of work"
     assert sorted(os.listdir(disk)) == ["filler", "picture.svg"]
 
@@ -75,12 +79,23 @@ def test_a_study_on_a_full_cache_says_so_once(disk, tmp_path):
     pytest.importorskip("numba")
     disk.chmod(0o700)
     fill(disk)
-    environment = {**os.environ, "FOUCAULT_CACHE": str(disk), "TMPDIR": str(tmp_path), "FOUCAULT_CACHE_SAID": ""}
+    environment = {
+        **os.environ,
+        "FOUCAULT_CACHE": str(disk),
+        "TMPDIR": str(tmp_path),
+        "FOUCAULT_CACHE_SAID": "",
+    }
     words = [*STUDY[:4], "--methods", "rk4,rkng56", "--no-formulations", "--json"]
     command = [sys.executable, "-m", "foucault", *words]
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
-    assert {row["status"] for row in json.loads(done.stdout)["rows"]} <= {"ok", "missed_transits", "extrapolated"}
+    assert {row["status"] for row in json.loads(done.stdout)["rows"]} <= {
+        "ok",
+        "missed_transits",
+        "extrapolated",
+    }
     warnings = [line for line in done.stderr.splitlines() if line.startswith("foucault: ")]
     assert len(warnings) == 1  # beside it the line of a long run, if this one is long
     assert f"{disk / 'generated'} cannot be written (No space left on device)" in warnings[0]
@@ -91,7 +106,9 @@ def test_a_study_on_a_full_cache_says_so_once(disk, tmp_path):
 def test_stdout_on_a_full_disk_is_a_message(words):
     with Path("/dev/full").open("w") as full:
         command = [sys.executable, "-m", "foucault", *words.split()]
-        done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        done = subprocess.run(
+            command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
     assert (done.returncode, done.stderr) == (2, "foucault: output: No space left on device\n")
 
 
@@ -100,7 +117,9 @@ def test_output_that_nobody_reads_ends_with_a_status_of_its_own():
     reading, writing = os.pipe()
     os.close(reading)
     command = [sys.executable, "-m", "foucault", "scenes"]
-    done = subprocess.run(command, cwd=ROOT, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=ROOT, stdout=writing, stderr=subprocess.PIPE, text=True, check=False
+    )
     os.close(writing)
     assert (done.returncode, done.stderr) == (141, "")
 
@@ -108,4 +127,8 @@ def test_output_that_nobody_reads_ends_with_a_status_of_its_own():
 def test_an_error_that_nobody_expects_names_its_file(foucault, tmp_path):
     journal = tmp_path / "rows.jsonl"
     journal.symlink_to("nowhere")
-    assert foucault("verify", tmp_path) == (2, "", f"foucault: {journal}: No such file or directory\n")
+    assert foucault("verify", tmp_path) == (
+        2,
+        "",
+        f"foucault: {journal}: No such file or directory\n",
+    )

@@ -10,7 +10,8 @@ from reference.dataset.ranges import write_ranges
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 WORDS = [word for name, width in BOX.items() for word in ("--uncertain", f"{name}={width}")]
-CHANGES = ("release.x=0.4", "release.y=0", "site.gravity_is=effective")  # it swings along the gate of azimuth 0
+# it swings along the gate of azimuth 0
+CHANGES = ("release.x=0.4", "release.y=0", "site.gravity_is=effective")
 TIMES = [0.0, 10.0, 16.4, 30.0]
 
 
@@ -35,9 +36,13 @@ def file(golden, tmp_path):
     """A program's rows, right but for what is added to x and to the transits."""
 
     def written(x=0.0, y=0.0, t=0.0, length="67"):
-        made = reference.trajectory(reference.load_scene("paris", [f"pendulum.length={length}"]), TIMES)
+        made = reference.trajectory(
+            reference.load_scene("paris", [f"pendulum.length={length}"]), TIMES
+        )
         table = np.column_stack([TIMES, made[:, 0] + x, made[:, 1] + y])
-        np.savetxt(tmp_path / "rows.csv", table, delimiter=",", header="t,x,y", comments="", fmt="%.17g")
+        np.savetxt(
+            tmp_path / "rows.csv", table, delimiter=",", header="t,x,y", comments="", fmt="%.17g"
+        )
         zeros = golden.transits["t"][:5] + t
         np.savetxt(tmp_path / "zeros.csv", zeros, header="t", comments="", fmt="%.17g")
         return tmp_path / "rows.csv", tmp_path / "zeros.csv"
@@ -49,7 +54,9 @@ def test_what_lies_inside_cannot_be_told_apart(score, file):
     rows, zeros = file()
     status, told = score("paris", rows, "--transits", zeros, *WORDS)
     assert status == 0, told
-    assert "cannot be told apart from paris with pendulum.length ±0.001, site.gravity ±0.00001" in told
+    assert (
+        "cannot be told apart from paris with pendulum.length ±0.001, site.gravity ±0.00001" in told
+    )
     assert "4 rows and 5 transits, all inside" in told
     status, told = score("paris", rows, "--transits", zeros, *WORDS, "--json")
     document = json.loads(told)
@@ -64,7 +71,10 @@ def test_a_pendulum_of_the_box_is_inside_and_one_beyond_it_is_not(score, file):
     rows, _ = file(length="67.003")
     status, told = score("paris", rows, *WORDS)
     assert status == 1
-    assert "disagrees with paris, whatever pendulum.length ±0.001, site.gravity ±0.00001: of 4 rows, " in told
+    assert (
+        "disagrees with paris, whatever pendulum.length ±0.001, site.gravity ±0.00001: of 4 rows, "
+        in told
+    )
     assert "outside)" in told
     assert score("paris", rows, *WORDS, "--tolerance", "0.001")[0] == 0
 
@@ -117,7 +127,9 @@ def test_what_cannot_be_held_is_told(score, file, tmp_path, words, told):
     assert status != 0 and told in said
 
 
-def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, foucault, file, tmp_path):
+def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(
+    score, foucault, file, tmp_path
+):
     solution = reference.solve("paris", t_end="20", digits=18, sections="gate 30", transits=False)
     times = solution.sections["gate 30"].table["t"]
     np.savetxt(tmp_path / "gate.csv", times, header="t", comments="", fmt="%.17g")
@@ -126,7 +138,8 @@ def test_passages_of_a_section_are_scored_where_all_inputs_are_certain(score, fo
     assert status == 0, told
     assert f"agrees with paris ({len(times)} passages of gate 30" in told
     assert f"{len(times)} matched, 0 missed, 0 extra" in told
-    status, out, _ = foucault("score", *words[:-1], "gate 31", "--json")  # that it is solved is told on stderr
+    # that it is solved is told on stderr
+    status, out, _ = foucault("score", *words[:-1], "gate 31", "--json")
     document = json.loads(out)
     assert (status, document["verdict"], document["section"]) == (1, "disagrees", "gate 31")
     assert document["transits"]["matched"] == document["transits"]["shifted"] == len(times)
@@ -150,8 +163,19 @@ def test_times_at_which_a_section_is_not_decided_are_no_agreement(score, file, t
     assert "Note: 1 time left out, at which the proof does not decide gate 0." in told
 
 
-def test_where_a_scene_asks_for_a_gate_times_that_disagree_as_transits_are_told_of_it(score, tmp_path):
+def test_where_a_scene_asks_for_a_gate_times_that_disagree_as_transits_are_told_of_it(
+    score, tmp_path
+):
     (tmp_path / "gate.csv").write_text("t\n4.2\n", encoding="utf-8")
-    words = ("paris", "--set", "run.sections=gate 30", "--t-end", "60", "--transits", tmp_path / "gate.csv", *WORDS)
+    words = (
+        "paris",
+        "--set",
+        "run.sections=gate 30",
+        "--t-end",
+        "60",
+        "--transits",
+        tmp_path / "gate.csv",
+        *WORDS,
+    )
     status, told = score(*words)
     assert status == 1 and "Note: for passages of gate 30 write --section 'gate 30'." in told

@@ -12,11 +12,23 @@ STUDY, SCORE, GENERATE = ("study", "paris"), ("score", "paris", "-"), ("generate
 LATE = ("--t-end", "10", "--set", "run.t_end=20")
 
 REFUSED = [
-    ((*STUDY, "--approximations", "--precisions", "53"), "--precisions", "together with --approximations"),
-    ((*STUDY, "--approximations", "--methods", "rk4"), "--methods", "together with --approximations"),
+    (
+        (*STUDY, "--approximations", "--precisions", "53"),
+        "--precisions",
+        "together with --approximations",
+    ),
+    (
+        (*STUDY, "--approximations", "--methods", "rk4"),
+        "--methods",
+        "together with --approximations",
+    ),
     ((*STUDY, "--approximations", "--run", "./p"), "--run", "together with --approximations"),
     ((*STUDY, "--approximations", "--limit", "5"), "--limit", "together with --approximations"),
-    ((*STUDY, "--approximations", "--no-formulations"), "--no-formulations", "together with --approximations"),
+    (
+        (*STUDY, "--approximations", "--no-formulations"),
+        "--no-formulations",
+        "together with --approximations",
+    ),
     ((*STUDY, "--approximations", "--set", "run.grid_step=7"), "--set", "at set times"),
     ((*STUDY, "--methods", "rk5"), "method", "Did you mean rkng56 or rk4?"),
     ((*STUDY, "--limit", "0"), "--limit", "a positive number of seconds"),
@@ -25,18 +37,34 @@ REFUSED = [
     ((*STUDY, "--t-end", "-1"), "run.t_end", "a number above 0"),
     ((*STUDY, "--cpu", "1"), "--cpu", "without --candidates"),
     ((*STUDY, "--settings", "0.1"), "--settings", "without --run"),
-    ((*STUDY, "--settings", "0.1", "--run", "./p"), "--settings", "with a --run that has no {setting}"),
+    (
+        (*STUDY, "--settings", "0.1", "--run", "./p"),
+        "--settings",
+        "with a --run that has no {setting}",
+    ),
     ((*STUDY, "--name", "mine"), "--name", "without --run"),
-    ((*STUDY, "--run", "./p", "--run", "./q", "--name", "p"), "--name", "one name for each --run, so 2"),
+    (
+        (*STUDY, "--run", "./p", "--run", "./q", "--name", "p"),
+        "--name",
+        "one name for each --run, so 2",
+    ),
     ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name that a method does not have"),
-    ((*STUDY, "--run", "./p 1", "--run", "./p 2"), "--name", "a name that another --run does not have"),
+    (
+        (*STUDY, "--run", "./p 1", "--run", "./p 2"),
+        "--name",
+        "a name that another --run does not have",
+    ),
     ((*STUDY, "--run", "./p", "--name", "x" * 25), "--name", "1 to 24 printable characters"),
     ((*STUDY, "--run", "./p {nonsense}"), "--run", "{x0}"),
     ((*STUDY, *LATE), "--t-end", "together with --set run.t_end=20"),
     ((*STUDY, "--set", "inputs=decimal"), "--set", "Methods are given doubles"),
     ((*STUDY, "--set", "run.level=enclosed"), "--set", "confirmed"),
     ((*STUDY, "--precisions", "113", "--set", "run.digits=9"), "--set", "the finest precision"),
-    ((*STUDY, "--precisions", "113", "--methods", "rk4"), "--methods", "methods with these --precisions"),
+    (
+        (*STUDY, "--precisions", "113", "--methods", "rk4"),
+        "--methods",
+        "methods with these --precisions",
+    ),
     ((*SCORE, "--name", "mine"), "--name", "without --run"),
     ((*SCORE, "--out", "page"), "--out", "without --suite"),
     ((*SCORE, "--json", "--github"), "--github", "together with --json"),
@@ -52,24 +80,44 @@ REFUSED = [
     ((*SCORE, *LATE), "--t-end", "together with --set run.t_end=20"),
     ((*SCORE, "--timeout", "5"), "--timeout", "without --run"),
     ((*SCORE, "--repeats", "0"), "--repeats", "without --run"),
-    ((*SCORE, "--inputs", "decimal", "--set", "inputs=binary64"), "--inputs", "together with --set inputs=binary64"),
+    (
+        (*SCORE, "--inputs", "decimal", "--set", "inputs=binary64"),
+        "--inputs",
+        "together with --set inputs=binary64",
+    ),
     ((*SCORE, "--inputs", "floats"), "--inputs", "expected auto, decimal or binary64"),
     ((*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"), "--set", "x0=0.1 stands before it"),
     ((*SCORE, "--t-end", "10", "--set", "t_end=20"), "--t-end", "together with --set t_end=20"),
     ((*SCORE, "--set", "z0=-3"), "z0", "a field that scenes have"),
     ((*GENERATE, *LATE), "--t-end", "together with --set run.t_end=20"),
-    ((*GENERATE, "--digits", "9", "--set", "run.digits=9"), "--digits", "together with --set run.digits=9"),
+    (
+        (*GENERATE, "--digits", "9", "--set", "run.digits=9"),
+        "--digits",
+        "together with --set run.digits=9",
+    ),
     ((*GENERATE, "--level", "computed", "--set", "run.level=enclosed"), "--level", "together with"),
     ((*GENERATE, "--no-transits", "--set", "run.transits=true"), "--no-transits", "together with"),
-    ((*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"), "--set", "run.digits=9 stands before it"),
+    (
+        (*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"),
+        "--set",
+        "run.digits=9 stands before it",
+    ),
     ((*GENERATE, "--level", "confimed"), "--level", "Did you mean confirmed?"),
     ((*GENERATE, "--engine", "limb"), "--engine", "Did you mean limbs?"),
     (("study", "pariss"), "SCENE", "Did you mean paris?"),
     ((*STUDY, "--methods", "rk4,dop853"), "method", "scipy_dop853"),
     (("score", "paris", "--approximation", "conic"), "approximation", "Did you mean conical?"),
-    (("score", "paris", "--approximation", "precession_sine"), "--approximation", "a number, not a motion"),
+    (
+        ("score", "paris", "--approximation", "precession_sine"),
+        "--approximation",
+        "a number, not a motion",
+    ),
     (("stability", "--methods", "nothing_like_it"), "method", "`foucault methods` lists them"),
-    (("stability", "--methods", "rk4,mpmath_odefun"), "methods", "expected methods that declare runs in `stability`"),
+    (
+        ("stability", "--methods", "rk4,mpmath_odefun"),
+        "methods",
+        "expected methods that declare runs in `stability`",
+    ),
     (("stability", "--name", "mine"), "--name", "without --run"),
     (("stability", "--run", "./p {nonsense}"), "--run", "{x0}"),
     (("stability", "--run", "./p 'x"), "--run", "a command with balanced quotes"),
@@ -77,8 +125,12 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("words", "field", "reason"), REFUSED, ids=[" ".join(row[0]) for row in REFUSED])
-def test_what_would_have_no_effect_is_refused(foucault, words, field, reason, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("words", "field", "reason"), REFUSED, ids=[" ".join(row[0]) for row in REFUSED]
+)
+def test_what_would_have_no_effect_is_refused(
+    foucault, words, field, reason, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     status, out, err = foucault(*words)
     assert (status, out) == (2, "")
@@ -88,7 +140,9 @@ def test_what_would_have_no_effect_is_refused(foucault, words, field, reason, tm
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("words", [("study", "paris", "--methods", "rk4"), ("stability", "--methods", "rk4,rkmk4")])
+@pytest.mark.parametrize(
+    "words", [("study", "paris", "--methods", "rk4"), ("stability", "--methods", "rk4,rkmk4")]
+)
 def test_methods_of_which_none_is_installed_are_refused_with_the_command_that_installs_them(
     foucault, words, monkeypatch, tmp_path
 ):

@@ -35,13 +35,15 @@ def test_the_swing_plane_of_paris_turns_as_it_should_and_of_a_file_too(paris):
     hours = paris.plane_t / 3600
     steps = (np.diff(paris.plane) + 90) % 180 - 90
     turned = steps.sum() / (hours[-1] - hours[0])
-    about_the_plumb_line = Gauge.of(reference.load_scene("paris")).turn  # not about the ellipsoid's normal: 1.5e-3 less
+    # not about the ellipsoid's normal: 1.5e-3 less
+    about_the_plumb_line = Gauge.of(reference.load_scene("paris")).turn
     assert turned == pytest.approx(-np.degrees(about_the_plumb_line) * 3600, rel=1e-4)
     x, y, _ = paris.rows.T
     alone = PicturedMotion.of_candidate(candidate_of("mine.csv", {"t": paris.t, "x": x, "y": y}))
     steps = (np.diff(alone.plane) + 90) % 180 - 90
     assert steps.sum() / np.ptp(alone.plane_t) * 3600 == pytest.approx(turned, rel=0.01)
-    assert len(alone.line) == 0 and alone.swings == 0  # a line through its rows would follow nothing
+    # a line through its rows would follow nothing
+    assert len(alone.line) == 0 and alone.swings == 0
 
 
 def test_a_dense_file_is_a_line_and_a_wide_one_is_on_its_sphere():
@@ -49,18 +51,23 @@ def test_a_dense_file_is_a_line_and_a_wide_one_is_on_its_sphere():
     far = candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t, "z": np.sin(t)})
     motion = PicturedMotion.of_candidate(far)
     assert len(motion.line) == 200 and motion.wide
-    assert not PicturedMotion.of_candidate(candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t})).wide
+    assert not PicturedMotion.of_candidate(
+        candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t})
+    ).wide
 
 
 @pytest.mark.parametrize(
-    ("size", "unit"), [(1200.0, "km"), (67.0, "m"), (0.3, "m"), (0.03, "mm"), (3e-4, "µm"), (1e-9, "nm"), (0.0, "m")]
+    ("size", "unit"),
+    [(1200.0, "km"), (67.0, "m"), (0.3, "m"), (0.03, "mm"), (3e-4, "µm"), (1e-9, "nm"), (0.0, "m")],
 )
 def test_lengths_are_told_in_units_of_their_size(size, unit):
     factor, word = length_unit(size)
     assert word == unit and (not size or 0.1 <= size * factor <= 1000)
 
 
-@pytest.mark.parametrize(("span", "unit"), [(5e5, "d"), (86_400, "h"), (3600, "min"), (60, "s"), (0.2, "ms")])
+@pytest.mark.parametrize(
+    ("span", "unit"), [(5e5, "d"), (86_400, "h"), (3600, "min"), (60, "s"), (0.2, "ms")]
+)
 def test_spans_are_told_in_units_of_their_size(span, unit):
     factor, word = time_unit(span)
     assert word == unit and 1 <= span * factor <= 1000
@@ -84,7 +91,9 @@ def test_a_dataset_and_a_file_are_drawn(foucault, tmp_path):
     out = tmp_path / "paris.svg"
     assert foucault("plot", "paris", "--out", out) == (0, f"{out}: the picture\n", "")
     text = out.read_text()
-    assert all(word in text for word in ("Path from above", "Azimuth of the swing plane", "10514 transits"))
+    assert all(
+        word in text for word in ("Path from above", "Azimuth of the swing plane", "10514 transits")
+    )
     again = tmp_path / "again.svg"
     foucault("plot", "paris", "--out", again)
     assert again.read_bytes() == out.read_bytes()
@@ -106,7 +115,9 @@ def test_a_dataset_and_a_file_are_drawn(foucault, tmp_path):
         (("mine.csv",), "mine.csv: line 2"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(foucault, tmp_path, monkeypatch, words, said):
+def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(
+    foucault, tmp_path, monkeypatch, words, said
+):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.csv").write_text("t,x,y\n0,1,two\n")
     status, out, err = foucault("plot", *words)
@@ -114,7 +125,9 @@ def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(foucault, tmp_pa
     assert [path.name for path in tmp_path.iterdir()] == ["mine.csv"]
 
 
-def test_a_matplotlib_that_cannot_be_imported_is_told_before_anything_is_solved(foucault, tmp_path, monkeypatch):
+def test_a_matplotlib_that_cannot_be_imported_is_told_before_anything_is_solved(
+    foucault, tmp_path, monkeypatch
+):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     status, _, err = foucault("plot", "laboratory", "--out", str(tmp_path / "a.svg"))
     assert (status, list(tmp_path.iterdir())) == (2, [])

@@ -39,7 +39,10 @@ def test_a_program_is_called_as_its_file(command, name):
 
 
 def test_names_go_with_commands_in_order():
-    assert named_programs(["./p 1", "./p 2"], ["one", "zwei <2>"]) == {"one": "./p 1", "zwei <2>": "./p 2"}
+    assert named_programs(["./p 1", "./p 2"], ["one", "zwei <2>"]) == {
+        "one": "./p 1",
+        "zwei <2>": "./p 2",
+    }
 
 
 def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path, monkeypatch):
@@ -50,14 +53,35 @@ def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path, monkey
     path.write_text(PROGRAM)
     program = shlex.join([sys.executable, str(path)])
     command = " ".join([program, "{setting} {t_end} {grid_step} {length} {gravity}", "x" * 3000])
-    words = ["study", "paris", "--t-end", "60", "--methods", "rk4", "--settings", "0.1", "--out", tmp_path / "out"]
-    status, out, _ = foucault(*words, "--run", command, "--run", f"{command} y", "--name", "mine", "--name", "<other>")
+    words = [
+        "study",
+        "paris",
+        "--t-end",
+        "60",
+        "--methods",
+        "rk4",
+        "--settings",
+        "0.1",
+        "--out",
+        tmp_path / "out",
+    ]
+    status, out, _ = foucault(
+        *words, "--run", command, "--run", f"{command} y", "--name", "mine", "--name", "<other>"
+    )
     assert status == 0
-    head, row, other = (next(line for line in out.splitlines() if word in line) for word in ("setting", "mine", "<oth"))
-    assert len(row) == len(other) == head.index("CPU s") + len("CPU s")  # the last that a program has
+    head, row, other = (
+        next(line for line in out.splitlines() if word in line)
+        for word in ("setting", "mine", "<oth")
+    )
+    # the last that a program has
+    assert len(row) == len(other) == head.index("CPU s") + len("CPU s")
     document = json.loads((tmp_path / "out/study.json").read_text())
     assert document["programs"] == {"mine": command, "<other>": f"{command} y"}
-    assert {row["method"]: row["status"] for row in document["rows"]} == {"rk4": "ok", "mine": "ok", "<other>": "ok"}
+    assert {row["method"]: row["status"] for row in document["rows"]} == {
+        "rk4": "ok",
+        "mine": "ok",
+        "<other>": "ok",
+    }
     page = (tmp_path / "out/index.html").read_text()
     assert "x" * 500 not in page
     assert "<other>" not in page and "&lt;other&gt;" in page
@@ -65,4 +89,5 @@ def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path, monkey
     changed = [*words[:-1], tmp_path / "out", "--run", f"{command} z", "--name", "mine"]
     assert foucault(*changed)[0] == 0
     (line,) = (tmp_path / "out/rows.jsonl").read_text().removeprefix(stored).splitlines()
-    assert json.loads(line)["item"][0] == "mine"  # another command of that name is measured again, and nothing else
+    # another command of that name is measured again, and nothing else
+    assert json.loads(line)["item"][0] == "mine"

@@ -22,7 +22,9 @@ def late(tmp_path):
     golden = load("paris.binary64")
     rows = np.column_stack([golden.t, golden.x, golden.y])[:31]
     rows[11:, 1] += 1e-3
-    (tmp_path / "mine.csv").write_text("t,x,y\n" + "".join(f"{t!r},{x!r},{y!r}\n" for t, x, y in rows.tolist()))
+    (tmp_path / "mine.csv").write_text(
+        "t,x,y\n" + "".join(f"{t!r},{x!r},{y!r}\n" for t, x, y in rows.tolist())
+    )
     times = golden.transits["t"][:200].tolist()
     (tmp_path / "zeros.csv").write_text("t\n" + "".join(f"{t!r}\n" for t in times))
     return tmp_path, times
@@ -30,7 +32,14 @@ def late(tmp_path):
 
 def test_later_rows_and_transits_are_ignored_and_a_note_says_how_many(foucault, late):
     folder, times = late
-    words = ("score", "paris", folder / "mine.csv", "--transits", folder / "zeros.csv", "--no-diagnosis")
+    words = (
+        "score",
+        "paris",
+        folder / "mine.csv",
+        "--transits",
+        folder / "zeros.csv",
+        "--no-diagnosis",
+    )
     assert foucault(*words)[0] == 1
     status, out, _ = foucault(*words, "--t-end", "600")
     assert status == 0
@@ -56,7 +65,9 @@ def test_an_end_before_the_first_row_is_refused(foucault, tmp_path):
 
 
 def test_an_approximation_is_compared_up_to_there(foucault):
-    status, out, _ = foucault("score", "paris", "--approximation", "linear_3d", "--t-end", "120", "--no-diagnosis")
+    status, out, _ = foucault(
+        "score", "paris", "--approximation", "linear_3d", "--t-end", "120", "--no-diagnosis"
+    )
     assert status == 1
     assert "3 rows, t = 0 to 120 of 120 s" in out
 
@@ -68,11 +79,21 @@ for k in range(601):
 """
 
 
-@pytest.mark.parametrize(("pull", "power"), one_in(3, [("1e95", "1"), ("168.0", "2"), ("1e-9", "60")]))
+@pytest.mark.parametrize(
+    ("pull", "power"), one_in(3, [("1e95", "1"), ("168.0", "2"), ("1e-9", "60")])
+)
 def test_stdout_of_a_program_that_diverges_is_one_json_document(foucault, tmp_path, pull, power):
     """In a process of its own, whose stdout LAPACK would write to."""
     (tmp_path / "falls.py").write_text("print('t,x,y')" + FALLS.format(pull, power))
-    run = ["--run", f"{shlex.quote(sys.executable)} falls.py", "--repeats", "0", "--set", "t_end=20", "--json"]
+    run = [
+        "--run",
+        f"{shlex.quote(sys.executable)} falls.py",
+        "--repeats",
+        "0",
+        "--set",
+        "t_end=20",
+        "--json",
+    ]
     command = [sys.executable, "-m", "foucault", "score", "paris", *run]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1
@@ -85,16 +106,29 @@ def test_stdout_of_a_program_that_diverges_is_one_json_document(foucault, tmp_pa
 
 def test_fields_have_the_short_names_of_run_and_one_without_effect_is_a_note(foucault):
     words = ("score", "paris", "--approximation", "linear_3d", "--no-diagnosis", "--json")
-    long = foucault(*words, "--set", "run.t_end=120", "--set", "release.x=0.2", "--set", "site.latitude=12")
+    long = foucault(
+        *words, "--set", "run.t_end=120", "--set", "release.x=0.2", "--set", "site.latitude=12"
+    )
     short = foucault(*words, "--set", "t_end=120", "--set", "x0=0.2", "--set", "latitude=12")
     assert short[:2] == long[:2] and short[0] == 1
     ignored = foucault(
-        *words, "--set", "t_end=120", "--set", "x0=0.2", "--set", "latitude=12", "--set", "level=enclosed"
+        *words,
+        "--set",
+        "t_end=120",
+        "--set",
+        "x0=0.2",
+        "--set",
+        "latitude=12",
+        "--set",
+        "level=enclosed",
     )
     assert ignored[:2] == long[:2]
     assert ignored[2] == "--set level=enclosed makes no difference here. " + (
         "A candidate is held against a confirmed solution, or a dataset that ships.\n"
     )
-    assert load_scene("paris", ["x0=0.2", "length=60"]) == load_scene("paris", ["release.x=0.2", "pendulum.length=60"])
-    fields = {full_name(word) for word in placeholders(load_scene("paris"))} - {"z0", "vz0"}  # these two follow
+    assert load_scene("paris", ["x0=0.2", "length=60"]) == load_scene(
+        "paris", ["release.x=0.2", "pendulum.length=60"]
+    )
+    # these two follow
+    fields = {full_name(word) for word in placeholders(load_scene("paris"))} - {"z0", "vz0"}
     assert fields <= set(field_names())

@@ -24,7 +24,9 @@ def test_a_small_sweep_prints_a_table(foucault):
     assert lines[0].split()[0] == "site.latitude"
     assert [line.split()[0] for line in lines[1:4]] == ["0", "10", "20"]
     assert lines[4] == "3 rows: 3 ok"
-    assert foucault("sweep", *SMALL, "--over", "site.latitude=48")[1].splitlines()[2] == "1 row: 1 ok"
+    assert (
+        foucault("sweep", *SMALL, "--over", "site.latitude=48")[1].splitlines()[2] == "1 row: 1 ok"
+    )
 
 
 def test_a_table_shows_no_digit_beyond_its_error(foucault):
@@ -41,7 +43,9 @@ def test_a_table_shows_no_digit_beyond_its_error(foucault):
             assert float(cell) == pytest.approx(row[f"{quantity}_{unit}"], abs=10 * error)
 
 
-def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling_it_pays(tmp_path, monkeypatch):
+def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling_it_pays(
+    tmp_path, monkeypatch
+):
     pytest.importorskip("numba")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     latitudes = ["site.latitude=-90:90:1"]
@@ -49,14 +53,22 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     cold = asked_for(paris, latitudes, None, None, audit=0)
     line = worth_compiling(cold)
     assert cold.engine == "heyoka"
-    found = re.fullmatch(r"From some ([\d,]+) such rows on, .* once, for about 8 s \(--engine octet\)\.", line)
+    found = re.fullmatch(
+        r"From some ([\d,]+) such rows on, .* once, for about 8 s \(--engine octet\)\.", line
+    )
     assert found
     rows = int(found[1].replace(",", ""))
-    fewer, more = (asked_for(paris, [f"pendulum.length=67:68:{step / rows}"], None, None, audit=0) for step in (2, 0.5))
-    assert [fewer.engine, more.engine] == ["heyoka", "octet"]  # where the line says, auto changes its mind
-    assert worth_compiling(asked_for(paris, ["site.latitude=0,90"], None, None, audit=0)) == ""  # too few to tell
+    fewer, more = (
+        asked_for(paris, [f"pendulum.length=67:68:{step / rows}"], None, None, audit=0)
+        for step in (2, 0.5)
+    )
+    # where the line says, auto changes its mind
+    assert [fewer.engine, more.engine] == ["heyoka", "octet"]
+    # too few to tell
+    assert worth_compiling(asked_for(paris, ["site.latitude=0,90"], None, None, audit=0)) == ""
     damped = load_scene("paris", {"run.t_end": 12000, "pendulum.drag": "0.001"})
-    assert worth_compiling(asked_for(damped, latitudes, None, None, audit=0)) == ""  # octet knows no drag
+    # octet knows no drag
+    assert worth_compiling(asked_for(damped, latitudes, None, None, audit=0)) == ""
     folder = folder_of(SOURCES)
     assert folder is not None
     folder.mkdir()
@@ -64,8 +76,12 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     kept = asked_for(paris, latitudes, None, None, audit=0)
     assert (kept.engine, worth_compiling(kept)) == ("octet", "")
     small = load_scene("paris", {"run.t_end": 12000, "run.sections": ["gate 30"]})
-    few, many = (asked_for(small, [f"site.latitude=-90:90:{step}"], None, None, audit=0) for step in (1, 0.25))
-    assert (few.engine, many.engine) == ("heyoka", "octet")  # what sections need is still to be compiled
+    few, many = (
+        asked_for(small, [f"site.latitude=-90:90:{step}"], None, None, audit=0)
+        for step in (1, 0.25)
+    )
+    # what sections need is still to be compiled
+    assert (few.engine, many.engine) == ("heyoka", "octet")
     assert "once, for about 8 s" in worth_compiling(few)
     (folder / "march.march-1.py311.2.nbc").touch()
     kept = asked_for(small, ["site.latitude=-90:90:3"], None, None, audit=0)
@@ -73,7 +89,9 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     assert asked_for(damped, latitudes, None, None, audit=0).engine == "heyoka"
 
 
-def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compiled(tmp_path, monkeypatch):
+def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compiled(
+    tmp_path, monkeypatch
+):
     pytest.importorskip("numba")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     paris, rows = load_scene("paris", {"run.t_end": 12000}), ["pendulum.length=60:70:0.0001"]
@@ -91,7 +109,9 @@ def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compil
 
 
 def test_json_holds_every_row_and_the_costs(foucault):
-    status, out, _ = foucault("sweep", *SMALL, "--over", "site.latitude=0,90", "--json", "--workers", "1")
+    status, out, _ = foucault(
+        "sweep", *SMALL, "--over", "site.latitude=0,90", "--json", "--workers", "1"
+    )
     document = json.loads(out)
     assert status == 0
     assert document["over"] == {"site.latitude": "0,90"}
@@ -107,13 +127,17 @@ def test_json_holds_every_row_and_the_costs(foucault):
 
 
 def test_a_sweep_says_what_the_solver_took_of_it(foucault):
-    _, out, _ = foucault("sweep", *SMALL, "--over", "site.latitude=0,90", "--tolerance", "1e-14", "--workers", "1")
+    _, out, _ = foucault(
+        "sweep", *SMALL, "--over", "site.latitude=0,90", "--tolerance", "1e-14", "--workers", "1"
+    )
     told = re.search(r"CPU ([\d.]+) s, ([\d.]+) s of them for 2 rows that went to the solver", out)
     every, solver = map(float, told.groups())
     assert 0 < solver <= every
 
 
-@pytest.mark.parametrize(("level", "head"), [("enclosed", "bound (m)"), ("confirmed", "estimated error (m)")])
+@pytest.mark.parametrize(
+    ("level", "head"), [("enclosed", "bound (m)"), ("confirmed", "estimated error (m)")]
+)
 def test_where_every_row_goes_through_the_solver_no_engine_is_named(foucault, level, head):
     if level == "enclosed":
         pytest.importorskip("flint")
@@ -134,26 +158,50 @@ def test_a_row_that_fails_is_named_and_the_others_stand(foucault):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["paris", "--over", "site.latitude=0:91:1"], "site.latitude: got '91', expected a number at least -90"),
+        (
+            ["paris", "--over", "site.latitude=0:91:1"],
+            "site.latitude: got '91', expected a number at least -90",
+        ),
         (["paris"], "--over: got 'nothing'"),
         (["paris", "--over", "site.latitude=1", "--rows", "x.csv"], "Give one of the two"),
-        (["paris", "--rows", "/no/such.csv"], "--rows: got '/no/such.csv', expected a readable file"),
+        (
+            ["paris", "--rows", "/no/such.csv"],
+            "--rows: got '/no/such.csv', expected a readable file",
+        ),
         ([], "SCENE: got 'nothing'"),
         (["--over", "site.latitude=1"], "no such option without SCENE"),
         (["paris", "--over", "site.latitude=1", "--workers", "0"], "--workers"),
         (["paris", "--over", "site.latitude=1", "--digits", "0"], "run.digits: got '0'"),
-        (["paris", "--over", "site.latitude=1", "--digits", "2000"], "expected a whole number from 1 to 1000"),
-        (["paris", "--over", "site.latitude=1", "--tolerance", "-1"], "expected a number of metres from 0"),
-        (["paris", "--over", "run.t_end=6,7", "--t-end", "5"], "no such option together with --over run.t_end"),
+        (
+            ["paris", "--over", "site.latitude=1", "--digits", "2000"],
+            "expected a whole number from 1 to 1000",
+        ),
+        (
+            ["paris", "--over", "site.latitude=1", "--tolerance", "-1"],
+            "expected a number of metres from 0",
+        ),
+        (
+            ["paris", "--over", "run.t_end=6,7", "--t-end", "5"],
+            "no such option together with --over run.t_end",
+        ),
         (
             ["paris", "--over", "site.latitude=1", "--audit", "-1"],
             "--audit: got '-1', expected a number of rows from 0",
         ),
-        (["paris", "--over", "site.latitude=1", "--workers", "2", "--cluster", "local:2"], "together with --cluster"),
-        (["paris", "--over", "site.latitude=1", "--set", "run.digits=3"], "a field that makes a difference here"),
+        (
+            ["paris", "--over", "site.latitude=1", "--workers", "2", "--cluster", "local:2"],
+            "together with --cluster",
+        ),
+        (
+            ["paris", "--over", "site.latitude=1", "--set", "run.digits=3"],
+            "a field that makes a difference here",
+        ),
         (["paris", "--over", "site.latitude=1", "--plot", "a.gif"], "a path that ends in"),
         (["paris", "--over", "inputs=decimal", "--plot", "a.png"], "both numbers"),
-        (["paris", "--over", "site.latitude=1", "--want", "state", "--plot", "a.png"], "frequency or precession"),
+        (
+            ["paris", "--over", "site.latitude=1", "--want", "state", "--plot", "a.png"],
+            "frequency or precession",
+        ),
         (["--out", "/no/such"], "a folder of a sweep"),
     ],
 )
@@ -178,7 +226,9 @@ def test_a_folder_is_gone_on_with_by_the_same_command_or_by_itself(foucault, tmp
     assert len(json.loads(out)["rows"]) == 3
 
 
-@pytest.mark.parametrize("over", [["site.latitude=-90:90:90"], ["release.x=0.1,0.2", "site.latitude=0,90"]])
+@pytest.mark.parametrize(
+    "over", [["site.latitude=-90:90:90"], ["release.x=0.1,0.2", "site.latitude=0,90"]]
+)
 def test_one_or_two_fields_make_a_picture(foucault, tmp_path, over):
     pytest.importorskip("matplotlib")
     words = [word for axis in over for word in ("--over", axis)]

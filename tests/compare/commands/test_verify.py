@@ -10,8 +10,29 @@ from pathlib import Path
 import pytest
 from here import measured_here
 
-STUDY = ("study", "paris", "--t-end", "20", "--methods", "heyoka_double", "--limit", "0.05", "--no-formulations")
-SWEEP = ("sweep", "paris", "--over", "latitude=0:80:20", "--t-end", "20", "--engine", "heyoka", "--audit", "1")
+STUDY = (
+    "study",
+    "paris",
+    "--t-end",
+    "20",
+    "--methods",
+    "heyoka_double",
+    "--limit",
+    "0.05",
+    "--no-formulations",
+)
+SWEEP = (
+    "sweep",
+    "paris",
+    "--over",
+    "latitude=0:80:20",
+    "--t-end",
+    "20",
+    "--engine",
+    "heyoka",
+    "--audit",
+    "1",
+)
 
 
 @pytest.fixture
@@ -60,7 +81,9 @@ def test_a_damaged_part_and_one_that_does_not_belong_are_told(foucault, swept):
     status, out, _ = foucault("verify", swept, "--json")
     (row,) = json.loads(out)["rows"]
     (problem,) = row["problems"]
-    assert status == 1 and problem.startswith("rows/part-00000001.parquet is no part of this sweep: remove it")
+    assert status == 1 and problem.startswith(
+        "rows/part-00000001.parquet is no part of this sweep: remove it"
+    )
     data = bytearray(part.read_bytes())
     data[len(data) // 2] ^= 1
     part.write_bytes(data)
@@ -93,10 +116,15 @@ def test_a_digit_of_a_study_is_found(foucault, studied, name):
     assert status == 1 and name in out and "not as it was written" in out
 
 
-def test_a_result_that_was_changed_is_measured_again_and_one_of_an_earlier_version_is_not(foucault, studied):
+def test_a_result_that_was_changed_is_measured_again_and_one_of_an_earlier_version_is_not(
+    foucault, studied
+):
     journal = studied / "rows.jsonl"
     *lines, last = journal.read_text().splitlines()
-    unsealed = [json.dumps({key: value for key, value in json.loads(line).items() if key != "seal"}) for line in lines]
+    unsealed = [
+        json.dumps({key: value for key, value in json.loads(line).items() if key != "seal"})
+        for line in lines
+    ]
     journal.write_text("\n".join([*unsealed, last, ""]))
     assert "of an earlier version" in foucault("verify", studied)[1]
     change_a_digit(journal)

@@ -30,7 +30,9 @@ def explained(*mistake, unit=1.0):
         ("site.latitude=-48.846111", "hemisphere", 0.455),
     ],
 )
-def test_a_mistake_moves_the_bob_as_far_as_a_sketch_says_and_nothing_else_is_left(mistake, name, moves_m):
+def test_a_mistake_moves_the_bob_as_far_as_a_sketch_says_and_nothing_else_is_left(
+    mistake, name, moves_m
+):
     explanation = explained(mistake)
     (cause,) = explanation.causes
     assert cause.id == name

@@ -19,7 +19,8 @@ def test_no_wide_swing_counts_time_in_another_unit(size):
     length, rate = 67.0, math.sqrt(9.81 / 67.0)
     site = {"gravity": "9.8", "gravity_is": "effective", "rotation_rate": "0"}
     swings = product(
-        (30, 40, 50, 55, 60, 65, 70, 75, 80, 85), (0.02, 0.033333, 0.05, 0.1, 0.14, 0.2, 0.25, 0.3, 0.5, 1.0)
+        (30, 40, 50, 55, 60, 65, 70, 75, 80, 85),
+        (0.02, 0.033333, 0.05, 0.1, 0.14, 0.2, 0.25, 0.3, 0.5, 1.0),
     )
     for degrees, step in list(swings)[:: size(13, 1)]:
         modulus = math.sin(math.radians(degrees) / 2)
@@ -28,7 +29,10 @@ def test_no_wide_swing_counts_time_in_another_unit(size):
         _, cosine, delta, _ = ellipj(rate * times, modulus**2)
         half = modulus * cosine / delta  # sin(θ/2), greatest at t = 0
         x = 2 * length * half * np.sqrt(1 - half**2)
-        release, run = {"angle": str(degrees), "azimuth": "0"}, {"t_end": repr(float(times[-1])), "transits": False}
+        release, run = (
+            {"angle": str(degrees), "azimuth": "0"},
+            {"t_end": repr(float(times[-1])), "transits": False},
+        )
         scene = make_scene("wide", pendulum={"length": "67"}, site=site, release=release, run=run)
         found = told(scene, times, {"x": x, "y": 0 * x}, 1e-6)
         assert not found.agrees

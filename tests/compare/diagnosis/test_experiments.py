@@ -23,10 +23,20 @@ from compare.candidates.external import placeholders
 from reference import load_scene
 
 SCHEMA = json.loads(files("compare.report").joinpath("score.schema.json").read_text("utf-8"))
-FEW = (17, 33)  # of the programs: in JavaScript, and in C with {setting}; the tests below run some in Python
+# of the programs: in JavaScript, and in C with {setting}; the tests below run some in Python
+FEW = (17, 33)
 SEEDS = (101, 102, 103)
 RTOL = 1e-6  # {setting} of programs that take a tolerance
-SHORT = ("--t-end", "120", "--set", "run.grid_step=1", "--set", "run.transits=false", "--repeats", "0")
+SHORT = (
+    "--t-end",
+    "120",
+    "--set",
+    "run.grid_step=1",
+    "--set",
+    "run.transits=false",
+    "--repeats",
+    "0",
+)
 MOST_RUNS = 10  # of a program, beside the first
 Run = Callable[..., tuple[int, str, str]]
 
@@ -49,7 +59,17 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def measured(foucault: Run, made: Ambiguous) -> dict[str, Any] | None:
     """Return what experiments with a program measure; None if it agrees."""
-    words = ["score", "paris", *made.settings, "--run", made.command, "--repeats", "0", "--timeout", "300"]
+    words = [
+        "score",
+        "paris",
+        *made.settings,
+        "--run",
+        made.command,
+        "--repeats",
+        "0",
+        "--timeout",
+        "300",
+    ]
     words += ["--setting", str(RTOL)] if "rtol" in made.command else []
     status, out, err = foucault(*words, "--experiments", "--json")
     assert status in (0, 1), err
@@ -63,7 +83,11 @@ def test_every_cause_of_ambiguous_programs_is_measured_and_none_is_wrong(
     node = shutil.which("node")
     numbers = list(size(FEW, range(len(MISTAKES))))
     programs = {number: ambiguous(number, mistaken, node or "") for number in numbers}
-    skipped = [number for number, made in programs.items() if made.language == "JavaScript" and node is None]
+    skipped = [
+        number
+        for number, made in programs.items()
+        if made.language == "JavaScript" and node is None
+    ]
     wrong, missed, runs, languages = {}, [], [], []
     before = sum(os.times()[:4])
     for number, made in programs.items():
@@ -109,17 +133,33 @@ def test_no_program_drawn_at_random_is_told_a_wrong_cause(
 
 
 def command(program: list[str], *words: str) -> str:
-    return " ".join([shlex.join(program), *(f"{key}={value}" for key, value in GIVEN.items()), *words])
+    return " ".join(
+        [shlex.join(program), *(f"{key}={value}" for key, value in GIVEN.items()), *words]
+    )
 
 
 def test_what_is_measured_is_told_and_kept(foucault: Run, mistaken: Path, tmp_path: Path) -> None:
     out = tmp_path / "runs"
-    words = ("score", "paris", *SHORT, "--run", command([str(mistaken)], "lat=48.5"), "--experiments", "--out", out)
+    words = (
+        "score",
+        "paris",
+        *SHORT,
+        "--run",
+        command([str(mistaken)], "lat=48.5"),
+        "--experiments",
+        "--out",
+        out,
+    )
     status, text, _ = foucault(*words)
     assert status == 1
-    assert "no rotation (site.rotation_rate = 0)" in text and "what is wrong is in what the rotation does" in text
+    assert (
+        "no rotation (site.rotation_rate = 0)" in text
+        and "what is wrong is in what the rotation does" in text
+    )
     assert "Measured: one explanation makes the 3 files" in text
-    found = re.search(r"your program takes site.latitude to be (\S+) and not 48.846111 degrees: ", text)
+    found = re.search(
+        r"your program takes site.latitude to be (\S+) and not 48.846111 degrees: ", text
+    )
     assert found is not None and float(found[1]) == pytest.approx(48.5, abs=1e-6)
     status, text, _ = foucault(*words, "--json")  # into the same folder
     document = json.loads(text)
@@ -132,20 +172,41 @@ def test_what_is_measured_is_told_and_kept(foucault: Run, mistaken: Path, tmp_pa
     assert all((out / f"{word}.txt").read_text().startswith("t,x,y,z\n0,0.") for word in kept)
 
 
-def test_a_number_in_proportion_is_told_from_one_that_is_typed(foucault: Run, mistaken: Path) -> None:
-    for words, said in (("gtimes=1.001", "in proportion to what it is given"), ("g=9.8165", "whatever it is given")):
-        text = foucault("score", "paris", *SHORT, "--run", command([str(mistaken)], words), "--experiments")[1]
+def test_a_number_in_proportion_is_told_from_one_that_is_typed(
+    foucault: Run, mistaken: Path
+) -> None:
+    for words, said in (
+        ("gtimes=1.001", "in proportion to what it is given"),
+        ("g=9.8165", "whatever it is given"),
+    ):
+        text = foucault(
+            "score", "paris", *SHORT, "--run", command([str(mistaken)], words), "--experiments"
+        )[1]
         found = re.search(r"takes site.gravity to be (\S+) and not 9.80665 m/s², (.*): ", text)
-        assert found is not None and float(found[1]) == pytest.approx(9.8165, abs=1e-3) and found[2] == said
+        assert (
+            found is not None
+            and float(found[1]) == pytest.approx(9.8165, abs=1e-3)
+            and found[2] == said
+        )
 
 
-def test_a_program_that_fails_or_is_killed_draws_no_conclusion(foucault: Run, tmp_path: Path) -> None:
+def test_a_program_that_fails_or_is_killed_draws_no_conclusion(
+    foucault: Run, tmp_path: Path
+) -> None:
     source = tmp_path / "fails.py"
     inner = (ROOT / "tests/helpers/mistaken.py").read_text()
-    source.write_text(inner.replace("\nrows, h = ", "\nassert turn and given('lat', 0) < 90, 'no pole'\nrows, h = "))
+    source.write_text(
+        inner.replace(
+            "\nrows, h = ", "\nassert turn and given('lat', 0) < 90, 'no pole'\nrows, h = "
+        )
+    )
     run = command([sys.executable, str(source)], "lat=48.5")
-    run = run.replace(" lat=48.5", " lat=48.5 lat={latitude} ratetimes=1.01").replace("h=0.01", "h=0.05")
-    document = json.loads(foucault("score", "paris", *SHORT, "--run", run, "--experiments", "--json")[1])
+    run = run.replace(" lat=48.5", " lat=48.5 lat={latitude} ratetimes=1.01").replace(
+        "h=0.01", "h=0.05"
+    )
+    document = json.loads(
+        foucault("score", "paris", *SHORT, "--run", run, "--experiments", "--json")[1]
+    )
     runs = {one["id"]: one for one in document["experiments"]["runs"]}
     assert runs["no_rotation"]["max_error_m"] is None
     assert "nothing follows" in runs["no_rotation"]["conclusion"]
@@ -162,12 +223,24 @@ def test_a_mistake_that_nobody_knows_has_no_name(
     fields = [f"run.t_end={t_end}", f"run.grid_step={grid_step}", "run.transits=false"]
     source = tmp_path / "hard.py"
     inner = (ROOT / "tests/helpers/mistaken.py").read_text()
-    source.write_text(inner.replace("    pull = (", "    fx, fy = fx - 0.02 * x**3, fy - 0.02 * y**3\n    pull = ("))
+    source.write_text(
+        inner.replace(
+            "    pull = (", "    fx, fy = fx - 0.02 * x**3, fy - 0.02 * y**3\n    pull = ("
+        )
+    )
     run = command([sys.executable, str(source)]).replace("h=0.01", "h=0.05")
     for word in ("length", "latitude", "x0", "y0", "vx0", "vy0", "t_end"):  # two runs are enough
         run = run.replace(f"{{{word}}}", placeholders(load_scene("paris", fields))[word])
-    words = ["--t-end", t_end, *(part for field in fields for part in ("--set", field)), "--repeats", "0"]
-    document = json.loads(foucault("score", "paris", *words, "--run", run, "--experiments", "--json")[1])
+    words = [
+        "--t-end",
+        t_end,
+        *(part for field in fields for part in ("--set", field)),
+        "--repeats",
+        "0",
+    ]
+    document = json.loads(
+        foucault("score", "paris", *words, "--run", run, "--experiments", "--json")[1]
+    )
     assert document["experiments"]["runs"] and document["experiments"]["measured"] == []
     assert document["causes"] == [] and document["diagnosis"] is None
 
@@ -179,11 +252,18 @@ def test_a_mistake_that_nobody_knows_has_no_name(
         (("--run", "./p {x0} {t_end}", "--experiments", "--out", "."), "a new folder"),
         (("--run", "./p", "--setting", "0"), "a positive number of seconds"),
         (("--experiments",), "without --run"),
-        (("--run", "./p {length}", "--experiments", "--no-diagnosis"), "together with --no-diagnosis"),
+        (
+            ("--run", "./p {length}", "--experiments", "--no-diagnosis"),
+            "together with --no-diagnosis",
+        ),
     ],
 )
 def test_experiments_that_cannot_be_made_are_refused(
-    foucault: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], said: str
+    foucault: Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    said: str,
 ) -> None:
     (tmp_path / "mine.txt").write_text("not yours")
     monkeypatch.chdir(tmp_path)
@@ -200,7 +280,9 @@ def test_a_program_that_agrees_is_not_run_again(foucault: Run, mistaken: Path) -
 
 def test_the_usual_step_divides_the_grid(foucault: Run, tmp_path: Path) -> None:
     source, note = tmp_path / "mine.py", tmp_path / "step"
-    source.write_text("import sys\nopen(sys.argv[1], 'w').write(sys.argv[2])\nprint('t,x,y')\nprint('0,0.3,0.4')\n")
+    source.write_text(
+        "import sys\nopen(sys.argv[1], 'w').write(sys.argv[2])\nprint('t,x,y')\nprint('0,0.3,0.4')\n"
+    )
     run = f"{shlex.join([sys.executable, str(source), str(note)])} {{setting}}"
     assert foucault("score", "paris", *SHORT, "--run", run, "--no-diagnosis")[0] == 1
     step_s = float(note.read_text())

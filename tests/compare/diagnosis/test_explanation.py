@@ -47,7 +47,9 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 def compiled(source: Path, folder: Path) -> Path:
     if COMPILER is None:
         pytest.skip("no C compiler")
-    subprocess.run([COMPILER, "-O2", "-o", str(folder / source.stem), str(source), "-lm"], check=True)
+    subprocess.run(
+        [COMPILER, "-O2", "-o", str(folder / source.stem), str(source), "-lm"], check=True
+    )
     return folder / source.stem
 
 
@@ -61,8 +63,17 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return compiled(MISTAKEN_C, tmp_path_factory.mktemp("programs"))
 
 
-def scored(program: Path, fault: str, *options: str, span: str = SPAN) -> tuple[int, dict[str, Any]]:
-    run = ["--run", f"{shlex.quote(str(program))} {fault} {WORDS} 0.01 3000", "--repeats", "0", "--set", span]
+def scored(
+    program: Path, fault: str, *options: str, span: str = SPAN
+) -> tuple[int, dict[str, Any]]:
+    run = [
+        "--run",
+        f"{shlex.quote(str(program))} {fault} {WORDS} 0.01 3000",
+        "--repeats",
+        "0",
+        "--set",
+        span,
+    ]
     result = CliRunner().invoke(commands(), ["score", "paris", *run, "--json", *options])
     return result.exit_code, json.loads(result.stdout)
 
@@ -101,7 +112,9 @@ def test_a_named_mistake_is_recognised(program: Path, fault: str) -> None:
         ("release", "release.x", 1e-3),
     ],
 )
-def test_a_wrong_input_is_named_with_its_shift(program: Path, fault: str, name: str, shift: float) -> None:
+def test_a_wrong_input_is_named_with_its_shift(
+    program: Path, fault: str, name: str, shift: float
+) -> None:
     status, said = scored(program, fault)
     assert (status, said["diagnosis"]["id"]) == (1, name)
     assert said["diagnosis"]["shift"] == pytest.approx(shift, rel=1e-3)
@@ -125,8 +138,10 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
 @pytest.mark.parametrize(
     ("name", "value", "decimals", "rows", "span"),
     [
-        ("site.gravity", "9.8068", 4, 361, SPAN),  # the first half minute shows nothing but the rounding of the output
-        pytest.param("site.gravity", "9.80667", 4, 361, LONGER, marks=LONG),  # and here the first minutes
+        # the first half minute shows nothing but the rounding of the output
+        ("site.gravity", "9.8068", 4, 361, SPAN),
+        # and here the first minutes
+        pytest.param("site.gravity", "9.80667", 4, 361, LONGER, marks=LONG),
         pytest.param("site.latitude", "30", 17, 361, LONGER, marks=LONG),
         ("pendulum.length", "70", 17, 400, SPAN),
         pytest.param("pendulum.drag", "1e-6", 17, 361, SPAN, marks=LONG),
@@ -179,7 +194,8 @@ def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
 
 
 SHARE = 0.95
-DRAWN = (0, 2, 3, 6)  # of an input, a model, a force; the tests below have clocks, axes and integrators
+# of an input, a model, a force; the tests below have clocks, axes and integrators
+DRAWN = (0, 2, 3, 6)
 
 
 @pytest.mark.parametrize(
@@ -190,7 +206,9 @@ DRAWN = (0, 2, 3, 6)  # of an input, a model, a force; the tests below have cloc
         (39, {"integrator_rk4"}),  # on a swing of 60 degrees
     ],
 )
-def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path, number: int, words: set[str]) -> None:
+def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(
+    mistaken: Path, number: int, words: set[str]
+) -> None:
     made = case(number)
     assert made.told(*made.rows(mistaken)).words >= words
 
@@ -207,10 +225,13 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path, n
         (5001, 13, {"unit_of_time"}),  # of a swing of 66 degrees
         pytest.param(17, 169, {"integrator_leapfrog"}, marks=LONG),  # in single precision
         # its clock seemed to be off
-        pytest.param(90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}, marks=LONG),
+        pytest.param(
+            90001, 71, {"integrator_explicit_euler", "release.x", "site.gravity"}, marks=LONG
+        ),
         # beside a clock, which g and the rate stand for
         pytest.param(20, 78, {"integrator_semi_implicit_euler_drift"}, marks=LONG),
-        (70007, 146, {"coriolis_sign", "radians"}),  # whose rate is that of the Earth, but for its sign
+        # whose rate is that of the Earth, but for its sign
+        (70007, 146, {"coriolis_sign", "radians"}),
         # in single precision, times too; so is the next
         pytest.param(61126, 110, {"linear_in_angle", "rounded_rate"}, marks=LONG),
         (61126, 153, {"pendulum.length", "solar_day"}),
@@ -235,7 +256,8 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         (70007, 263),  # a linear model beside the same without its gravity
         # vertical alone, Ω of the other hemisphere is Ω of the other sign
         pytest.param(61126, 264, marks=LONG),
-        (70007, 154),  # a clock and drag, which a step and three numbers that nobody types make as well
+        # a clock and drag, which a step and three numbers that nobody types make as well
+        (70007, 154),
         # no rotation, which is neither of its forces as well; the next test has the two readings alone
         pytest.param(85005, 148, marks=LONG),
         # x and y in each other's place, which a swapped release and Ω's sign make as well, and leave less
@@ -300,10 +322,16 @@ def corrected(made: Case, program: Path) -> str:
         if explanation is not None:
             words |= {one.id.removeprefix("as_if.") for one in explanation.causes}
         if not made.parts or not made.matters(program):
-            within = found.agrees or (explanation is not None and explanation.corrected_m <= made.allowed_m)
+            within = found.agrees or (
+                explanation is not None and explanation.corrected_m <= made.allowed_m
+            )
             return "agrees" if within else "disagrees"
         words |= {"no_coriolis", "no_centrifugal"} if "no_rotation" in words else set()
-        steps = {word for word in made.true if word.startswith("integrator") and "integrator_loose" in words}
+        steps = {
+            word
+            for word in made.true
+            if word.startswith("integrator") and "integrator_loose" in words
+        }
         mended = [made.without({word}) for word in made.rng.permutation(sorted(words | steps))]
         fewer = [one for one in mended if len(one.parts) < len(made.parts)]
         if not fewer:
@@ -320,7 +348,9 @@ def test_nothing_is_said_of_right_programs(mistaken: Path, size: Callable[[int, 
         assert found.agrees or not found.explanation.causes, number
 
 
-def test_nothing_is_named_of_a_smooth_random_error(mistaken: Path, size: Callable[[int, int], int]) -> None:
+def test_nothing_is_named_of_a_smooth_random_error(
+    mistaken: Path, size: Callable[[int, int], int]
+) -> None:
     for number in range(size(1, 100)):
         made = case(number, seed=19, most=0)
         times, columns = made.rows(mistaken)
@@ -332,11 +362,15 @@ def test_nothing_is_named_of_a_smooth_random_error(mistaken: Path, size: Callabl
         assert not made.wrong(made.told(times, columns).words), number
 
 
-@pytest.mark.parametrize("noise_m", [0.0, pytest.param(1e-3, marks=LONG)])  # the test above has a random error
+# the test above has a random error
+@pytest.mark.parametrize("noise_m", [0.0, pytest.param(1e-3, marks=LONG)])
 def test_nothing_is_named_where_nothing_is_known_or_wrong(noise_m: float) -> None:
     scene = make_scene("smooth", run={"t_end": "600", "grid_step": "2", "digits": 20})
     times, rng = np.linspace(0, 600, 301), np.random.default_rng(4)
-    waves = [rng.normal(0, noise_m, 3) * np.sin(times[:, None] * rng.uniform(1e-3, 1, 3)) for _ in range(6)]
+    waves = [
+        rng.normal(0, noise_m, 3) * np.sin(times[:, None] * rng.uniform(1e-3, 1, 3))
+        for _ in range(6)
+    ]
     positions = trajectory(scene, times)[:, :3] + sum(waves)
     found = told(scene, times, dict(zip("xyz", positions.T, strict=True)), 1e-6)
     assert found.agrees is (not noise_m)
@@ -351,7 +385,9 @@ def stepped(scene: Scene, h: float, every: int, leapfrog: bool) -> np.ndarray:
     rows = [here]
     for n in range(1, 400 * every + 1):
         if n > 1 and leapfrog:  # by central differences
-            after = (2 * here - before - h * h * pull * here + h * turn / 2 * before) / (1 + h * turn / 2)
+            after = (2 * here - before - h * h * pull * here + h * turn / 2 * before) / (
+                1 + h * turn / 2
+            )
         else:  # position first
             after = here + (here - before) * (1 - h * turn) - h * h * pull * here if n > 1 else here
         before, here = here, after
@@ -373,7 +409,12 @@ def stepped(scene: Scene, h: float, every: int, leapfrog: bool) -> np.ndarray:
 def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
     length: str, latitude: str, every: int, leapfrog: bool
 ) -> None:
-    fields = [f"pendulum.length={length}", f"site.latitude={latitude}", "release.x=0.01", "release.y=0.02"]
+    fields = [
+        f"pendulum.length={length}",
+        f"site.latitude={latitude}",
+        "release.x=0.01",
+        "release.y=0.02",
+    ]
     scene, h = load_scene("paris", [*fields, "inputs=binary64"]), 0.1 * float(length) ** 0.5 / every
     rows = stepped(scene, h, every, leapfrog)
     times = h * every * np.arange(401)
@@ -381,7 +422,11 @@ def test_two_equal_rows_are_of_a_leapfrog_or_of_a_position_that_goes_first(
     found = told(scene, times, {"x": rows.real.copy(), "y": rows.imag.copy()}, 2.2e-8)
     assert found.explanation.corrected_m < 1e-10
     said = one_word_for_one_motion(found.words)
-    assert said == {"linear_g", "no_centrifugal", f"integrator_{'leapfrog_late' if leapfrog else DRIFT}"}
+    assert said == {
+        "linear_g",
+        "no_centrifugal",
+        f"integrator_{'leapfrog_late' if leapfrog else DRIFT}",
+    }
 
 
 DRIFT = "semi_implicit_euler_drift"
@@ -391,10 +436,14 @@ FEW = [(0.0,), (60.0,), (0.0, 60.0), (30.0, 60.0), (0.0, 60.0, 120.0)]
 
 
 @pytest.mark.parametrize("times", one_in(4, map(pytest.param, FEW)))
-def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(times: tuple[float, ...]) -> None:
+def test_of_a_few_rows_nothing_is_named_but_what_makes_them_exactly(
+    times: tuple[float, ...],
+) -> None:
     """A family of models fits a few rows whatever they are, and so do as many fitted numbers as the rows have."""
     scene = load_scene("paris", ["inputs=binary64"])
-    still = trajectory(scene.with_values(["site.rotation_rate=0"]), np.unique([0.0, *times]))[-len(times) :]
+    still = trajectory(scene.with_values(["site.rotation_rate=0"]), np.unique([0.0, *times]))[
+        -len(times) :
+    ]
     found = told(scene, np.array(times), dict(zip("xy", still.T, strict=False)), 7e-7)
     assert found.words == ({"no_rotation"} if times[-1] > 0 else set())
     for rows in ([[0.3, 0.4], [0.1, 0.2], [0.2, -0.3]], [[-0.1, 0.2], [0.3, 0.4], [0.1, 0.1]]):
@@ -421,8 +470,14 @@ DRIFTS = {"integrator_loose"}
         ({"site.gravity": "2.4516725"}, {"site.gravity"}),
         ({"pendulum.drag": "1e-6"}, {"pendulum.drag"}),
         ({"site.gravity": "2.4516725", "pendulum.drag": "1e-6"}, DRIFTS),
-        ({"site.gravity": "2.4516725", "pendulum.drag": "1e-6", "site.latitude": "48.5"}, DRIFTS | {"site.latitude"}),
-        ({"site.gravity": "2.4516725", "pendulum.drag": "1e-6", "release.x": "0.3001"}, DRIFTS | {"release.x"}),
+        (
+            {"site.gravity": "2.4516725", "pendulum.drag": "1e-6", "site.latitude": "48.5"},
+            DRIFTS | {"site.latitude"},
+        ),
+        (
+            {"site.gravity": "2.4516725", "pendulum.drag": "1e-6", "release.x": "0.3001"},
+            DRIFTS | {"release.x"},
+        ),
     ],
 )
 # of the second the fit lies far off, in a valley
@@ -433,8 +488,12 @@ def test_an_integrator_drifts_in_phase_and_amplitude_and_in_nothing_else(
     """Another g and drag, together, are what a step does, and told as that; each of them alone is told as itself."""
     fields = [f"site.gravity={gravity}", "run.t_end=300", "run.transits=false", "inputs=binary64"]
     scene, times = load_scene("paris", fields), np.linspace(0.0, 300.0, 240)
-    other = changes | ({"site.gravity": "9.80669"} if "site.gravity" in changes and gravity == "9.80665" else {})
-    rows = trajectory(scene.with_values([f"{name}={value}" for name, value in other.items()]), times)
+    other = changes | (
+        {"site.gravity": "9.80669"} if "site.gravity" in changes and gravity == "9.80665" else {}
+    )
+    rows = trajectory(
+        scene.with_values([f"{name}={value}" for name, value in other.items()]), times
+    )
     found = told(scene, times, dict(zip("xy", rows.T, strict=False)), 1e-7)
     assert found.agrees is (changes == {})
     if gravity == "9.80665" or "site.latitude" not in changes:
@@ -444,7 +503,9 @@ def test_an_integrator_drifts_in_phase_and_amplitude_and_in_nothing_else(
 
 
 @pytest.mark.parametrize(("interpreter", "name"), [("python3", "small.py"), ("node", "small.js")])
-def test_programs_in_other_languages_are_explained(interpreter: str, name: str, tmp_path: Path) -> None:
+def test_programs_in_other_languages_are_explained(
+    interpreter: str, name: str, tmp_path: Path
+) -> None:
     """Two phasors in closed form, with a rotation in radians per hour: no project of ours in them."""
     where = sys.executable if interpreter == "python3" else shutil.which(interpreter)
     if where is None:
@@ -501,7 +562,9 @@ def test_an_approximation_of_the_papers_is_named(word: str) -> None:
     assert found.model is not None and found.model.id == word and found.corrected_m < 1e-9
 
 
-def slipped(term: tuple[int, int], value: float, count: int) -> tuple[dict[str, np.ndarray], list[Any]]:
+def slipped(
+    term: tuple[int, int], value: float, count: int
+) -> tuple[dict[str, np.ndarray], list[Any]]:
     """Return rows of a linear program with one coefficient changed, and its place, what it is and what is right."""
     k = constants_in_double(load_scene("paris").exact)
     doubled, swing = 2 * float(k.turn[2]), float(k.gravity)
@@ -516,14 +579,20 @@ def slipped(term: tuple[int, int], value: float, count: int) -> tuple[dict[str, 
 
 
 @pytest.mark.parametrize("count", [300, pytest.param(3000, marks=LONG)])
-@pytest.mark.parametrize(("term", "value"), [((0, 0), 1.001), ((1, 3), 1.0), pytest.param((1, 3), 0.0, marks=LONG)])
-def test_a_slip_in_a_formula_is_found_in_the_accelerations(term: tuple[int, int], value: float, count: int) -> None:
+@pytest.mark.parametrize(
+    ("term", "value"), [((0, 0), 1.001), ((1, 3), 1.0), pytest.param((1, 3), 0.0, marks=LONG)]
+)
+def test_a_slip_in_a_formula_is_found_in_the_accelerations(
+    term: tuple[int, int], value: float, count: int
+) -> None:
     """It is told where no combination of causes describes the rows."""
     columns, (place, wrong, right) = slipped(term, value, count)
     found = told(load_scene("paris"), 0.2 * np.arange(float(count)), columns, 5e-7)
     assert found.words == set() and not found.explanation.causes
     said = found.explanation.slip
-    slip = re.search(r"in the equation of ([xy]), the term with (\w+) is (\S+) .* the model has (\S+)\.", said)
+    slip = re.search(
+        r"in the equation of ([xy]), the term with (\w+) is (\S+) .* the model has (\S+)\.", said
+    )
     assert slip is not None
     assert slip[1] == "xy"[place[0]] and slip[2] == ("x", "y", "vx", "vy")[place[1]]
     assert float(slip[3]) == pytest.approx(wrong, rel=2e-3, abs=1e-7)

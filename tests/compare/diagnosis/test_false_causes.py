@@ -48,13 +48,18 @@ IN_EVERY_RUN = ("y is x", "y is scaled")
     ("change", "span_s"),
     [
         pytest.param(
-            change, span_s, id=f"{name}-{span_s}", marks=() if span_s == 120 and name in IN_EVERY_RUN else LONG
+            change,
+            span_s,
+            id=f"{name}-{span_s}",
+            marks=() if span_s == 120 and name in IN_EVERY_RUN else LONG,
         )
         for name, change in WRONG_COLUMNS
         for span_s in (120, 600)
     ],
 )
-def test_no_cause_is_stated_that_spoils_a_right_column(change: Callable[[Columns], Columns], span_s: int) -> None:
+def test_no_cause_is_stated_that_spoils_a_right_column(
+    change: Callable[[Columns], Columns], span_s: int
+) -> None:
     scene = paris(span_s)
     times = np.linspace(0, span_s, span_s + 1)
     found = explained(scene, times, change(right_rows(scene, times)))
@@ -71,7 +76,11 @@ def test_a_baseline_names_no_cause_for_a_column_that_is_printed_wrongly_now() ->
 
 
 @pytest.mark.parametrize(
-    "factor", [1.0001, *(pytest.param(factor, marks=LONG) for factor in (86400 / 86164.1, 30 / 29.97, 1.001))]
+    "factor",
+    [
+        1.0001,
+        *(pytest.param(factor, marks=LONG) for factor in (86400 / 86164.1, 30 / 29.97, 1.001)),
+    ],
 )
 def test_a_clock_is_no_gravity_and_no_rotation_for_certain(factor: float) -> None:
     """A clock slow by k is a g of k⁻² and a rotation of k⁻¹, each of few digits for some k."""
@@ -117,4 +126,9 @@ def test_velocities_that_are_updated_in_turn_are_no_closed_formula(step_s: float
     times = np.arange(301.0)
     found = explained(scene, times, dict(zip("xy", np.array(rows).T, strict=True)))
     assert found.slip == ""
-    assert {cause.id for cause in found.known} <= {"linear_g", "no_centrifugal", "uniform_gravity", "integrator_loose"}
+    assert {cause.id for cause in found.known} <= {
+        "linear_g",
+        "no_centrifugal",
+        "uniform_gravity",
+        "integrator_loose",
+    }

@@ -31,4 +31,6 @@ def test_neither_a_kernel_of_blas_nor_an_ulp_changes_what_is_said(
     causes = {name: here[name]["causes"] for name in names}
     assert {name: elsewhere[name]["causes"] for name in names} == causes
     assert {name: here[f"{name}~1"]["causes"] for name in names} == causes
-    assert {name: found["wrong"] for name, found in (here | elsewhere).items() if found["wrong"]} == {}
+    assert {
+        name: found["wrong"] for name, found in (here | elsewhere).items() if found["wrong"]
+    } == {}

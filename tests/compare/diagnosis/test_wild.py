@@ -24,12 +24,16 @@ def explained(name: str) -> Any:
     """Return what is said of a trajectory."""
     scene, times, columns = read_in(name)
     x, y, *_ = (float(place) for place in scene.exact.position)
-    return judge(Candidate.of(name, times, columns), scene, tolerance=1e-6 * math.hypot(x, y)).explanation
+    return judge(
+        Candidate.of(name, times, columns), scene, tolerance=1e-6 * math.hypot(x, y)
+    ).explanation
 
 
 def marked(*names: str) -> list[Any]:
     """Return names as parameters of a test, those that take long under --long."""
-    return [name if name in ALWAYS else pytest.param(name, marks=pytest.mark.long) for name in names]
+    return [
+        name if name in ALWAYS else pytest.param(name, marks=pytest.mark.long) for name in names
+    ]
 
 
 @pytest.mark.parametrize("name", marked(*TRUE))

@@ -12,7 +12,9 @@ QUARTER_S = 4.109  # of the period 2π sqrt(67 / 9.79) = 16.44 s
 def test_a_swing_in_paris(installed):
     rk4 = installed("rk4")
     times = QUARTER_S * np.arange(5)
-    outcome = rk4.prepare(Problem.of(load_scene("paris", ["inputs=binary64"]), "plane", times), 0.01)()
+    outcome = rk4.prepare(
+        Problem.of(load_scene("paris", ["inputs=binary64"]), "plane", times), 0.01
+    )()
     x, y, z, vx, vy, _ = outcome.states.T
 
     # released at rest 0.5 m aside, which is 0.5² / (2 · 67) m = 1.87 mm above the lowest point

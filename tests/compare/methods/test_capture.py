@@ -48,5 +48,7 @@ os.write(1, b"after\\n")
 
 
 def test_what_is_written_is_captured_and_quoted_on_one_line():
-    done = subprocess.run([sys.executable, "-c", IN_A_PROCESS_OF_ITS_OWN], check=True, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", IN_A_PROCESS_OF_ITS_OWN], check=True, capture_output=True, text=True
+    )
     assert (done.stdout, done.stderr) == ("a step failed was captured\nafter\n", "")

@@ -30,7 +30,9 @@ ERRORS = {
 def prepared(name, scene, setting=None):
     method, example = METHODS[name], case(scene)
     problem = example.problem(name, rows=ROWS.get(name))
-    return problem, method.prepare(problem, setting or SETTINGS.get(name) or method.settings(example.scene)[-1])
+    return problem, method.prepare(
+        problem, setting or SETTINGS.get(name) or method.settings(example.scene)[-1]
+    )
 
 
 @cache
@@ -44,9 +46,13 @@ def name(request, installed):
     return installed(request.param).id
 
 
-STEEP = {"rk4", "rkmk4", "heyoka_real", "scipy_dop853", "cvode_adams"}  # in every run: one of each family
+# in every run: one of each family
+STEEP = {"rk4", "rkmk4", "heyoka_real", "scipy_dop853", "cvode_adams"}
 CASES = [(name, "paris") for name in METHODS]
-CASES += [(name, "steep") if name in STEEP else pytest.param(name, "steep", marks=pytest.mark.long) for name in METHODS]
+CASES += [
+    (name, "steep") if name in STEEP else pytest.param(name, "steep", marks=pytest.mark.long)
+    for name in METHODS
+]
 
 
 @pytest.mark.parametrize(("name", "scene"), CASES)
@@ -57,7 +63,9 @@ def test_every_method_finds_the_reference(name, scene, installed):
     assert (outcome.status, outcome.reached_t) == ("ok", problem.times[-1])
     assert outcome.states.shape == (len(problem.times), 6)
     assert np.abs(outcome.states - truth)[:, :3].max() < ERRORS.get(name, ERROR) * length
-    assert np.abs(outcome.states - truth)[:, 3:].max() < ERRORS.get(name, ERROR) * length * np.sqrt(9.8 / length)
+    assert np.abs(outcome.states - truth)[:, 3:].max() < ERRORS.get(name, ERROR) * length * np.sqrt(
+        9.8 / length
+    )
 
 
 def test_a_run_can_be_repeated_and_gives_the_same_bits(name):
@@ -91,12 +99,16 @@ def test_a_declaration_is_complete(name):
     assert not method.requires or method.extra
 
 
-@pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.number != "double"])
+@pytest.mark.parametrize(
+    "name", [name for name, method in METHODS.items() if method.number != "double"]
+)
 def test_exact_states_show_errors_far_below_a_doubles(name, installed):
     installed(name)
     problem, outcome = run(name, "paris")
     grid = case("paris").solution.grid
-    errors = [abs(x - truth) for x, truth in zip(outcome.exact.exact("x"), grid.exact("x"), strict=False)]
+    errors = [
+        abs(x - truth) for x, truth in zip(outcome.exact.exact("x"), grid.exact("x"), strict=False)
+    ]
     assert len(outcome.exact) == len(problem.times)
     assert float(max(errors)) < {"heyoka_long_double": 1e-17}.get(name, 1e-27)
     np.testing.assert_allclose(outcome.states[:, 0], outcome.exact["x"], rtol=3e-16, atol=1e-19)
@@ -118,7 +130,9 @@ def test_steps_end_on_output_times_that_they_do_not_divide(installed):
     assert installed("rk4").prepare(problem, 1.5)().steps == 12 * 4  # 5 s in four steps
 
 
-@pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.family is Family.SCIPY])
+@pytest.mark.parametrize(
+    "name", [name for name, method in METHODS.items() if method.family is Family.SCIPY]
+)
 def test_scipy_reports_every_call_of_the_right_hand_side(name, installed):
     installed(name)
     problem = case("paris").problem(name, kind=Counted)
@@ -170,14 +184,28 @@ def test_declarations_load_no_library():
         "import sys, compare.methods as m; [m.METHODS[name] for name in m.METHODS]; "
         "print([x for x in ('heyoka', 'scipy', 'numba', 'flint', 'rebound', 'jax', 'sksundae') if x in sys.modules])"
     )
-    process = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    process = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    )
     assert process.stdout.strip() == "[]"
 
 
 def test_what_is_not_installed_says_what_brings_it():
-    nothing = Method("x", "x", "step", (1,), "", "", lambda problem, setting: None, requires=("no_such_thing",))
+    nothing = Method(
+        "x", "x", "step", (1,), "", "", lambda problem, setting: None, requires=("no_such_thing",)
+    )
     assert available(nothing) == "not installed (no_such_thing)"
-    extra = Method("x", "x", "step", (1,), "", "", lambda p, s: None, requires=("no.such.thing",), extra="methods")
+    extra = Method(
+        "x",
+        "x",
+        "step",
+        (1,),
+        "",
+        "",
+        lambda p, s: None,
+        requires=("no.such.thing",),
+        extra="methods",
+    )
     assert "pip install 'foucault-reference[methods]'" in available(extra)
 
 

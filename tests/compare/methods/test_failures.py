@@ -33,10 +33,14 @@ FIXED = [
     for name, method in METHODS.items()
     if method.setting == "step" and "plane" in method.formulations
 ]
-EXPLICIT = [name for name, method in METHODS.items() if method.native and not name.startswith("cvode")]
+EXPLICIT = [
+    name for name, method in METHODS.items() if method.native and not name.startswith("cvode")
+]
 
 
-@pytest.mark.parametrize("name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs", *EXPLICIT])
+@pytest.mark.parametrize(
+    "name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs", *EXPLICIT]
+)
 def test_a_formulation_that_ends_at_the_horizontal_ends_the_run(name, installed):
     problem = Problem.of(over_the_horizontal(), "plane")
     outcome = installed(name).prepare(problem, METHODS[name].settings(problem.scene)[1])()

@@ -57,8 +57,13 @@ class InItsOwnVariables(Problem):
 
 @needs_compiler
 @pytest.mark.parametrize(
-    "formulation",  # those in every run have all that C++ is printed of: square roots, sines and arc tangents
-    ["plane", "angles", *(pytest.param(word, marks=pytest.mark.long) for word in ("momentum", "space", "spin"))],
+    # those in every run have all that C++ is printed of: square roots, sines and arc tangents
+    "formulation",
+    [
+        "plane",
+        "angles",
+        *(pytest.param(word, marks=pytest.mark.long) for word in ("momentum", "space", "spin")),
+    ],
 )
 def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
     lively = make_scene(
@@ -84,7 +89,9 @@ def test_a_program_is_compiled_once_and_serves_scenes_with_the_same_terms(here, 
     programs = tmp_path / "cache" / "native"
     (kept,) = programs.glob("[0-9a-f]*")
     before = kept.stat()
-    other = c_libraries.prepare(case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part])
+    other = c_libraries.prepare(
+        case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part]
+    )
     assert other().reason == "as asked"
     assert [*programs.glob("[0-9a-f]*")] == [kept]
     after = kept.stat()
@@ -139,7 +146,9 @@ def test_a_version_is_that_of_the_library_itself(installed):
     assert f'puts("{BOOST.version.replace(".", "_")}")' in ran.stdout
 
 
-@pytest.mark.parametrize(("native", "wrapped"), [("cvode_c_adams", "cvode_adams"), ("cvode_c_bdf", "cvode_bdf")])
+@pytest.mark.parametrize(
+    ("native", "wrapped"), [("cvode_c_adams", "cvode_adams"), ("cvode_c_bdf", "cvode_bdf")]
+)
 def test_cvode_takes_the_same_steps_behind_its_wrapper(native, wrapped, installed):
     problem = case("steep").problem(wrapped)
     first, second = (installed(name).prepare(problem, 1e-8)() for name in (native, wrapped))

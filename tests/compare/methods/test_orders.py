@@ -18,8 +18,14 @@ from compare.methods.rhs.problem import Problem
 from reference.numbers.precision import real
 
 SPAN = 3.0
-EXPLICIT = [name for name, method in METHODS.items() if method.setting == "step" and name != "gauss_legendre"]
-needs_numba = pytest.mark.skipif(available(METHODS["rk4"]) is not None, reason="numba is not installed")
+EXPLICIT = [
+    name
+    for name, method in METHODS.items()
+    if method.setting == "step" and name != "gauss_legendre"
+]
+needs_numba = pytest.mark.skipif(
+    available(METHODS["rk4"]) is not None, reason="numba is not installed"
+)
 
 
 @cache
@@ -55,7 +61,9 @@ def fitted_order(prepare, formulation, counts, drag="0"):
         pytest.param("rkmk4", "spin", (200, 400, 800, 1600), marks=pytest.mark.long),
     ],
 )
-def test_the_error_falls_with_the_power_of_the_step_that_the_method_claims(name, formulation, counts, size):
+def test_the_error_falls_with_the_power_of_the_step_that_the_method_claims(
+    name, formulation, counts, size
+):
     order = fitted_order(METHODS[name].prepare, formulation, counts, drag=size("0", "0.1"))
     assert abs(order - METHODS[name].order) < 0.2
 
@@ -64,10 +72,14 @@ def test_the_error_falls_with_the_power_of_the_step_that_the_method_claims(name,
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_the_error_falls_at_least_as_fast_as_the_claim_in_the_formulation_that_suits_it_best(name):
     method = METHODS[name]
-    assert fitted_order(method.prepare, method.formulations[0], (160, 240, 400)) > method.order - 0.2
+    assert (
+        fitted_order(method.prepare, method.formulations[0], (160, 240, 400)) > method.order - 0.2
+    )
 
 
-def test_every_method_of_fixed_step_declares_the_order_that_its_tableau_proves_and_its_title_names() -> None:
+def test_every_method_of_fixed_step_declares_the_order_that_its_tableau_proves_and_its_title_names() -> (
+    None
+):
     gauss_legendre.gauss(gauss_legendre.STAGES)  # raises unless its quadrature has order 2 stages
     of_fixed_step = []
     for file in pkgutil.iter_modules(compare.methods.__path__):
@@ -75,7 +87,9 @@ def test_every_method_of_fixed_step_declares_the_order_that_its_tableau_proves_a
         for method in getattr(module, "METHODS", ()):
             if method.setting == "step":
                 of_fixed_step.append(method.id)
-                tableau = getattr(module, "TABLEAU", None) or getattr(module, method.id.upper(), None)
+                tableau = getattr(module, "TABLEAU", None) or getattr(
+                    module, method.id.upper(), None
+                )
                 proved = tableau.order if tableau else 2 * gauss_legendre.STAGES
                 assert method.order == proved, method.id
                 assert f"order {proved}" in method.title
@@ -109,16 +123,20 @@ def test_gauss_legendre_collocates_at_the_nodes_of_the_quadrature(stages):
     nodes, weights = np.polynomial.legendre.leggauss(stages)
     c = (nodes + 1) / 2
     np.testing.assert_allclose(b, weights / 2, atol=1e-15)
-    for power in range(stages):  # exact for polynomials of lower degree, within the step and ahead of it
+    # exact for polynomials of lower degree, within the step and ahead of it
+    for power in range(stages):
         np.testing.assert_allclose(a @ c**power, c ** (power + 1) / (power + 1), atol=1e-14)
         np.testing.assert_allclose(ahead @ c**power, (1 + c) ** power, rtol=1e-9)
     m = b[:, None] * a + b[None, :] * a.T - np.outer(b, b)
-    np.testing.assert_allclose(m, 0, atol=1e-15)  # the condition for quadratic invariants (Cooper 1987)
+    # the condition for quadratic invariants (Cooper 1987)
+    np.testing.assert_allclose(m, 0, atol=1e-15)
 
 
 @needs_numba
 def test_the_geometric_methods_stay_on_the_sphere_and_the_others_do_not():
-    scene = make_scene(pendulum={"length": "1"}, release={"angle": "170", "azimuth": "20"}, inputs="binary64")
+    scene = make_scene(
+        pendulum={"length": "1"}, release={"angle": "170", "azimuth": "20"}, inputs="binary64"
+    )
     off = {}
     for name, formulation, setting in (
         ("gauss_legendre", "momentum", 0.1),
@@ -148,7 +166,11 @@ def test_gauss_legendre_keeps_the_energy_whatever_the_step_because_it_is_quadrat
     def run(prepare, step, problem=problem):
         x, y, z, *v = states = prepare(problem, step)().states.T
         q = k.cos * z - k.sin * y
-        h = sum(part * part for part in v) / 2 - np.dot(k.pull, states[:3]) - k.rate**2 / 2 * (x * x + q * q)
+        h = (
+            sum(part * part for part in v) / 2
+            - np.dot(k.pull, states[:3])
+            - k.rate**2 / 2 * (x * x + q * q)
+        )
         return states.T, np.abs(h - h[0])
 
     coarse, gauss = run(lambda problem, step: gauss_legendre.prepare(problem, step, 2), 0.1)

@@ -19,7 +19,9 @@ from compare.methods.rhs.problem import Problem
 from compare.methods.rhs.straight_line import compiled
 from reference import load_scene
 
-pytestmark = pytest.mark.skipif(available(METHODS["rk4"]) is not None, reason="numba is not installed")
+pytestmark = pytest.mark.skipif(
+    available(METHODS["rk4"]) is not None, reason="numba is not installed"
+)
 ROWS, STEP = 120, 0.01  # two hours
 
 
@@ -42,15 +44,20 @@ def arguments(problem):
 def test_rk4_finds_the_same_as_the_same_program_in_c(tmp_path, tally):
     source, program = Path(__file__).with_name("rk4_plane.c"), tmp_path / "rk4"
     subprocess.run(["cc", "-O3", "-o", program, source, "-lm"], check=True)
-    problem = Problem.of(load_scene("paris").with_values(["inputs=binary64"]), "plane", 60.0 * np.arange(ROWS + 1))
+    problem = Problem.of(
+        load_scene("paris").with_values(["inputs=binary64"]), "plane", 60.0 * np.arange(ROWS + 1)
+    )
     work = METHODS["rk4"].prepare(problem, STEP)
     begun = time.process_time()
     states = work().states
     ours = time.process_time() - begun
-    printed = subprocess.run([program, *arguments(problem)], check=True, capture_output=True, text=True).stdout
+    printed = subprocess.run(
+        [program, *arguments(problem)], check=True, capture_output=True, text=True
+    ).stdout
     *lines, theirs = printed.split("\n")[:-1]
     theirs_xy = np.array([[float.fromhex(word) for word in line.split()] for line in lines])
-    np.testing.assert_allclose(states[1:, :2], theirs_xy, atol=1e-11)  # metres against n, other roundings
+    # metres against n, other roundings
+    np.testing.assert_allclose(states[1:, :2], theirs_xy, atol=1e-11)
     tally(f"rk4: {ours / float(theirs):.2f} of the CPU time of the same program in C")
 
 
@@ -62,7 +69,8 @@ def test_a_step_of_momentum_has_fewer_operations_than_one_of_plane_and_none_that
         return Counter(line.operation for line in step.lines)
 
     momentum, plane = operations("momentum"), operations("plane")
-    assert all(momentum[operation] <= plane[operation] for operation in ("mul", "add", "sub"))  # a neg joins its sum
+    # a neg joins its sum
+    assert all(momentum[operation] <= plane[operation] for operation in ("mul", "add", "sub"))
     assert set(momentum) == {"mul", "add", "sub", "neg"}
     assert {"div", "sqrt"} < set(plane)
 

@@ -30,7 +30,8 @@ def test_a_misprint_of_a_public_copy_is_refused(name):
     tableau = NYSTROM[name]
     for table, row, column, printed in MISPRINTS[tableau]:
         rows = [list(line) for line in getattr(tableau, table)]
-        if len(rows[row]) > column and rows[row][column] == 0:  # an entry in the wrong column leaves its own empty
+        # an entry in the wrong column leaves its own empty
+        if len(rows[row]) > column and rows[row][column] == 0:
             where = rows[row].index(Fraction(printed))
             rows[row][where] = Fraction(0)
         rows[row][column] = Fraction(printed)

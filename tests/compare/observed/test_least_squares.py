@@ -45,7 +45,9 @@ def test_the_numbers_of_exact_rows_come_back(numbers: tuple[complex, complex]) -
 def test_a_linear_model_needs_one_step() -> None:
     slopes = np.column_stack([np.ones_like(TIMES), 1e9 * TIMES])
     rows = slopes @ [3.0, -2e-9]
-    found, _ = gauss_newton(lambda numbers: (rows - slopes @ numbers, lambda: slopes), np.zeros(2), steps=1, gain=1.0)
+    found, _ = gauss_newton(
+        lambda numbers: (rows - slopes @ numbers, lambda: slopes), np.zeros(2), steps=1, gain=1.0
+    )
     assert found == pytest.approx(np.array([3.0, -2e-9]), rel=1e-12)
 
 
@@ -73,7 +75,9 @@ def test_where_the_first_numbers_leave_none_the_rest_is_infinite() -> None:
 
 
 def test_slopes_by_differences_find_the_same_numbers() -> None:
-    model = by_differences(lambda n: n[0] * np.exp(-n[1] * TIMES), 2.0 * np.exp(-0.7 * TIMES), np.array([1e-6, 1e-6]))
+    model = by_differences(
+        lambda n: n[0] * np.exp(-n[1] * TIMES), 2.0 * np.exp(-0.7 * TIMES), np.array([1e-6, 1e-6])
+    )
     found, _ = gauss_newton(model, np.array([1.5, 0.9]), steps=12, gain=0.9)
     assert found == pytest.approx(np.array([2.0, 0.7]), rel=1e-12)
 
@@ -116,8 +120,11 @@ def test_a_power_comes_back_whatever_the_times(power, times):
 
 
 def test_an_error_that_swings_grows_as_its_envelope_does():
-    t = np.linspace(500, 50000, 400000)  # from sixty half swings on: the first ones have reached no envelope yet
-    assert power_of_time(t, 1e-15 * t**1.5 * np.abs(np.sin(0.38 * t)) + 1e-30, 30) == pytest.approx(1.5, abs=0.05)
+    # from sixty half swings on: the first ones have reached no envelope yet
+    t = np.linspace(500, 50000, 400000)
+    assert power_of_time(t, 1e-15 * t**1.5 * np.abs(np.sin(0.38 * t)) + 1e-30, 30) == pytest.approx(
+        1.5, abs=0.05
+    )
 
 
 def test_late_times_count_no_more_than_early_ones():

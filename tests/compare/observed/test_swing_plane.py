@@ -49,7 +49,9 @@ def test_the_rest_position_in_metres_is_that_of_the_golden_page():
 def test_a_circle_has_no_plane():
     t = np.linspace(0.0, 3.0, 7)
     circle = np.exp(2j * t)
-    assert np.isnan(Gauge((0.0, 0.0, -1.0), 2.0, 0.0).swing_plane(rows_of(circle, 2j * circle))).all()
+    assert np.isnan(
+        Gauge((0.0, 0.0, -1.0), 2.0, 0.0).swing_plane(rows_of(circle, 2j * circle))
+    ).all()
 
 
 def test_the_plane_of_the_reference_turns_evenly_by_the_sine_of_the_apparent_latitude():
@@ -59,7 +61,8 @@ def test_the_plane_of_the_reference_turns_evenly_by_the_sine_of_the_apparent_lat
     line = np.polyfit(times, plane, 1)
     rate = -7.292115e-5 * math.sin(math.radians(48.846111) + 0.00171948)
     assert line[0] == pytest.approx(rate, rel=1e-4)
-    assert np.max(np.abs(plane - np.polyval(line, times))) < math.radians(1 / 3600) * 2  # seconds of arc
+    # seconds of arc
+    assert np.max(np.abs(plane - np.polyval(line, times))) < math.radians(1 / 3600) * 2
 
 
 def test_apsides_of_an_ellipse_are_found_to_rounding():
@@ -67,7 +70,10 @@ def test_apsides_of_an_ellipse_are_found_to_rounding():
     gauge = Gauge((0.0, 0.0, -1.0), omega, 0.0)
     t = np.arange(600) * (gauge.period / PER_SWING)
     phase = omega * t - start
-    rows = rows_of(np.cos(phase) + 1j * minor * np.sin(phase), omega * (1j * minor * np.cos(phase) - np.sin(phase)))
+    rows = rows_of(
+        np.cos(phase) + 1j * minor * np.sin(phase),
+        omega * (1j * minor * np.cos(phase) - np.sin(phase)),
+    )
     times, azimuths = apsides(gauge, t, rows)
     expected = (start + np.pi * np.arange(len(times) + 1)) / omega
     expected = expected[expected > times[0] - 1][: len(times)]
@@ -79,7 +85,11 @@ def test_apsides_of_an_ellipse_are_found_to_rounding():
 @pytest.mark.parametrize("amplitude", ["1", "30", "85", "150"])
 def test_the_frequency_without_rotation_is_that_of_the_complete_elliptic_integral(amplitude):
     scene = parse_scene(
-        {"id": "plane", "site": {"rotation_rate": "0"}, "release": {"angle": amplitude, "azimuth": "20"}}
+        {
+            "id": "plane",
+            "site": {"rotation_rate": "0"},
+            "release": {"angle": amplitude, "azimuth": "20"},
+        }
     )
     quarter = mpmath.ellipk(mpmath.sin(mpmath.radians(int(amplitude)) / 2) ** 2)
     assert frequency(scene, 20) == pytest.approx(
@@ -98,7 +108,9 @@ def test_what_does_not_swing_or_turn_is_refused():
         precession_period(load_scene("equator"))
     with pytest.raises(UnreachableError, match="rest position"):
         Gauge.of(PARIS.with_values(["site.gravity=0", "site.rotation_rate=0"]))
-    fast = PARIS.with_values(["site.latitude=90", "site.rotation_rate=3", "release.x=0", "release.y=0"])
+    fast = PARIS.with_values(
+        ["site.latitude=90", "site.rotation_rate=3", "release.x=0", "release.y=0"]
+    )
     with pytest.raises(UnreachableError):
         frequency(fast)
 

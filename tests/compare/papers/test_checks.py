@@ -46,7 +46,9 @@ def test_a_print_that_is_off_in_the_thirtieth_digit_is_no_identity() -> None:
 
 
 def test_a_misprint_needs_a_correction_that_holds() -> None:
-    assert Identity("a", "here", "", wrong, truth, "right", double_angle).row().verdict == "misprint"
+    assert (
+        Identity("a", "here", "", wrong, truth, "right", double_angle).row().verdict == "misprint"
+    )
     with pytest.raises(UnexplainedError, match="no declared correction holds"):
         Identity("a", "here", "", wrong, truth, "also wrong", wrong).row()
 
@@ -87,25 +89,41 @@ def test_a_numeral_is_the_value_rounded_or_cut_off_or_a_misprint(
 ) -> None:
     row = PrintedNumber("a", "here", numeral, numeral, lambda: mpf(value)).row()
     assert row.verdict == verdict
-    assert (row.correction if verdict == "misprint" else row.remark).replace("0.00007292", "7.292e-5") == note
+    assert (row.correction if verdict == "misprint" else row.remark).replace(
+        "0.00007292", "7.292e-5"
+    ) == note
 
 
 def test_about_means_within_a_tenth_of_what_is_spoken_of() -> None:
     def row(scale: str) -> str:
-        return PrintedNumber("a", "", "", "0.5", lambda: mpf("0.549"), about=lambda: mpf(scale)).row().verdict
+        return (
+            PrintedNumber("a", "", "", "0.5", lambda: mpf("0.549"), about=lambda: mpf(scale))
+            .row()
+            .verdict
+        )
 
     assert row("1") == "reproduced"  # 0.549 rounds to 0.5
-    near = PrintedNumber("a", "", "", "-66.98", lambda: mpf("-66.998"), about=lambda: mpf("0.004"), decimals=3).row()
+    near = PrintedNumber(
+        "a", "", "", "-66.98", lambda: mpf("-66.998"), about=lambda: mpf("0.004"), decimals=3
+    ).row()
     assert (near.verdict, near.correction) == ("misprint", "-66.998")
     assert (
-        PrintedNumber("a", "", "", "6370", lambda: mpf("6371"), about=lambda: mpf(6371)).row().verdict
+        PrintedNumber("a", "", "", "6370", lambda: mpf("6371"), about=lambda: mpf(6371))
+        .row()
+        .verdict
         == "approximation"
     )
 
 
 def test_a_numeral_may_follow_from_the_paper_s_own_rounded_inputs() -> None:
     row = PrintedNumber(
-        "a", "", "", "5.88", lambda: mpf("5.865"), from_inputs=lambda: mpf("5.876"), inputs="its inputs"
+        "a",
+        "",
+        "",
+        "5.88",
+        lambda: mpf("5.865"),
+        from_inputs=lambda: mpf("5.876"),
+        inputs="its inputs",
     ).row()
     assert (row.verdict, row.remark) == ("reproduced", "from its inputs: 5.876")
 
@@ -117,7 +135,9 @@ def test_a_sentence_that_fails_needs_one_that_holds() -> None:
         replace(fails, corrected=lambda: False).row()
 
 
-@pytest.mark.parametrize("section", [kinematics, rest, small], ids=["Mathar II", "Mathar V", "Gastebois 5, 6.1"])
+@pytest.mark.parametrize(
+    "section", [kinematics, rest, small], ids=["Mathar II", "Mathar V", "Gastebois 5, 6.1"]
+)
 def test_no_identity_survives_a_change_in_its_thirtieth_digit(section: Any, size: Any) -> None:
     declared: list[Check] = section.checks()
     count = 0
@@ -128,7 +148,11 @@ def test_no_identity_survives_a_change_in_its_thirtieth_digit(section: Any, size
         def changed(p: Point, check: Identity = check) -> Any:
             value = check.truth(p)
             factor = 1 + MP.mpf("1e-30")
-            return tuple(part * factor for part in value) if isinstance(value, tuple) else value * factor
+            return (
+                tuple(part * factor for part in value)
+                if isinstance(value, tuple)
+                else value * factor
+            )
 
         with pytest.raises(UnexplainedError):
             replace(check, formula=changed, corrected=None).row()

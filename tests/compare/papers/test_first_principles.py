@@ -26,7 +26,8 @@ def test_the_suspension_stands_on_the_ellipsoid_and_its_normal() -> None:
         x, y, z = suspension(p.but(altitude=MP.zero), MP.one)
         polar = p.radius * (1 - p.flattening)
         assert abs((x * x + y * y) / p.radius**2 + z * z / polar**2 - 1) < TINY
-        slope = MP.atan2(z / polar**2, sqrt(x * x + y * y) / p.radius**2)  # of the gradient of that quadric
+        # of the gradient of that quadric
+        slope = MP.atan2(z / polar**2, sqrt(x * x + y * y) / p.radius**2)
         assert abs(slope - p.phi) < TINY
 
 
@@ -50,7 +51,8 @@ def test_euler_and_lagrange_of_a_planar_pendulum_are_the_textbook_s() -> None:
     for p in points():
         still = MP.zero
         q, v, a = (
-            vector(part, other) for part, other in ((p.cord, p.azimuth), (p.cord_rate, still), (p.cord_second, still))
+            vector(part, other)
+            for part, other in ((p.cord, p.azimuth), (p.cord_rate, still), (p.cord_second, still))
         )
         left = euler_lagrange(p.but(rate=still), by_angles, q, v, a, 0)
         textbook = p.length**2 * p.cord_second + p.gravity * p.length * MP.sin(p.cord)

@@ -46,7 +46,15 @@ def test_the_defaults_are_the_paper_s() -> None:
     options = Options.parse({})
     inputs = options.scene.exact
     exact = load_scene("paris").with_values(["inputs=binary64"]).exact
-    for name in ("length", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening"):
+    for name in (
+        "length",
+        "latitude",
+        "altitude",
+        "gravity",
+        "rotation_rate",
+        "equatorial_radius",
+        "flattening",
+    ):
         assert getattr(inputs, name) == getattr(exact, name)
     assert inputs.position == (0, 0, 0, 0)
     assert (options.order, options.bits, options.skip, options.steps) == ("4", 0, 1, 864000)
@@ -143,7 +151,9 @@ def test_a_transit_stands_between_the_snapshots_around_it_and_gives_n_over_two_t
 def errors(steps: list[float], **switches: str) -> np.ndarray:
     worst = []
     for step in steps:
-        table = snapshots(output(**PARIS, T="100", t=repr(step), s=str(round(10 / step)), **switches))
+        table = snapshots(
+            output(**PARIS, T="100", t=repr(step), s=str(round(10 / step)), **switches)
+        )
         truth = trajectory(load_scene("paris"), table[:, 0])
         worst.append(np.abs(table[:, 1:4] - truth[:, :3]).max())
     return np.array(worst)
@@ -151,7 +161,11 @@ def errors(steps: list[float], **switches: str) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("digit", "power", "steps"),
-    [("4", 4, [1.0, 0.5, 0.25, 0.125]), ("5", 6, [2.5, 2.0, 1.25, 1.0]), ("6", 7, [5.0, 2.5, 2.0, 1.25])],
+    [
+        ("4", 4, [1.0, 0.5, 0.25, 0.125]),
+        ("5", 6, [2.5, 2.0, 1.25, 1.0]),
+        ("6", 7, [5.0, 2.5, 2.0, 1.25]),
+    ],
 )
 def test_at_ordinary_steps_the_three_schemes_converge_as_the_paper_says(
     digit: str, power: int, steps: list[float]
@@ -175,12 +189,17 @@ def test_transits_of_the_paper_s_step_are_right_to_ten_nanoseconds() -> None:
     assert round(zeros[1][2], 9) == 0.060843633  # the paper's
     table = snapshots(printed)
     assert table[:, 0] == pytest.approx(np.arange(1021), abs=1e-9)
-    assert table[-1, 1:3] == pytest.approx([golden.x[17], golden.y[17]], abs=1e-9)  # a golden row a minute
+    # a golden row a minute
+    assert table[-1, 1:3] == pytest.approx([golden.x[17], golden.y[17]], abs=1e-9)
 
 
 @pytest.mark.parametrize(
     ("bits", "word"),
-    [(1, "mathar_item_2"), pytest.param(2, "mathar_item_1", marks=pytest.mark.long), (3, "mathar_items_1_2")],
+    [
+        (1, "mathar_item_2"),
+        pytest.param(2, "mathar_item_1", marks=pytest.mark.long),
+        (3, "mathar_items_1_2"),
+    ],
 )
 def test_the_bits_drop_what_the_approximations_of_section_vi_drop(bits: int, word: str) -> None:
     few = {**PARIS, "T": "600", "t": "0.01", "s": "6000"}
@@ -229,7 +248,9 @@ def test_the_zero_of_a_parabola_is_found_exactly(root: float, lean: float, bend:
         return (s - root) * (slope + bend * (s + root) / 2) * (1 if lean > 0 else -1)
 
     t = np.array([9.0, 10.0, 11.0])
-    assert parabola_zero(t, np.array([value(s) for s in (-1.0, 0.0, 1.0)])) == pytest.approx(10 + root, abs=1e-12)
+    assert parabola_zero(t, np.array([value(s) for s in (-1.0, 0.0, 1.0)])) == pytest.approx(
+        10 + root, abs=1e-12
+    )
     before = np.array([value(s + 1) for s in (-1.0, 0.0, 1.0)])
     assert parabola_zero(t, before) == pytest.approx(9 + root, abs=1e-12)
 
@@ -257,8 +278,12 @@ def test_the_interpolated_zero_of_a_sine_is_of_third_order() -> None:
         ([1.0, -1.0], [0.5]),  # two values only
     ],
 )
-def test_zeros_on_steps_at_the_start_and_without_a_change_of_sign(values: list[float], zeros: list[float]) -> None:
-    assert Transits().of(np.arange(len(values), dtype=float), np.array(values)) == pytest.approx(zeros)
+def test_zeros_on_steps_at_the_start_and_without_a_change_of_sign(
+    values: list[float], zeros: list[float]
+) -> None:
+    assert Transits().of(np.arange(len(values), dtype=float), np.array(values)) == pytest.approx(
+        zeros
+    )
 
 
 @given(st.integers(2, 40), st.integers(0, 9))
@@ -284,13 +309,24 @@ def app() -> typer.Typer:
 @pytest.mark.parametrize(
     ("typed", "switches"),
     [
-        (["-x", "0.3", "-T", "10", "-t", "0.5", "-R", "5"], {"x": "0.3", "T": "10", "t": "0.5", "R": "5"}),
+        (
+            ["-x", "0.3", "-T", "10", "-t", "0.5", "-R", "5"],
+            {"x": "0.3", "T": "10", "t": "0.5", "R": "5"},
+        ),
         # two switches are letters or the digits that are printed
-        (["-O", "-1e-3", "-l", "66", "-T", "5", "-s", "50"], {"O": "-1e-3", "l": "66", "T": "5", "s": "50"}),
-        (["-0", "-1e-3", "-1", "66", "-T", "5", "-s", "50"], {"O": "-1e-3", "l": "66", "T": "5", "s": "50"}),
+        (
+            ["-O", "-1e-3", "-l", "66", "-T", "5", "-s", "50"],
+            {"O": "-1e-3", "l": "66", "T": "5", "s": "50"},
+        ),
+        (
+            ["-0", "-1e-3", "-1", "66", "-T", "5", "-s", "50"],
+            {"O": "-1e-3", "l": "66", "T": "5", "s": "50"},
+        ),
     ],
 )
-def test_the_command_prints_what_lines_gives(app: typer.Typer, typed: list[str], switches: dict[str, str]) -> None:
+def test_the_command_prints_what_lines_gives(
+    app: typer.Typer, typed: list[str], switches: dict[str, str]
+) -> None:
     outcome = CliRunner().invoke(app, ["pend", "-y", "-0.4", *typed])
     assert outcome.exit_code == 0
     assert outcome.stdout.splitlines() == output(y="-0.4", **switches)
@@ -303,7 +339,8 @@ def test_its_output_scores_as_the_paris_pendulum(tmp_path: Path) -> None:
     path = tmp_path / "pend.txt"
     path.write_text("\n".join([*output(**PARIS, T="600", t="0.05", s="100", R="6"), ""]))
     scene = load_scene("paris", ["run.t_end=600"])
-    result = judge(read(path), scene, tolerance=1e-6)  # a parabola's transits at 0.05 s are good to 1.2e-6 s
+    # a parabola's transits at 0.05 s are good to 1.2e-6 s
+    result = judge(read(path), scene, tolerance=1e-6)
     assert result.agrees
     assert result.errors.max_m < 1e-12
     worse = tmp_path / "worse.txt"

@@ -25,7 +25,9 @@ from reference import InputError, load, solve, write
 from reference.scenes.shipped import golden_root
 
 Built = tuple[Path, list[JudgedRow]]
-ROW = JudgedRow("a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correction="x > y", remark="both")
+ROW = JudgedRow(
+    "a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correction="x > y", remark="both"
+)
 
 HERE = os.environ | {"PYTHONPATH": str(ROOT)}
 
@@ -93,7 +95,9 @@ def judged(built: Built) -> dict[str, JudgedRow]:
     return {row.id: row for row in built[1]}
 
 
-def test_there_is_a_row_for_more_than_a_hundred_lines_of_all_three_papers(judged: dict[str, JudgedRow]) -> None:
+def test_there_is_a_row_for_more_than_a_hundred_lines_of_all_three_papers(
+    judged: dict[str, JudgedRow],
+) -> None:
     assert len(judged) >= 250
     for paper in ("mathar_", "gastebois_", "methods_"):
         assert sum(word.startswith(paper) for word in judged) >= 30
@@ -104,14 +108,22 @@ def test_ids_are_unique_words(judged: dict[str, JudgedRow]) -> None:
     assert all(re.fullmatch(r"[a-z][a-z0-9_]*", word) for word in judged)
 
 
-def test_the_misprints_are_these_and_each_correction_says_what_is_right(judged: dict[str, JudgedRow]) -> None:
+def test_the_misprints_are_these_and_each_correction_says_what_is_right(
+    judged: dict[str, JudgedRow],
+) -> None:
     known = KNOWN_MISPRINTS | FURTHER_MISPRINTS
-    corrections = {word: row.correction for word, row in judged.items() if row.verdict == "misprint"}
+    corrections = {
+        word: row.correction for word, row in judged.items() if row.verdict == "misprint"
+    }
     assert set(corrections) == set(known)
-    assert {word: corrections[word] for word, part in known.items() if part not in corrections[word]} == {}
+    assert {
+        word: corrections[word] for word, part in known.items() if part not in corrections[word]
+    } == {}
 
 
-def test_the_paper_s_numbered_equations_and_each_power_of_47_are_exact_as_printed(judged: dict[str, JudgedRow]) -> None:
+def test_the_paper_s_numbered_equations_and_each_power_of_47_are_exact_as_printed(
+    judged: dict[str, JudgedRow],
+) -> None:
     verdicts = {number: judged[f"mathar_{number}"].verdict for number in EXACT_IN_MATHAR}
     assert verdicts == dict.fromkeys(EXACT_IN_MATHAR, "exact")
 
@@ -132,9 +144,13 @@ def digits_of(row: JudgedRow) -> int:
     return max(len(number.replace(".", "").strip("0")) for number in numbers)
 
 
-def test_recomputed_numbers_have_fifteen_digits_unless_they_end_before(judged: dict[str, JudgedRow]) -> None:
+def test_recomputed_numbers_have_fifteen_digits_unless_they_end_before(
+    judged: dict[str, JudgedRow],
+) -> None:
     short = {word for word, row in judged.items() if digits_of(row) < 15}
-    assert short == {f"{paper}_{word}" for paper, words in ENDS_BEFORE.items() for word in words.split()}
+    assert short == {
+        f"{paper}_{word}" for paper, words in ENDS_BEFORE.items() for word in words.split()
+    }
 
 
 def test_the_paper_s_two_last_frequencies_are_both_explained(judged: dict[str, JudgedRow]) -> None:
@@ -148,7 +164,9 @@ def test_the_paper_s_two_last_frequencies_are_both_explained(judged: dict[str, J
 
 def test_the_orders_of_the_approximations_are_those_of_theory(judged: dict[str, JudgedRow]) -> None:
     orders = {
-        word: float(match[1]) for word, row in judged.items() if (match := re.search(r"order (\d[.\d]*) in", row.error))
+        word: float(match[1])
+        for word, row in judged.items()
+        if (match := re.search(r"order (\d[.\d]*) in", row.error))
     }
     assert len(orders) >= 25
     assert orders["mathar_vi_2"] == pytest.approx(2, abs=0.05)
@@ -168,7 +186,13 @@ def test_a_dataset_of_ones_own_in_the_current_folder_changes_no_verdict(tmp_path
 def test_the_folder_holds_the_page_the_figures_and_the_rows(built: Built) -> None:
     numbers = list(FIGURES)
     assert numbers == [1, 2, 3, 4, 5, 6, 7, 8, 9]
-    expected = {"SHA256SUMS", "index.html", "rows.csv", "rows.json", *(f"figure_{n}.svg" for n in numbers)}
+    expected = {
+        "SHA256SUMS",
+        "index.html",
+        "rows.csv",
+        "rows.json",
+        *(f"figure_{n}.svg" for n in numbers),
+    }
     assert {path.name for path in built[0].iterdir()} == expected
 
 
@@ -178,19 +202,28 @@ def test_json_and_csv_hold_the_same_rows(built: Built) -> None:
     with (folder / "rows.csv").open(encoding="utf-8", newline="") as handle:
         as_csv = list(csv.DictReader(handle))
     for row in as_csv:  # what a spreadsheet would run begins with an apostrophe there
-        row.update({key: cell[1:] if cell[:1] == "'" and cell[1:2] in "=+-@" else cell for key, cell in row.items()})
+        row.update(
+            {
+                key: cell[1:] if cell[:1] == "'" and cell[1:2] in "=+-@" else cell
+                for key, cell in row.items()
+            }
+        )
     assert as_json == as_csv == [asdict(row) for row in rows]
     assert {"id", "place", "printed", "recomputed", "verdict"} <= set(as_json[0])
 
 
-def test_the_page_needs_nothing_from_outside_and_shows_each_figure_beside_its_caption(built: Built) -> None:
+def test_the_page_needs_nothing_from_outside_and_shows_each_figure_beside_its_caption(
+    built: Built,
+) -> None:
     text = (built[0] / "index.html").read_text(encoding="utf-8")
     assert not re.search(r"""(src|href)=["'](?!data:|#)""", text)
     assert "http" not in re.sub(r'base64,[^"]*', "", text)
     for number in FIGURES:
         drawn = re.search(rf'id="figure-{number}" class="plate">\n<img [^>]*base64,([^"]*)"', text)
         assert drawn is not None
-        assert base64.b64decode(drawn[1]).decode() == (built[0] / f"figure_{number}.svg").read_text("utf-8")
+        assert base64.b64decode(drawn[1]).decode() == (built[0] / f"figure_{number}.svg").read_text(
+            "utf-8"
+        )
     for row in built[1]:
         assert f'id="{row.id}"' in text
 
@@ -265,5 +298,8 @@ def test_a_higher_order_is_nearer_to_the_truth_after_12000_s() -> None:
     pytest.importorskip("numba")
     _, truth = points.window(12000, 20, step=0.5)
     states = figures.orders_at(12000, 20, 0.5)
-    worst = [float(np.abs(states[name][:, :3] - truth[:, :3]).max()) for name in ("rk4", "rkng56", "rkng67")]
+    worst = [
+        float(np.abs(states[name][:, :3] - truth[:, :3]).max())
+        for name in ("rk4", "rkng56", "rkng67")
+    ]
     assert worst[0] > 100 * worst[1] > 1e4 * worst[2] / 100

@@ -42,9 +42,13 @@ def without_the_centrifugal_part() -> tuple[Any, Any]:
 
     def missed(latitude: Any, gravity: Any) -> tuple[Any, Any]:
         there = P.but(latitude=latitude, gravity=gravity)
-        return latitude + degrees(there.case.rest_angle) - P.latitude, there.case.pull_at_rest - P.gravity
+        return latitude + degrees(
+            there.case.rest_angle
+        ) - P.latitude, there.case.pull_at_rest - P.gravity
 
-    return tuple(MP.findroot(missed, (P.latitude - degrees(P.case.rest_angle), P.gravity), tol=1e-30))
+    return tuple(
+        MP.findroot(missed, (P.latitude - degrees(P.case.rest_angle), P.gravity), tol=1e-30)
+    )
 
 
 def estimate_with_square_rate() -> Any:
@@ -67,7 +71,9 @@ def gaps() -> list[Any]:
 
 def last_run_that_prints_633() -> Any:
     times = transits("t")
-    return next(times[n - 1] for n in range(2, 400, 2) if n / (2 * times[n - 1]) > mpf("0.0608436335"))
+    return next(
+        times[n - 1] for n in range(2, 400, 2) if n / (2 * times[n - 1]) > mpf("0.0608436335")
+    )
 
 
 def detuned() -> Any:
@@ -81,15 +87,21 @@ NUMBERS = {
     "turn": lambda: f"clockwise by {fixed(degrees(REAL_TURN) * 3600, 3)}° an hour",
     "full turn": lambda: f"a full turn in {fixed(2 * pi / REAL_TURN / 3600, 1)} hours",
     "turn of the model": lambda: f"as the paper states it by {fixed(degrees(TURN) * 3600, 3)}°",
-    "ellipse": lambda: f"{fixed(half_axes()[0], 3)} m long and {fixed(1000 * half_axes()[1], 3)} mm wide",
-    "tilt": lambda: f"hangs {fixed(degrees(P.case.rest_angle), 4)}° south of straight down, which at 67 m is",
+    "ellipse": lambda: (
+        f"{fixed(half_axes()[0], 3)} m long and {fixed(1000 * half_axes()[1], 3)} mm wide"
+    ),
+    "tilt": lambda: (
+        f"hangs {fixed(degrees(P.case.rest_angle), 4)}° south of straight down, which at 67 m is"
+    ),
     "aside": lambda: f"{fixed(-100 * rest(P)[1], 1)} cm",
     "rise": lambda: f"ends {fixed(1000 * (transits('z')[0] - P.z), 2)} mm *higher*",
     "away": lambda: f"0.5 m from the one and {fixed(half_axes()[0], 3)} m from the other",
     "leans": lambda: f"leans {fixed(degrees(P.case.rest_angle), 4)}°",
     "apparent": lambda: f"apparent gravity is {fixed(P.case.pull_at_rest, 5)} m/s²",
     "slower": lambda: f"slower by {fixed(detuned(), 7)} Hz",
-    "half": lambda: f"after {int(1 / (2 * detuned()) / 3600)} h {fixed((1 / (2 * detuned()) % 3600) / 60, 0)} min",
+    "half": lambda: (
+        f"after {int(1 / (2 * detuned()) / 3600)} h {fixed((1 / (2 * detuned()) % 3600) / 60, 0)} min"
+    ),
     "latitude": lambda: f"site.latitude={fixed(without_the_centrifugal_part()[0], 4)}",
     "gravity": lambda: f"site.gravity={fixed(without_the_centrifugal_part()[1], 4)}",
     "passage": lambda: (
@@ -97,7 +109,8 @@ NUMBERS = {
     ),
     "spacing": lambda: f"each other {fixed(sorted(gaps())[5000], 2)} s apart",
     "gaps": lambda: (
-        " s and then ".join(fixed(gap, 2) for gap in gaps() if gap < 6) + " s: number 5786 is the extra one"
+        " s and then ".join(fixed(gap, 2) for gap in gaps() if gap < 6)
+        + " s: number 5786 is the extra one"
     ),
     "jump": lambda: f"from {fixed(first_period_frequency(), 7)} Hz to {fixed(jump(), 7)} Hz",
     "end": lambda: f"still {fixed(transit_frequency(), 7)} Hz",
@@ -122,7 +135,8 @@ def test_a_number_on_the_page_is_the_recomputed_one(name: str) -> None:
 
 def test_the_page_s_remedy_hangs_the_bob_along_the_geodetic_vertical() -> None:
     remedied = P.but(latitude=mpf("48.7477"), gravity=mpf("9.8214"))
-    assert abs(remedied.latitude + degrees(remedied.case.rest_angle) - P.latitude) < mpf("5e-5")  # the last digit given
+    # the last digit given
+    assert abs(remedied.latitude + degrees(remedied.case.rest_angle) - P.latitude) < mpf("5e-5")
     assert f"{fixed(degrees(remedied.case.rest_angle), 4)}° from the scene's own *z* axis" in PAGE
     assert f"apparent gravity is {fixed(remedied.case.pull_at_rest, 4)}" in PAGE
 
@@ -130,7 +144,11 @@ def test_the_page_s_remedy_hangs_the_bob_along_the_geodetic_vertical() -> None:
 def test_a_gravimeter_shows_what_the_page_says() -> None:
     """Normal gravity of GRS 80 at the latitude of Paris; its heights and anomalies change it by less than 1e-3 m/s²."""
     square = sin(P.phi) ** 2
-    normal = mpf("9.7803267715") * (1 + mpf("0.001931851353") * square) / sqrt(1 - mpf("0.00669438002290") * square)
+    normal = (
+        mpf("9.7803267715")
+        * (1 + mpf("0.001931851353") * square)
+        / sqrt(1 - mpf("0.00669438002290") * square)
+    )
     assert abs(normal - mpf("9.809")) < mpf("1e-3")
     assert "a gravimeter in Paris shows about 9.809" in PAGE
 

@@ -8,7 +8,9 @@ from reference.status import Status
 
 
 def row(method, setting, error_m, cpu_s):
-    return Row(method, "plane", setting, "step", "binary64", Status.OK, error_m=error_m, cpu_s=cpu_s)
+    return Row(
+        method, "plane", setting, "step", "binary64", Status.OK, error_m=error_m, cpu_s=cpu_s
+    )
 
 
 # ten times the steps: ten times the cost, and of fourth order a 10,000th of the error

@@ -14,12 +14,26 @@ from reference import InputError
 
 
 def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path) -> None:
-    arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
+    arguments = [
+        "study",
+        "hard",
+        "--approximations",
+        "--set",
+        "release.angle=5",
+        "--t-end",
+        "60",
+        "--json",
+    ]
     result = CliRunner().invoke(commands(), [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     document = json.loads(result.stdout)
     assert {row["t"] for row in document["rows"]} == {20.0, 60.0}
-    assert {row["over"] for row in document["limits"]} == {"time", "amplitude", "latitude", "length"}
+    assert {row["over"] for row in document["limits"]} == {
+        "time",
+        "amplitude",
+        "latitude",
+        "length",
+    }
     assert {row["approximation"] for row in document["rows"]} == {*motions()}
     page = (tmp_path / "index.html").read_text()
     assert all(row["approximation"] in page for row in document["rows"])

@@ -13,7 +13,15 @@ from compare.approximations import motions
 from compare.methods import METHODS
 from compare.methods.method import Family
 from compare.report import approximations, study_charts
-from compare.report.drawing import COLOURS, ChartLine, legend, line_style, name_ends, power_of_ten, sheet
+from compare.report.drawing import (
+    COLOURS,
+    ChartLine,
+    legend,
+    line_style,
+    name_ends,
+    power_of_ten,
+    sheet,
+)
 from compare.report.motion import PicturedMotion
 from compare.report.motion_pictures import motion_svgs
 from compare.report.pareto import cost_of, curves
@@ -35,13 +43,25 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 def ladder(method, kind, points, formulation="space", status="ok", calls=None):
     return [
-        Row(method, formulation, setting, kind, "binary64", status, error_m=error, cpu_s=cpu, rhs_evaluations=calls)
+        Row(
+            method,
+            formulation,
+            setting,
+            kind,
+            "binary64",
+            status,
+            error_m=error,
+            cpu_s=cpu,
+            rhs_evaluations=calls,
+        )
         for setting, error, cpu in points
     ]
 
 
 def steps(method, scale):
-    return ladder(method, "step", [(h, h**4, scale / h) for h in (0.5, 0.1, 0.02)], "plane", calls=1000)
+    return ladder(
+        method, "step", [(h, h**4, scale / h) for h in (0.5, 0.1, 0.02)], "plane", calls=1000
+    )
 
 
 def study_rows():
@@ -54,21 +74,56 @@ def study_rows():
     names = [name for name in METHODS if METHODS[name].setting == "tolerance"]
     for i, name in enumerate(names):
         tight = 1e-9 if name == "heyoka_real128" else 1.0
-        points = [(t, t**0.9 * (i + 1) * tight, 0.01 * (i + 1) * t**-0.1) for t in (1e-6, 1e-9, 1e-12)]
+        points = [
+            (t, t**0.9 * (i + 1) * tight, 0.01 * (i + 1) * t**-0.1) for t in (1e-6, 1e-9, 1e-12)
+        ]
         rows += ladder(name, "tolerance", points, calls=None if "heyoka" in name else 5000)
     rows += ladder("heyoka_double", "tolerance", [(1e-6, 3e-6, 0.02), (1e-9, 2e-9, 0.03)], "angles")
-    rows += ladder("heyoka_real", "precision", [(64, 1e-17, 2.0), (113, 1e-32, 5.0), (160, 1e-39, 9.0)], "momentum")
+    rows += ladder(
+        "heyoka_real",
+        "precision",
+        [(64, 1e-17, 2.0), (113, 1e-32, 5.0), (160, 1e-39, 9.0)],
+        "momentum",
+    )
     rows += ladder("limbs", "precision", [(100, 1e-28, 1.0), (200, 1e-60, 4.0)])
     rows.append(
-        Row("mpmath_odefun", "momentum", 53, "precision", "binary64", "not_installed", "not installed (mpmath)")
+        Row(
+            "mpmath_odefun",
+            "momentum",
+            53,
+            "precision",
+            "binary64",
+            "not_installed",
+            "not installed (mpmath)",
+        )
     )
-    rows.append(Row("rk4", "plane", 1.0, "step", "binary64", "missed_transits", "1 of 9", error_m=0.5, cpu_s=0.2))
+    rows.append(
+        Row(
+            "rk4",
+            "plane",
+            1.0,
+            "step",
+            "binary64",
+            "missed_transits",
+            "1 of 9",
+            error_m=0.5,
+            cpu_s=0.2,
+        )
+    )
     return rows
 
 
 def long_run(method, exponent, size):
     t = np.linspace(0, 1e6, 5000)
-    return LongRun(method, "space", 0.1, Status.OK, t=t.tolist(), error_m=(size * t**exponent).tolist(), bound_m=BOUND)
+    return LongRun(
+        method,
+        "space",
+        0.1,
+        Status.OK,
+        t=t.tolist(),
+        error_m=(size * t**exponent).tolist(),
+        bound_m=BOUND,
+    )
 
 
 def cell(scene, method, status, digits=None):
@@ -82,15 +137,28 @@ def motion():
 
 ROWS = study_rows()
 USUAL = [curve.label for curve in curves(ROWS) if curve.usual and curve.measured]
-RUNS = [long_run("double", 1.5, 1e-16), long_run("quadruple", 1.0, 1e-33), long_run("single", 1.0, 1e-7)]
-CELLS = [cell("paris", "rk4", "ok", 7.99), cell("hard", "rk4", "silently_wrong"), cell("hard", "other", "not_finite")]
+RUNS = [
+    long_run("double", 1.5, 1e-16),
+    long_run("quadruple", 1.0, 1e-33),
+    long_run("single", 1.0, 1e-7),
+]
+CELLS = [
+    cell("paris", "rk4", "ok", 7.99),
+    cell("hard", "rk4", "silently_wrong"),
+    cell("hard", "other", "not_finite"),
+]
 CHOSEN = [motions()[word] for word in ("linear_g", "method_1", "linear_3d")]
 PARIS = error_table(load_scene("paris"), CHOSEN, 600.0, times=(1.0, 10.0, 60.0))
 LATITUDES = [
-    SweepRow("planar", 60.0, 1e-3 * (1 + value), 1.0, over="latitude", value=value) for value in (0.0, 45.0, 90.0)
+    SweepRow("planar", 60.0, 1e-3 * (1 + value), 1.0, over="latitude", value=value)
+    for value in (0.0, 45.0, 90.0)
 ]
-CALLS = [label for label in USUAL if METHODS[label].family not in (Family.HEYOKA, Family.MANY_DIGITS)]
-TOLERANCES = [label for label in USUAL if METHODS[label].setting == "tolerance" and label != "heyoka_real128"]
+CALLS = [
+    label for label in USUAL if METHODS[label].family not in (Family.HEYOKA, Family.MANY_DIGITS)
+]
+TOLERANCES = [
+    label for label in USUAL if METHODS[label].setting == "tolerance" and label != "heyoka_real128"
+]
 CHARTS = {  # how each is drawn, the titles of its axes with their units, and the names of its lines
     "overview": (lambda: study_charts.overview(ROWS, BOUND), {CPU, ERROR, "failed"}, USUAL),
     "families": (lambda: study_charts.by_family(ROWS, BOUND), {CPU, ERROR, Family.PAPER}, CALLS),
@@ -104,7 +172,11 @@ CHARTS = {  # how each is drawn, the titles of its axes with their units, and th
         {"relative tolerance asked for", ERROR},
         [*TOLERANCES, "error in m = tolerance"],
     ),
-    "formulations": (lambda: study_charts.formulations(ROWS, BOUND), {CPU, ERROR}, ["space", "angles"]),
+    "formulations": (
+        lambda: study_charts.formulations(ROWS, BOUND),
+        {CPU, ERROR},
+        ["space", "angles"],
+    ),
     "precision": (
         lambda: study_charts.precision_ladder(ROWS, BOUND),
         {"digits achieved, −log₁₀ of the largest error in m", CPU},
@@ -161,7 +233,9 @@ def test_a_chart_says_what_it_shows_and_follows_the_page(pictures, name, size):
     assert root.get("aria-label"), "its title, for those who cannot see it"
     assert titles <= set(words)
     assert {word: words.count(word) for word in names} == dict.fromkeys(names, 1)
-    assert "var(--" in svg and not re.search(r"stroke: (#000000|black)", svg), "lines that a dark page would hide"
+    assert "var(--" in svg and not re.search(r"stroke: (#000000|black)", svg), (
+        "lines that a dark page would hide"
+    )
     assert not re.search(r"<(image|style|script)\b|\bnan\b", svg)
     if name in size(("formulations", "map", "latitudes"), CHARTS):
         assert draw() == svg
@@ -180,11 +254,15 @@ def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(p
 
 def test_the_darkest_of_seven_lines_follows_a_dark_page(pictures):
     seven = error_growth([long_run(f"line {i}", 1.0, 1e-16 * (i + 1)) for i in range(7)])
-    assert "stroke: var(--ink, #1b1b1b)" in pictures["overview"] and "stroke: var(--ink, #1b1b1b)" in seven
+    assert (
+        "stroke: var(--ink, #1b1b1b)" in pictures["overview"]
+        and "stroke: var(--ink, #1b1b1b)" in seven
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "absent"), [("overview", "mpmath_odefun"), ("evaluations", "heyoka_double"), ("tolerance", "rk4")]
+    ("name", "absent"),
+    [("overview", "mpmath_odefun"), ("evaluations", "heyoka_double"), ("tolerance", "rk4")],
 )
 def test_a_method_without_what_a_chart_shows_is_not_in_it(pictures, name, absent):
     assert absent not in texts(pictures[name])
@@ -198,7 +276,9 @@ def test_the_bound_is_a_band_and_the_fitted_law_stands_beside_its_method(picture
 def test_the_map_reads_without_colour_and_rounds_digits_down(pictures):
     assert {"7", "W", "N"} <= set(texts(pictures["map"]))
     assert "silently wrong: 1." in ET.fromstring(pictures["map"]).get("aria-label")
-    assert "8" not in texts(pictures["map"]) and "-1" not in texts(heat_map([cell("paris", "rk4", "ok", -1.0)]))
+    assert "8" not in texts(pictures["map"]) and "-1" not in texts(
+        heat_map([cell("paris", "rk4", "ok", -1.0)])
+    )
 
 
 def test_approximations_without_an_error_are_no_chart():
@@ -214,7 +294,9 @@ def test_pictures_of_rows_that_all_failed_are_none():
     assert study_charts.right_hand_sides(failed, BOUND) is None
 
 
-@pytest.mark.parametrize("rows", [steps("rk4", 1)[:1], ladder("rk4", "step", [(0.1, 0.0, 1.0), (0.2, 1e-3, 0.5)])])
+@pytest.mark.parametrize(
+    "rows", [steps("rk4", 1)[:1], ladder("rk4", "step", [(0.1, 0.0, 1.0), (0.2, 1e-3, 0.5)])]
+)
 def test_a_single_row_makes_a_picture_and_an_error_of_zero_harms_nothing(rows):
     assert "rk4" in texts(study_charts.overview(rows, 0.0))
 
@@ -239,13 +321,20 @@ def test_every_method_has_a_family_and_within_a_picture_no_two_look_alike():
 
 def drawn_legend(size, inside=False):
     """Draw a legend of so many lines; return the boxes of its names, of the axes and of the figure."""
-    lines = [ChartLine(f"method {i}", [1, 10], [5, 5 + i], line_style(COLOURS[i % 7], i)) for i in range(size)]
+    lines = [
+        ChartLine(f"method {i}", [1, 10], [5, 5 + i], line_style(COLOURS[i % 7], i))
+        for i in range(size)
+    ]
     with sheet((9.5, 8.6)) as figure:
         axes = figure.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
         legend(axes, lines, inside=inside)
         figure.canvas.draw()
-        return [one.get_window_extent() for one in axes.get_legend().get_texts()], axes.get_window_extent(), figure.bbox
+        return (
+            [one.get_window_extent() for one in axes.get_legend().get_texts()],
+            axes.get_window_extent(),
+            figure.bbox,
+        )
 
 
 @pytest.mark.parametrize("size", [1, 45])
@@ -263,7 +352,10 @@ def test_a_legend_inside_the_axes_takes_no_room_from_them():
 
 
 def test_names_at_ends_stand_on_the_side_away_from_the_middle():
-    lines = [ChartLine(name, [0, x], [0, 1], line_style(COLOURS[0], 0)) for name, x in (("west", -0.5), ("east", 0.5))]
+    lines = [
+        ChartLine(name, [0, x], [0, 1], line_style(COLOURS[0], 0))
+        for name, x in (("west", -0.5), ("east", 0.5))
+    ]
     with sheet((6, 4)) as figure:
         axes = figure.subplots()
         axes.set(xlim=(-1, 1), ylim=(0, 2))
@@ -274,6 +366,8 @@ def test_names_at_ends_stand_on_the_side_away_from_the_middle():
     assert boxes["west"].x1 < ends["west"] and ends["east"] < boxes["east"].x0
 
 
-@pytest.mark.parametrize(("value", "text"), [(1e-9, "10⁻⁹"), (0.01, "0.01"), (1000, "1000"), (1e12, "10¹²")])
+@pytest.mark.parametrize(
+    ("value", "text"), [(1e-9, "10⁻⁹"), (0.01, "0.01"), (1000, "1000"), (1e12, "10¹²")]
+)
 def test_ticks_are_plain_text(value, text):
     assert power_of_ten(value) == text

@@ -24,14 +24,26 @@ from compare.studies.row import Row
 BOUND = 1e-40
 
 
-def row(method="rk4", setting=0.1, error_m=1e-3, cpu_s=1.0, status="ok", formulation="plane", kind="step", **more):
-    return Row(method, formulation, setting, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more)
+def row(
+    method="rk4",
+    setting=0.1,
+    error_m=1e-3,
+    cpu_s=1.0,
+    status="ok",
+    formulation="plane",
+    kind="step",
+    **more,
+):
+    return Row(
+        method, formulation, setting, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more
+    )
 
 
 def ladder(method, points, *, status="ok", kind="tolerance", formulation="space"):
     """Rows of falling tolerance from (error, cpu) pairs."""
     return [
-        row(method, 10.0 ** -(i + 1), error, cpu, status, formulation, kind) for i, (error, cpu) in enumerate(points)
+        row(method, 10.0 ** -(i + 1), error, cpu, status, formulation, kind)
+        for i, (error, cpu) in enumerate(points)
     ]
 
 
@@ -48,7 +60,11 @@ def document(rows, bound_m=BOUND):
 def beats(a, b, bound_m):
     """a dominates b: nowhere worse, somewhere better."""
     errors = [max(one.error_m, bound_m) for one in (a, b)]
-    return errors[0] <= errors[1] and a.cpu_s <= b.cpu_s and (errors[0] < errors[1] or a.cpu_s < b.cpu_s)
+    return (
+        errors[0] <= errors[1]
+        and a.cpu_s <= b.cpu_s
+        and (errors[0] < errors[1] or a.cpu_s < b.cpu_s)
+    )
 
 
 def same(a, b, bound_m):
@@ -75,7 +91,10 @@ def test_no_row_of_the_front_is_beaten_and_every_other_measured_row_is(rows, bou
     measured = [one for one in rows if one.measured]
     assert not any(beats(other, one, bound_m) for one in best for other in measured)
     for one in measured:
-        assert any(one is other or beats(other, one, bound_m) or same(other, one, bound_m) for other in best)
+        assert any(
+            one is other or beats(other, one, bound_m) or same(other, one, bound_m)
+            for other in best
+        )
 
 
 @settings(max_examples=25)
@@ -103,7 +122,11 @@ def test_below_the_bound_of_the_reference_errors_are_equal():
 
 
 def test_the_first_formulation_of_a_method_is_its_own_and_others_are_named():
-    rows = [row("a", formulation="momentum"), row("a", formulation="space"), row("b", formulation="space")]
+    rows = [
+        row("a", formulation="momentum"),
+        row("a", formulation="space"),
+        row("b", formulation="space"),
+    ]
     assert [one.label for one in curves(rows)] == ["a", "a (space)", "b"]
 
 
@@ -161,7 +184,8 @@ def test_the_sentence_names_the_cheapest_and_how_many_times_dearer_the_papers_me
     lines = sentences(document(rows))
     assert len(lines) == 4
     assert lines[1].startswith("At 1e-6 m the cheapest method is fast, with ")
-    assert "130 times cheaper than the paper's RK4" in lines[1]  # 0.01 / 1e-6**0.25 over 0.001 * 10**0.4, two digits
+    # 0.01 / 1e-6**0.25 over 0.001 * 10**0.4, two digits
+    assert "130 times cheaper than the paper's RK4" in lines[1]
     assert "the paper's RK4 does not reach it (1.0e-08 m at best)" in lines[2]
 
 
@@ -172,7 +196,10 @@ def test_there_is_no_sentence_where_no_method_reaches():
 
 def test_where_the_papers_method_is_the_cheapest_the_next_is_named():
     lines = sentences(document([row(error_m=1e-4, cpu_s=1.0), *ladder("a", [(1e-4, 3.0)])]))
-    assert lines[0] == "At 1e-3 m the cheapest method is rk4, with 1 s of CPU time: 3 times cheaper than the next, a."
+    assert (
+        lines[0]
+        == "At 1e-3 m the cheapest method is rk4, with 1 s of CPU time: 3 times cheaper than the next, a."
+    )
 
 
 def test_the_cost_of_digits_leaves_out_rows_at_the_bound():
@@ -194,7 +221,9 @@ def test_the_cost_of_digits_leaves_out_rows_at_the_bound():
 
 def test_every_method_whose_setting_is_the_precision_has_its_cost_of_digits():
     points = [(10.0**-digits, 0.01 * digits**1.5) for digits in (15, 30, 60)]
-    rows = [one for name in ("a", "b") for one in ladder(name, points, kind="precision")] + ladder("c", points)
+    rows = [one for name in ("a", "b") for one in ladder(name, points, kind="precision")] + ladder(
+        "c", points
+    )
     assert list(costs_of_digits(rows)) == ["a", "b"]
     heads = [line.split(" is ")[0].partition(":")[0] for line in sentences(document(rows, 1e-70))]
     assert heads == ["a", "b", "c", "The cost of a over 86400 s", "The cost of b over 86400 s"]
@@ -213,6 +242,11 @@ def test_a_study_of_precisions_says_the_price_of_a_digit_and_not_the_cheapest_at
 
 
 def test_the_same_run_that_is_cheapest_at_several_errors_has_one_sentence():
-    rows = [row("a", 1e-12, 1e-10, 0.5, "ok", "space", "tolerance"), row("b", 1e-9, 1e-4, 2.0, kind="tolerance")]
+    rows = [
+        row("a", 1e-12, 1e-10, 0.5, "ok", "space", "tolerance"),
+        row("b", 1e-9, 1e-4, 2.0, kind="tolerance"),
+    ]
     rows[1] = row("b", 1e-9, 1e-10, 2.0, "ok", "space", "tolerance")
-    assert sentences(document(rows)) == ["From 1e-3 m to 1e-9 m the cheapest method is a, with 0.5 s of CPU time."]
+    assert sentences(document(rows)) == [
+        "From 1e-3 m to 1e-9 m the cheapest method is a, with 0.5 s of CPU time."
+    ]

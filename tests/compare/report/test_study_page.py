@@ -28,8 +28,27 @@ VOID = {"meta", "br", "link", "path", "use"}
 NASTY = 'died of <script>alert("x")</script> & "quotes"'
 
 
-def row(method, setting_, error_m, cpu_s, status=Status.OK, formulation="space", kind="tolerance", **more):
-    return Row(method, formulation, setting_, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more)
+def row(
+    method,
+    setting_,
+    error_m,
+    cpu_s,
+    status=Status.OK,
+    formulation="space",
+    kind="tolerance",
+    **more,
+):
+    return Row(
+        method,
+        formulation,
+        setting_,
+        kind,
+        "binary64",
+        status,
+        error_m=error_m,
+        cpu_s=cpu_s,
+        **more,
+    )
 
 
 def study_document(rows=None, **more):
@@ -53,7 +72,12 @@ def study_document(rows=None, **more):
         "programs": {},
         "candidates": [],
         "reference": {"level": "enclosed", "bound_m": 5e-39, "transits": 109},
-        "machine": {"processor": "Some <CPU>", "system": "Linux", "python": "3.11", "heyoka": "7.13"},
+        "machine": {
+            "processor": "Some <CPU>",
+            "system": "Linux",
+            "python": "3.11",
+            "heyoka": "7.13",
+        },
         "rows": [asdict(one) for one in rows],
         **more,
     }
@@ -129,10 +153,16 @@ def test_the_page_has_every_row_with_its_marks(read):
     assert len(body) == 9
     place = {title: i for i, title in enumerate(head[1])}
     by_setting = {
-        (cells[place["method"]], cells[place["formulation"]], cells[place["setting"]]): (kind, cells)
+        (cells[place["method"]], cells[place["formulation"]], cells[place["setting"]]): (
+            kind,
+            cells,
+        )
         for kind, cells in body
     }
-    assert by_setting["rk4", "plane", "0.01 s"][1][place["evaluations"]].replace("\u202f", "") == "40000000"
+    assert (
+        by_setting["rk4", "plane", "0.01 s"][1][place["evaluations"]].replace("\u202f", "")
+        == "40000000"
+    )
     assert "front" in by_setting["heyoka_double", "momentum", "2.22e-16"][0]
     assert "front" not in by_setting["heyoka_double", "space", "2.22e-16"][0]
     assert by_setting["scipy_dop853", "space", "1e-6"][1][place["CPU s"]] == "~40.0"
@@ -149,12 +179,20 @@ def test_failures_are_listed_with_their_reason_and_each_way_to_fail_with_what_to
     assert rows["scipy_bdf"][2] == "missed transits"
     words = {cells[0]: cells[1:] for _, cells in table_of(read, "word", "what to do")[1:]}
     assert words.keys() == {"gave up", "missed transits", "not installed"}
-    assert words["missed transits"] == [Status.MISSED_TRANSITS.meaning, Status.MISSED_TRANSITS.advice]
+    assert words["missed transits"] == [
+        Status.MISSED_TRANSITS.meaning,
+        Status.MISSED_TRANSITS.advice,
+    ]
 
 
 def test_the_front_is_a_table_of_its_own(read):
-    fronts = next(one for one in read.tables if one[0][1] == ["method", "setting", "error m", "CPU s", ""])
-    assert [cells[:2] for _, cells in fronts[1:]] == [["heyoka_double", "1e-8"], ["heyoka_double", "2.22e-16"]]
+    fronts = next(
+        one for one in read.tables if one[0][1] == ["method", "setting", "error m", "CPU s", ""]
+    )
+    assert [cells[:2] for _, cells in fronts[1:]] == [
+        ["heyoka_double", "1e-8"],
+        ["heyoka_double", "2.22e-16"],
+    ]
 
 
 def test_the_page_is_self_contained_and_escapes_what_was_said_by_others(written, read):
@@ -165,13 +203,19 @@ def test_the_page_is_self_contained_and_escapes_what_was_said_by_others(written,
     assert len(ids) == len(set(ids))
     assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
     pictures = re.findall(r"<svg.*?</svg>", html, flags=re.DOTALL)
-    assert len(list(map(ET.fromstring, pictures))) == 5  # no precision ladder: heyoka_real is not among the rows
+    # no precision ladder: heyoka_real is not among the rows
+    assert len(list(map(ET.fromstring, pictures))) == 5
     assert NASTY in "".join(read.text) and "Some <CPU>" in "".join(read.text)
 
 
 def test_the_page_says_where_and_how_it_was_measured(read):
     text = "".join(read.text)
-    for word in ("python 3.11, heyoka 7.13", "level enclosed, bound 5.0e-39 m", "in one thread", "nearest double"):
+    for word in (
+        "python 3.11, heyoka 7.13",
+        "level enclosed, bound 5.0e-39 m",
+        "in one thread",
+        "nearest double",
+    ):
         assert word in text
     assert "At 1e-6 m the cheapest method is heyoka_double" in text
 
@@ -196,7 +240,9 @@ def test_the_same_document_makes_the_same_bytes(written, tmp_path):
 
 
 def test_a_study_in_which_everything_failed_still_has_a_page():
-    html = study_page.page_text(study_document([row("my_program", 0.1, None, None, Status.GAVE_UP, reason="broken")]))
+    html = study_page.page_text(
+        study_document([row("my_program", 0.1, None, None, Status.GAVE_UP, reason="broken")])
+    )
     assert "No method reached an error of 1e-3 m." in html
     assert "broken" in html
     Reader(html)
@@ -211,7 +257,14 @@ def test_without_matplotlib_the_page_says_what_is_missing():
 
 def test_the_text_table_has_every_row_and_the_sentences():
     text = study_page.REPORT.text(study_document())
-    for word in ("rk4", "scipy_dop853", "mpmath_odefun", "~40.0", "At 1e-6 m", "1 of 9 transits is missed"):
+    for word in (
+        "rk4",
+        "scipy_dop853",
+        "mpmath_odefun",
+        "~40.0",
+        "At 1e-6 m",
+        "1 of 9 transits is missed",
+    ):
         assert word in text
     marked = [line for line in text.splitlines() if line.startswith("* ") and "Pareto" not in line]
     assert len(marked) == 2
@@ -222,7 +275,8 @@ def test_the_text_table_has_every_row_and_the_sentences():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(1e-4, "1e-4"), (2.0**-52, "2.22e-16"), (0.05, "0.05"), (113, "113"), (0.002, "0.002")]
+    ("value", "text"),
+    [(1e-4, "1e-4"), (2.0**-52, "2.22e-16"), (0.05, "0.05"), (113, "113"), (0.002, "0.002")],
 )
 def test_settings_are_short(value, text):
     assert tidy(value) == text
@@ -238,7 +292,8 @@ def test_a_short_number_is_its_value_to_three_digits():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.012345, "0.0123"), (1.2345, "1.23"), (123.4, "123"), (0.0, "0"), (None, "")]
+    ("value", "text"),
+    [(0.012345, "0.0123"), (1.2345, "1.23"), (123.4, "123"), (0.0, "0"), (None, "")],
 )
 def test_cpu_seconds_have_three_digits(value, text):
     assert cpu(value) == text
@@ -258,7 +313,11 @@ def test_parts_escape_text_and_keep_html():
 
 def test_a_table_says_the_same_as_html_as_text_and_as_csv():
     table = PageTable({"name": "", "size": "number"}, [["one", 0.1 + 0.2], ["two & more", None]])
-    assert table.lines() == ["name                       size", "one         0.30000000000000004", "two & more"]
+    assert table.lines() == [
+        "name                       size",
+        "one         0.30000000000000004",
+        "two & more",
+    ]
     assert table.csv() == "name,size\none,0.30000000000000004\ntwo & more,\n"
     assert '<td>two &amp; more</td><td class="number"></td>' in table.html()
 
@@ -266,28 +325,43 @@ def test_a_table_says_the_same_as_html_as_text_and_as_csv():
 def test_neither_the_report_nor_its_parts_load_matplotlib():
     modules = "compare.report.study_page, compare.report.page, compare.report.study_charts"
     code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
-    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     assert process.stdout.strip() == "False"
 
 
 @pytest.mark.usefixtures("no_pictures")
 def test_the_declared_order_stands_beside_the_observed_one():
     rows = [
-        row("rk4", 0.1 / 2**i, 1e-3 / 16**i, 0.1, formulation="plane", kind="step", steps=100 * 2**i) for i in range(5)
+        row(
+            "rk4", 0.1 / 2**i, 1e-3 / 16**i, 0.1, formulation="plane", kind="step", steps=100 * 2**i
+        )
+        for i in range(5)
     ]
-    document = study_document([*rows, row("scipy_dop853", 1e-6, 1e-5, 4.0), row("heyoka_double", 1e-8, 2e-7, 0.01)])
+    document = study_document(
+        [*rows, row("scipy_dop853", 1e-6, 1e-5, 4.0), row("heyoka_double", 1e-8, 2e-7, 0.01)]
+    )
     read = Reader(study_page.page_text(document))
     head, *body = table_of(read, "order", "observed")
     place = {title: i for i, title in enumerate(head[1])}
     found = {cells[0]: (cells[place["order"]], cells[place["observed"]]) for _, cells in body}
-    assert found == {"rk4": ("4", "4.00 ± 0.00"), "scipy_dop853": ("8", "–"), "heyoka_double": ("–", "–")}
+    assert found == {
+        "rk4": ("4", "4.00 ± 0.00"),
+        "scipy_dop853": ("8", "–"),
+        "heyoka_double": ("–", "–"),
+    }
     assert "rk4 4: 4.00 ± 0.00; scipy_dop853 8: –" in study_page.REPORT.text(document)
 
 
 @pytest.mark.parametrize(
     ("load", "spread", "words"),
     [
-        (0.5, 0.05, "0.5 processes for each core (median), 0.5 at most; repeats of a run differ by 5 % (median)"),
+        (
+            0.5,
+            0.05,
+            "0.5 processes for each core (median), 0.5 at most; repeats of a run differ by 5 % (median)",
+        ),
         (2.5, 0.05, "The machine was busy: ratios of costs drift too"),
         (0.5, 0.9, "Costs were uneven: ratios of costs drift too"),
         (None, None, "not known"),
@@ -310,18 +384,37 @@ def test_the_load_is_that_of_the_system_over_its_cores(monkeypatch):
     assert load_per_core() is None
 
 
-def test_the_page_of_a_study_of_precisions_says_what_digits_cost_and_holds_no_picture_of_single_points(written):
+def test_the_page_of_a_study_of_precisions_says_what_digits_cost_and_holds_no_picture_of_single_points(
+    written,
+):
     rows = [row("heyoka_double", 2.0**-52, 1e-12, 0.001, formulation="momentum")]
-    rows += [row("limbs", bits, 10.0 ** (-bits / 3.3), bits**2 / 1e6, kind="precision") for bits in (113, 160, 256)]
+    rows += [
+        row("limbs", bits, 10.0 ** (-bits / 3.3), bits**2 / 1e6, kind="precision")
+        for bits in (113, 160, 256)
+    ]
     text = study_page.page_text(study_document(rows))
     assert "What digits cost" in text and "Every row" in text
     whole = (written / "index.html").read_text(encoding="utf-8")
-    for heading in ("Error against CPU time", "Family by family", "Tolerance asked for", "Least cost", "Pareto front<"):
+    for heading in (
+        "Error against CPU time",
+        "Family by family",
+        "Tolerance asked for",
+        "Least cost",
+        "Pareto front<",
+    ):
         assert heading in whole and heading not in text, heading
 
 
 def test_a_run_over_a_part_of_the_span_has_no_error_and_is_no_failure():
-    part = row("scipy_dop853", 1e-6, None, 40.0, Status.EXTRAPOLATED, reason="measured to t = 90 s", end_error_m=1e-9)
+    part = row(
+        "scipy_dop853",
+        1e-6,
+        None,
+        40.0,
+        Status.EXTRAPOLATED,
+        reason="measured to t = 90 s",
+        end_error_m=1e-9,
+    )
     page, text = study_page.page_text(study_document([part])), text_table(study_document([part]))
     assert "What failed" not in page and "Failed:" not in text
     assert "~40.0" in page and "~40.0" in text

@@ -53,13 +53,23 @@ def folder(tmp_path_factory):
 
 def test_the_files_of_a_suite_are_named_by_their_scenes(folder):
     found = suite_files(folder)
-    assert [candidate.name for candidate, _ in found.values()] == ["bad.csv", "paris.npz", "wrong.csv"]
+    assert [candidate.name for candidate, _ in found.values()] == [
+        "bad.csv",
+        "paris.npz",
+        "wrong.csv",
+    ]
     assert list(found) == [str(folder / "bad.toml"), "paris", str(folder / "wrong.toml")]
-    assert [transits and transits.name for _, transits in found.values()] == [None, "paris.transits.csv", None]
+    assert [transits and transits.name for _, transits in found.values()] == [
+        None,
+        "paris.transits.csv",
+        None,
+    ]
 
 
 def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):
-    status, out, _ = foucault("score", "--suite", folder, "--no-diagnosis", "--out", tmp_path / "page")
+    status, out, _ = foucault(
+        "score", "--suite", folder, "--no-diagnosis", "--out", tmp_path / "page"
+    )
     assert status == 2
     assert "bad.csv was not judged by bad: " in out and "nan in row 2" in out
     assert "paris.npz agrees with paris (61 rows, t = 0 to 3600 of 86400 s: 4.16 %)" in out
@@ -71,11 +81,16 @@ def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):
     title = root.find("{http://www.w3.org/2000/svg}title").text
     assert title == f"Foucault pendulum: 1 of 3 scenes · 16.1 digits · data {DATA_VERSION}"
     page = (tmp_path / "page/index.html").read_text()
-    assert all(word in page for word in ("paris", "wrong", "bad", "refused", "disagrees", "What was found", "<svg"))
+    assert all(
+        word in page
+        for word in ("paris", "wrong", "bad", "refused", "disagrees", "What was found", "<svg")
+    )
     document = json.loads((tmp_path / "page/suite.json").read_text())
     assert (document["agree"], document["verdict"]) == (1, "refused")
     first = {path.name: path.read_bytes() for path in (tmp_path / "page").iterdir()}
-    assert foucault("score", "--suite", folder, "--no-diagnosis", "--out", tmp_path / "page")[0] == 2
+    assert (
+        foucault("score", "--suite", folder, "--no-diagnosis", "--out", tmp_path / "page")[0] == 2
+    )
     assert first == {path.name: path.read_bytes() for path in (tmp_path / "page").iterdir()}
 
 
@@ -98,20 +113,34 @@ def test_a_file_of_no_scene_costs_only_itself(foucault, tmp_path, folder):
     (tmp_path / "pariss.csv").write_text("t,x,y\n0,0.3,0.4\n")
     status, out, _ = foucault("score", "--suite", tmp_path)
     assert status == 2
-    assert "pariss.csv was not judged by pariss: SCENE: got 'pariss'" in out and "Did you mean paris?" in out
+    assert (
+        "pariss.csv was not judged by pariss: SCENE: got 'pariss'" in out
+        and "Did you mean paris?" in out
+    )
     assert "paris.npz agrees" in out
 
 
-@pytest.mark.parametrize(("names", "status"), [(("good", "wrong"), 1), (("good", "bad", "wrong"), 2), (("good",), 0)])
-def test_one_bad_file_of_several_costs_only_itself_and_the_worst_status_counts(foucault, tmp_path, names, status):
+@pytest.mark.parametrize(
+    ("names", "status"), [(("good", "wrong"), 1), (("good", "bad", "wrong"), 2), (("good",), 0)]
+)
+def test_one_bad_file_of_several_costs_only_itself_and_the_worst_status_counts(
+    foucault, tmp_path, names, status
+):
     golden = load("paris.binary64")
     rows = np.column_stack([golden.t, golden.x, golden.y])[:11]
     for name in names:
         text = "".join(
-            f"{t!r},{'soon' if name == 'bad' else x + (name == 'wrong')},{y!r}\n" for t, x, y in rows.tolist()
+            f"{t!r},{'soon' if name == 'bad' else x + (name == 'wrong')},{y!r}\n"
+            for t, x, y in rows.tolist()
         )
         (tmp_path / f"{name}.csv").write_text(f"t,x,y\n{text}")
-    words = ("score", "paris", *(tmp_path / f"{name}.csv" for name in names), "--no-diagnosis", "--json")
+    words = (
+        "score",
+        "paris",
+        *(tmp_path / f"{name}.csv" for name in names),
+        "--no-diagnosis",
+        "--json",
+    )
     done, out, _ = foucault(*words)
     assert done == status
     document = json.loads(out)
@@ -144,10 +173,15 @@ def test_junit_has_a_test_for_each(foucault, folder, tmp_path):
 
 def test_junit_of_a_single_bad_file_is_written_too(foucault, tmp_path):
     (tmp_path / "b\x1b.csv").write_text("t,x,y\n0,<&>\n")
-    assert foucault("score", "paris", tmp_path / "b\x1b.csv", "--junit", tmp_path / "junit.xml")[0] == 2
+    assert (
+        foucault("score", "paris", tmp_path / "b\x1b.csv", "--junit", tmp_path / "junit.xml")[0]
+        == 2
+    )
     root = ElementTree.parse(tmp_path / "junit.xml").getroot()
     assert root.get("errors") == "1"
-    status, _, err = foucault("score", "paris", tmp_path / "b\x1b.csv", "--junit", tmp_path / "no/such/junit.xml")
+    status, _, err = foucault(
+        "score", "paris", tmp_path / "b\x1b.csv", "--junit", tmp_path / "no/such/junit.xml"
+    )
     assert status == 2 and "--junit" in err
 
 
@@ -162,7 +196,9 @@ def test_github_gets_annotations_and_a_summary(foucault, folder, tmp_path, monke
     assert all("%0A" in line or line.count("::") == 2 for line in commands)
     summary = (tmp_path / "summary.md").read_text()
     assert summary.startswith("before\n### Foucault pendulum")
-    assert "| ✅ | `paris` |" in summary and "| ❌ | `wrong` |" in summary and "<details>" in summary
+    assert (
+        "| ✅ | `paris` |" in summary and "| ❌ | `wrong` |" in summary and "<details>" in summary
+    )
     monkeypatch.delenv("GITHUB_STEP_SUMMARY")
     assert foucault("score", "--suite", folder, "--no-diagnosis", "--github")[0] == 2
 
@@ -188,14 +224,23 @@ def test_documents_keep_their_schema(foucault, folder, tmp_path):
     """A score with everything in it, one of transits alone, a suite; an extra key or a word for a number is refused."""
     paris, exchanged = folder / "paris.npz", tmp_path / "exchanged.csv"
     t, x, y = np.loadtxt(folder / "wrong.csv", delimiter=",").T
-    np.savetxt(exchanged, np.column_stack([t, y, x - 1e-3]), delimiter=",", header="t,x,y", fmt="%.17g")
+    np.savetxt(
+        exchanged, np.column_stack([t, y, x - 1e-3]), delimiter=",", header="t,x,y", fmt="%.17g"
+    )
     documents = [
         json.loads(foucault("score", *words, "--json")[1])
         for words in (
             ("paris", paris, "--transits", folder / "paris.transits.csv"),
             ("paris", "--transits", folder / "paris.transits.csv"),
             (folder / "wrong.toml", exchanged),
-            ("paris", "--run", f"cat {shlex.quote(str(folder / 'wrong.csv'))}", "--repeats", "0", "--no-diagnosis"),
+            (
+                "paris",
+                "--run",
+                f"cat {shlex.quote(str(folder / 'wrong.csv'))}",
+                "--repeats",
+                "0",
+                "--no-diagnosis",
+            ),
             ("--suite", folder, "--no-diagnosis"),
         )
     ]
@@ -213,14 +258,33 @@ def test_c_and_javascript_are_judged_through_run(foucault, tmp_path):
     from places import ROOT
 
     command = "{x0} {y0} {length} {latitude} {gravity} {rotation_rate} {t_end} 0.05"
-    for tool, program in (("cc", tmp_path / "pendulum"), ("node", ROOT / "tests/helpers/pendulum.js")):
+    for tool, program in (
+        ("cc", tmp_path / "pendulum"),
+        ("node", ROOT / "tests/helpers/pendulum.js"),
+    ):
         if shutil.which(tool) is None:
             pytest.skip(f"{tool} is not installed")
         if tool == "cc":
-            subprocess.run(["cc", "-O2", ROOT / "docs/pendulum.c", "-o", program, "-lm"], check=True)
+            subprocess.run(
+                ["cc", "-O2", ROOT / "docs/pendulum.c", "-o", program, "-lm"], check=True
+            )
         words = [str(program)] if tool == "cc" else ["node", str(program)]
         run = f"{shlex.join(words)} {command}"
-        words = ("score", "paris", "--t-end", "600", "--repeats", "0", "--covers", "1", "--name", tool)
+        words = (
+            "score",
+            "paris",
+            "--t-end",
+            "600",
+            "--repeats",
+            "0",
+            "--covers",
+            "1",
+            "--name",
+            tool,
+        )
         status, out, _ = foucault(*words, "--run", run)
-        assert (status, out.splitlines()[0]) == (0, f"{tool} agrees with paris (11 rows, t = 0 to 600 of 600 s: 100 %)")
+        assert (status, out.splitlines()[0]) == (
+            0,
+            f"{tool} agrees with paris (11 rows, t = 0 to 600 of 600 s: 100 %)",
+        )
         assert foucault(*words, "--run", run.replace("{t_end}", "540"))[0] == 1

@@ -24,9 +24,16 @@ def test_it_is_a_workflow():
 def test_it_installs_the_tag_of_this_version_and_nothing_that_has_the_name_elsewhere():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     values = dict(re.findall(r"^  (REFERENCE|VERSION): \"?([^\"\n]+)", PAGE, re.M))
-    assert values == {"REFERENCE": project["urls"].get("Repository", "https://…"), "VERSION": f"v{project['version']}"}
+    assert values == {
+        "REFERENCE": project["urls"].get("Repository", "https://…"),
+        "VERSION": f"v{project['version']}",
+    }
     (install,) = re.findall(r"run: pip install (.+)", PAGE)
-    requirement = install.strip('"').replace("$REFERENCE", values["REFERENCE"]).replace("$VERSION", values["VERSION"])
+    requirement = (
+        install.strip('"')
+        .replace("$REFERENCE", values["REFERENCE"])
+        .replace("$VERSION", values["VERSION"])
+    )
     extras, address = re.fullmatch(r"foucault-reference\[(.+)\] @ git\+(.+)", requirement).groups()
     assert set(extras.split(",")) <= project["optional-dependencies"].keys()
     assert address == f"{values['REFERENCE']}@{values['VERSION']}"
@@ -48,7 +55,9 @@ def test_its_command_runs_and_its_scenes_are_there(foucault, tmp_path, monkeypat
 
 def test_every_night_all_commands_run_in_a_base_install():
     yaml = pytest.importorskip("yaml")
-    jobs = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))["jobs"]
+    jobs = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))[
+        "jobs"
+    ]
     *_, install, run = jobs["base"]["steps"]
     assert install["run"].endswith("pip install .")  # no extra
     assert (ROOT / run["run"].split()[-1]).is_file()
@@ -56,14 +65,22 @@ def test_every_night_all_commands_run_in_a_base_install():
 
 def test_the_workflow_of_the_project_itself_calls_what_there_is():
     yaml = pytest.importorskip("yaml")
-    jobs = yaml.safe_load((ROOT / ".github/workflows/checks.yml").read_text(encoding="utf-8"))["jobs"]
+    jobs = yaml.safe_load((ROOT / ".github/workflows/checks.yml").read_text(encoding="utf-8"))[
+        "jobs"
+    ]
     assert set(jobs) == {"lint", "tests", "bytes"}
     assert jobs["bytes"]["strategy"]["matrix"]["machine"] == ["ubuntu-24.04", "ubuntu-24.04-arm"]
     commands = [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
     targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
-    nightly = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))["jobs"]
+    nightly = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))[
+        "jobs"
+    ]
     by_night = [step["run"] for job in nightly.values() for step in job["steps"] if "run" in step]
     assert {"make test", "make campaign", "make peers"} <= {*commands, *by_night}
-    assert {command.split()[1] for command in commands + by_night if command.startswith("make ")} <= set(targets)
+    assert {
+        command.split()[1] for command in commands + by_night if command.startswith("make ")
+    } <= set(targets)
     (verify,) = (command.split() for command in commands if "verify" in command)
-    assert verify[:3] == [".venv/bin/foucault", "verify", "--recompute"] and set(verify[3:]) <= set(scene_ids())
+    assert verify[:3] == [".venv/bin/foucault", "verify", "--recompute"] and set(verify[3:]) <= set(
+        scene_ids()
+    )

@@ -65,7 +65,9 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     made = tuple(tmp_path_factory.mktemp("programs") / name for name in ("plain", "fast"))
     for target, option in zip(made, ("-O0", "-O3"), strict=True):
         more = ["-ffast-math"] if option == "-O3" else []
-        subprocess.run([COMPILER, option, *more, "-o", str(target), str(MISTAKEN_C), "-lm"], check=True)
+        subprocess.run(
+            [COMPILER, option, *more, "-o", str(target), str(MISTAKEN_C), "-lm"], check=True
+        )
     return made[0], made[1]
 
 
@@ -86,7 +88,9 @@ def printed(program: Path, made: Case, options: Options, name: str) -> Candidate
     before = made.arguments
     if "swing" in options:  # about so many steps in a swing, a whole number from row to row
         steps = math.ceil(before["out"] / made.period * options["swing"])
-        options = {key: value for key, value in options.items() if key != "swing"} | {"h": before["out"] / steps}
+        options = {key: value for key, value in options.items() if key != "swing"} | {
+            "h": before["out"] / steps
+        }
     made.arguments = before | options
     try:
         times, columns = made.rows(program)
@@ -105,9 +109,16 @@ def check(found: Any, words: set[str], outcome: str) -> None:
     """Check that exactly these things are told, and what became of the error."""
     assert len(found.changes) == len(words), found.text
     assert all(any(word in change for change in found.changes) for word in words), found.text
-    assert found.complete is bool(words) or words == {STEP} or (found.left_m or 0.0) < 0.1 * found.apart_m, found.text
+    assert (
+        found.complete is bool(words)
+        or words == {STEP}
+        or (found.left_m or 0.0) < 0.1 * found.apart_m
+    ), found.text
     assert ("nothing else" in found.text) is (bool(words) and found.complete), found.text
-    assert (bool(found.worse), found.better) == (outcome == WORSE, outcome == BETTER) or not outcome, found.text
+    assert (bool(found.worse), found.better) == (
+        outcome == WORSE,
+        outcome == BETTER,
+    ) or not outcome, found.text
 
 
 QUICK = (1, 5, 11, 17, 21)  # one of each kind
@@ -118,10 +129,15 @@ NUMBERED = [
 
 
 @pytest.mark.parametrize(("number", "pair"), NUMBERED)
-def test_what_changed_between_two_versions(programs: tuple[Path, Path], number: int, pair: tuple[Any, ...]) -> None:
+def test_what_changed_between_two_versions(
+    programs: tuple[Path, Path], number: int, pair: tuple[Any, ...]
+) -> None:
     _, both, before, after, words, outcome = pair
     made = small(number)
-    old, new = (printed(programs[0], made, both | options, name) for options, name in ((before, "old"), (after, "new")))
+    old, new = (
+        printed(programs[0], made, both | options, name)
+        for options, name in ((before, "old"), (after, "new"))
+    )
     check(compared(made, old, new), words, outcome)
 
 
@@ -130,7 +146,8 @@ def test_rounding_is_no_change(programs: tuple[Path, Path]) -> None:
     for number in range(2):
         made = small(number)
         old, new = (
-            printed(program, made, NO_REST, name) for program, name in zip(programs, ("old", "new"), strict=True)
+            printed(program, made, NO_REST, name)
+            for program, name in zip(programs, ("old", "new"), strict=True)
         )
         assert max(abs(old.columns["x"] - new.columns["x"])) > 0
         check(compared(made, old, new), set(), SAME)
@@ -143,14 +160,17 @@ def solved(made: Case, tolerance: float, method: str) -> Candidate:
     north, up, square = 2 * rate * math.cos(latitude), 2 * rate * math.sin(latitude), a["l"] ** 2
 
     def right(_: float, state: np.ndarray) -> tuple[float, ...]:
-        x, y, z, vx, vy, vz = state.tolist()  # in floats: NumPy takes ten times as long for three numbers
+        # in floats: NumPy takes ten times as long for three numbers
+        x, y, z, vx, vy, vz = state.tolist()
         fx, fy, fz = up * vy - north * vz, -up * vx, north * vx - 9.80665
         pull = (vx * vx + vy * vy + vz * vz + x * fx + y * fy + z * fz) / square
         return vx, vy, vz, fx - pull * x, fy - pull * y, fz - pull * z
 
     start = [a["x0"], a["y0"], -math.sqrt(square - a["x0"] ** 2 - a["y0"] ** 2), 0, 0, 0]
     times = a["out"] * np.arange(101.0)
-    states = solve_ivp(right, (0, times[-1]), start, method, times, rtol=tolerance, atol=tolerance).y
+    states = solve_ivp(
+        right, (0, times[-1]), start, method, times, rtol=tolerance, atol=tolerance
+    ).y
     return Candidate.of("old", times, dict(zip("xyz", states, strict=False)))
 
 
@@ -170,20 +190,33 @@ def test_a_tolerance_is_the_step(method: str, old: float, new: float, outcome: s
     if old == new:
         check(found, set(), outcome)
         return
-    assert found.changes and all(STEP in one or "leaves the sphere" in one for one in found.changes), found.text
+    assert found.changes and all(
+        STEP in one or "leaves the sphere" in one for one in found.changes
+    ), found.text
 
 
 def test_a_number_without_a_cause_is_no_part_of_what_changed_and_more_than_nothing_else() -> None:
     """A fast clock moves like another g, which is not told for certain."""
-    scene, times = load_scene("paris", ["run.t_end=3600", "inputs=binary64"]), np.linspace(0, 3600, 121)
+    scene, times = (
+        load_scene("paris", ["run.t_end=3600", "inputs=binary64"]),
+        np.linspace(0, 3600, 121),
+    )
 
     def version(pace: float, rate: str) -> Candidate:
-        run = trajectory(scene.with_values([f"site.rotation_rate={rate}", "run.t_end=4000"]), times * pace)
+        run = trajectory(
+            scene.with_values([f"site.rotation_rate={rate}", "run.t_end=4000"]), times * pace
+        )
         return Candidate.of("old", times, dict(zip("xyz", run.T, strict=False)))
 
     same = judge(version(1.0, "7.3e-5"), scene, baseline=version(1.0, "7.292115e-5")).since
     assert same is not None and same.complete and "7.3e-05" in same.text
     for new, old in (("7.3e-5", 1.0001), ("0", 1.0)):
-        found = judge(version(1.0 if old > 1 else 1.0001, new), scene, baseline=version(old, "7.292115e-5")).since
+        found = judge(
+            version(1.0 if old > 1 else 1.0001, new), scene, baseline=version(old, "7.292115e-5")
+        ).since
         assert found is not None and found.changes and not found.complete, found.text
-        assert found.left_m is not None and found.left_m > 0.06 and "that explains all but 0.0" in found.text
+        assert (
+            found.left_m is not None
+            and found.left_m > 0.06
+            and "that explains all but 0.0" in found.text
+        )

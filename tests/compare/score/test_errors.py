@@ -33,7 +33,9 @@ def truth(golden):
 
 def candidate(truth, columns=COLUMNS, **changes):
     """The truth with errors added to some columns."""
-    found = {name: truth.states[:, COLUMNS.index(name)] + changes.get(name, 0.0) for name in columns}
+    found = {
+        name: truth.states[:, COLUMNS.index(name)] + changes.get(name, 0.0) for name in columns
+    }
     return Candidate.of("made", truth.t, found)
 
 
@@ -81,7 +83,9 @@ def test_a_component_whose_truth_is_zero_has_no_relative_error(golden):
 
 @pytest.mark.parametrize("power", [1.0, 2.0, 3.5])
 def test_the_growth_of_an_error_is_its_power_of_time(golden, truth, power):
-    made = trajectory_errors(candidate(truth, ("x", "y"), x=1e-8 * (TIMES / 60) ** power), truth, golden)
+    made = trajectory_errors(
+        candidate(truth, ("x", "y"), x=1e-8 * (TIMES / 60) ** power), truth, golden
+    )
     assert made.growth_exponent == pytest.approx(power, abs=0.1)
 
 
@@ -94,7 +98,8 @@ def test_growth_is_fitted_to_the_largest_errors_so_far_at_forty_times(golden, tr
 
 
 @pytest.mark.parametrize(
-    ("times", "found"), [([1, 2, 3, 4], True), ([1, 2, 3, 3.9], False), ([0, 1, 2, 4], False), ([0], False)]
+    ("times", "found"),
+    [([1, 2, 3, 4], True), ([1, 2, 3, 3.9], False), ([0, 1, 2, 4], False), ([0], False)],
 )
 def test_growth_needs_four_rows_after_the_release_and_four_times_the_first(golden, times, found):
     truth = dense(golden, [float(t) for t in times])
@@ -109,14 +114,18 @@ def test_errors_that_are_the_bound_of_the_truth_have_no_growth(golden, truth):
         assert (found is not None) is grows
 
 
-def test_a_component_is_relative_if_its_truth_is_known_and_an_error_is_at_least_the_bound(golden, truth):
+def test_a_component_is_relative_if_its_truth_is_known_and_an_error_is_at_least_the_bound(
+    golden, truth
+):
     end, speed = truth.states.copy(), trajectory_errors(candidate(truth), truth, golden)
     bound = 1e-6
     known = [*[bound] * 3, *[bound * speed.speed_m_s / speed.amplitude_m] * 3]
     end[-1] = [1e-5, bound, 0.0, 2 * known[3], 0.5 * known[4], 0.0]
     made = replace(speed, truth=replace(truth, states=end), bound_m=bound)
     assert made.scd == pytest.approx(-math.log10(0.5))  # vx: its known part over twice that
-    assert made.mescd == pytest.approx(-math.log10(max(bound / (speed.amplitude_m + 0), known[4] / speed.speed_m_s)))
+    assert made.mescd == pytest.approx(
+        -math.log10(max(bound / (speed.amplitude_m + 0), known[4] / speed.speed_m_s))
+    )
     still = replace(made, truth=replace(truth, states=np.zeros_like(end)))
     assert still.scd is None
 
@@ -129,7 +138,9 @@ def test_the_scales_are_the_largest_distance_and_speed_of_golden_and_truth_toget
     assert made.amplitude_m == pytest.approx(np.hypot(golden.x, golden.y).max(), rel=1e-12)
     wider = replace(truth, states=truth.states * 2)
     made = trajectory_errors(candidate(wider), wider, golden)
-    assert made.amplitude_m == pytest.approx(2 * np.hypot(truth.states[:, 0], truth.states[:, 1]).max(), rel=1e-12)
+    assert made.amplitude_m == pytest.approx(
+        2 * np.hypot(truth.states[:, 0], truth.states[:, 1]).max(), rel=1e-12
+    )
     assert made.speed_m_s == pytest.approx(2 * speeds[1], rel=1e-12)
 
 
@@ -156,7 +167,9 @@ def test_low_parts_count_where_doubles_agree(golden, truth):
     made = trajectory_errors(finer, plain, golden)
     assert all(np.array_equal(made.components[name], wave) for name in "xyz")
     assert made.position == pytest.approx(wave * np.sqrt(3), rel=1e-12)
-    off = trajectory_errors(replace(finer, columns={**columns, "x": columns["x"] + 1e-3}), plain, golden)
+    off = trajectory_errors(
+        replace(finer, columns={**columns, "x": columns["x"] + 1e-3}), plain, golden
+    )
     assert off.components["x"] == pytest.approx(1e-3, rel=1e-11)
 
 
@@ -173,14 +186,19 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     made = trajectory_errors(candidate_of("wide", {"t": times, **columns}), truth, golden)
     assert np.abs(late).max() > 1e-12
     assert max(np.abs(made.components[name]).max() for name in ("x", "y", "vx", "vy")) < 1e-18
-    assert max(np.abs(made.components[name]).max() for name in ("z", "vz")) < 1e-17  # 67 m in a long double
-    blind = trajectory_errors(candidate_of("wide", {"t": near, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
+    # 67 m in a long double
+    assert max(np.abs(made.components[name]).max() for name in ("z", "vz")) < 1e-17
+    blind = trajectory_errors(
+        candidate_of("wide", {"t": near, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden
+    )
     assert blind.max_m > 1e-14
 
 
 def test_the_bound_holds_at_times_that_are_no_doubles():
     """Rows at tenths of a second, right to 34 digits, of a short cord: the bob moves on as t and not as its double."""
-    scene = make_scene(pendulum={"length": "0.01"}, release={"x": "0.003", "y": "0.004"}, run={"t_end": "60"})
+    scene = make_scene(
+        pendulum={"length": "0.01"}, release={"x": "0.003", "y": "0.004"}, run={"t_end": "60"}
+    )
     times = [Fraction(i, 10) for i in range(581, 600)]
     near = np.array([float(t) for t in times])
     solution = solve_at(scene, {*times, *map(Fraction, near.tolist())}, 34)
@@ -210,7 +228,9 @@ def test_a_turn_of_the_swing_plane_is_told_where_there_are_positions(golden, tru
 def test_drifts_of_a_good_run_are_rounding_and_of_a_bad_one_what_was_put_in():
     scene = make_scene(pendulum={"length": "2"}, site={"latitude": "30"})
     states = trajectory(scene, np.linspace(0, 60, 100), number=LONG_DOUBLE)
-    good = Candidate.of("good", np.linspace(0, 60, 100), {name: states[:, i] for i, name in enumerate(COLUMNS)})
+    good = Candidate.of(
+        "good", np.linspace(0, 60, 100), {name: states[:, i] for i, name in enumerate(COLUMNS)}
+    )
     small = drifts(good, scene)
     assert small["length_m"] < 1e-15
     assert small["h_m2_s2"] < 1e-14
@@ -218,7 +238,9 @@ def test_drifts_of_a_good_run_are_rounding_and_of_a_bad_one_what_was_put_in():
     found = drifts(longer, scene)
     assert found["length_m"] == pytest.approx(1e-3, rel=0.05)
     faster = states[:, 3:] * np.linspace(1, 1.1, 100)[:, None]
-    found = drifts(replace(good, columns={**good.columns, "vx": faster[:, 0], "vy": faster[:, 1]}), scene)
+    found = drifts(
+        replace(good, columns={**good.columns, "vx": faster[:, 0], "vy": faster[:, 1]}), scene
+    )
     kinetic = 0.5 * ((faster[:, :2] ** 2).sum(axis=1) - (states[:, 3:5] ** 2).sum(axis=1))
     assert found["h_m2_s2"] == pytest.approx(np.abs(kinetic).max(), rel=1e-6)
 
@@ -226,11 +248,15 @@ def test_drifts_of_a_good_run_are_rounding_and_of_a_bad_one_what_was_put_in():
 def test_drifts_need_the_columns_and_no_drag():
     scene = make_scene(pendulum={"drag": "0.1"})
     rows = {name: np.ones(2) for name in COLUMNS}
-    assert drifts(Candidate.of("a", np.array([0.0, 1.0]), {"x": rows["x"], "y": rows["y"]}), scene) == {}
+    assert (
+        drifts(Candidate.of("a", np.array([0.0, 1.0]), {"x": rows["x"], "y": rows["y"]}), scene)
+        == {}
+    )
     assert set(drifts(Candidate.of("a", np.array([0.0, 1.0]), rows), scene)) == {"length_m"}
 
 
 def test_an_error_of_vx_becomes_one_of_position_at_the_rate_of_a_swing_or_of_a_faster_bob():
     scene = load_scene("paris")
-    assert swing_rate(scene, 0.0) == pytest.approx(math.sqrt(9.80665 / 67), rel=5e-3)  # less the centrifugal force
+    # less the centrifugal force
+    assert swing_rate(scene, 0.0) == pytest.approx(math.sqrt(9.80665 / 67), rel=5e-3)
     assert swing_rate(scene, 67.0) == pytest.approx(1.0)

@@ -21,7 +21,10 @@ def own_cache(tmp_path, monkeypatch):
 
 def test_it_is_how_far_the_two_golden_readings_of_a_scene_are_apart():
     decimal, rounded = load("paris"), load("paris.binary64")
-    apart = [[float(a - b) for a, b in zip(decimal.exact(c), rounded.exact(c), strict=True)] for c in "xyz"]
+    apart = [
+        [float(a - b) for a, b in zip(decimal.exact(c), rounded.exact(c), strict=True)]
+        for c in "xyz"
+    ]
     moved = np.maximum.accumulate(np.linalg.norm(np.array(apart), axis=0))
     paris = load_scene("paris")
     for row in (60, 720, 1440):
@@ -49,7 +52,9 @@ def test_a_short_run_is_not_told_what_a_long_one_loses():
 
 def test_an_end_at_the_start_or_beyond_the_scene_has_a_floor_too():
     scene = make_scene("mine", run={"t_end": "20", "grid_step": "5"})
-    rounded = [float(Fraction(text) - Fraction(float(text))) for text in (scene.release.x, scene.release.y)]
+    rounded = [
+        float(Fraction(text) - Fraction(float(text))) for text in (scene.release.x, scene.release.y)
+    ]
     assert input_floor(scene, 0.0) == pytest.approx(np.hypot(*rounded), rel=1e-3)
     assert input_floor(scene, 25.0) > input_floor(scene, 20.0) > 0
 
@@ -58,4 +63,6 @@ def test_inputs_that_are_doubles_have_no_floor():
     release = {"x": "0.25", "y": "0.5"}
     site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0.0001220703125", "equatorial_radius": "6378137",
             "inverse_flattening": "256"}  # fmt: skip
-    assert input_floor(make_scene("exact", site=site, release=release, run={"t_end": "20"}), 20.0) == 0
+    assert (
+        input_floor(make_scene("exact", site=site, release=release, run={"t_end": "20"}), 20.0) == 0
+    )

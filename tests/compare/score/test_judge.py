@@ -54,7 +54,10 @@ def write_times(path, times):
 
 def write_csv(path, t, states, columns=COLUMNS, digits=17):
     lines = [",".join(("t", *columns))]
-    lines += [f"{a:.{digits}g}," + ",".join(f"{v:.{digits}g}" for v in row) for a, row in zip(t, states, strict=True)]
+    lines += [
+        f"{a:.{digits}g}," + ",".join(f"{v:.{digits}g}" for v in row)
+        for a, row in zip(t, states, strict=True)
+    ]
     path.write_text("\n".join(lines) + "\n")
     return path
 
@@ -86,12 +89,23 @@ def off_by(tmp_path, golden, states, column, error):
     return write_csv(tmp_path / "wrong.csv", golden.t[::10], wrong[::10])
 
 
-KEYS = {"scene", "verdict", "max_error_m", "rms_error_m", "end_error_m", "digits", "tolerance_m", "input_floor_m"}
+KEYS = {
+    "scene",
+    "verdict",
+    "max_error_m",
+    "rms_error_m",
+    "end_error_m",
+    "digits",
+    "tolerance_m",
+    "input_floor_m",
+}
 WORST = {"t", "component", "expected", "got"}
 TRANSITS = {"matched", "missed", "extra", "max_error_s", "max_conditioned_error_m"}
 
 
-def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(foucault, whole, golden):
+def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
+    foucault, whole, golden
+):
     zeros = golden.path / "transits.csv"
     status, out, err = foucault("score", "paris", whole, "--transits", zeros, "--json")
     said = json.loads(out)
@@ -104,7 +118,8 @@ def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
     assert said["reference"]["level"] == golden.manifest.level
     assert said["problem"]["release"] == {"x": "0.3", "y": "0.4"}
     assert (said["problem"]["pendulum"], len(said["problem"])) == ({"length": "67", "drag": "0"}, 3)
-    assert 4e-13 < said["input_floor_m"] < 6e-13  # rounding the inputs of Paris moves the bob by 5e-13 m in a day
+    # rounding the inputs of Paris moves the bob by 5e-13 m in a day
+    assert 4e-13 < said["input_floor_m"] < 6e-13
 
 
 def test_people_are_told_in_words(foucault, whole):
@@ -120,7 +135,9 @@ def test_a_wrong_run_disagrees_with_exit_status_1(foucault, tmp_path, golden, st
     assert (status, said["verdict"]) == (1, "disagrees")
     assert said["max_error_m"] == pytest.approx(1e-3, rel=0.01)
     assert said["worst"]["component"] == "y"
-    assert said["worst"]["got"] - said["worst"]["expected"] == pytest.approx(said["worst"]["difference"], rel=1e-9)
+    assert said["worst"]["got"] - said["worst"]["expected"] == pytest.approx(
+        said["worst"]["difference"], rel=1e-9
+    )
 
 
 def test_without_a_diagnosis_nothing_is_claimed_about_one(foucault, tmp_path):
@@ -146,7 +163,9 @@ def test_a_reference_is_never_judged_finer_than_its_own_bound(foucault, tmp_path
             lines[i] = f"{t},{Decimal(x) + Decimal(error)},{others}"
     path = tmp_path / "close.csv"
     path.write_text("\n".join([*lines, ""]))
-    status, out, _ = foucault("score", "paris", path, "--tolerance", "1e-60", "--json", "--no-diagnosis")
+    status, out, _ = foucault(
+        "score", "paris", path, "--tolerance", "1e-60", "--json", "--no-diagnosis"
+    )
     said = json.loads(out)
     assert status == (0 if agrees else 1)
     assert said["at_or_below_bound"] is agrees
@@ -179,7 +198,8 @@ def test_more_digits_than_a_doubles_are_judged_as_decimals(foucault):
 def test_a_good_double_run_is_about_as_good_as_its_inputs(foucault, tmp_path):
     scene = load_scene("paris", ["inputs=binary64"])
     times = np.sort(np.random.default_rng(2).uniform(0, 86400, 500))
-    rows = trajectory(scene, np.concatenate([[0.0], times]), formulation="space")  # which loses least in double
+    # which loses least in double
+    rows = trajectory(scene, np.concatenate([[0.0], times]), formulation="space")
     path = write_csv(tmp_path / "run.csv", times, rows[1:])
     said = json.loads(foucault("score", "paris", path, "--json", "--tolerance", "1e-11")[1])
     assert said["verdict"] == "agrees"
@@ -202,12 +222,17 @@ def test_standard_input_is_a_candidate(foucault, good):
 
 
 def test_a_program_is_run_and_timed(foucault, good):
-    status, out, _ = foucault("score", "paris", "--run", f"cat {shlex.quote(str(good))}", "--repeats", "1", "--json")
+    status, out, _ = foucault(
+        "score", "paris", "--run", f"cat {shlex.quote(str(good))}", "--repeats", "1", "--json"
+    )
     said = json.loads(out)
     assert status == 0
     assert said["timing"]["runs"] == 1
     assert said["timing"]["warm"]
-    assert "no warm-up" in foucault("score", "paris", "--run", f"cat {shlex.quote(str(good))}", "--repeats", "0")[1]
+    assert (
+        "no warm-up"
+        in foucault("score", "paris", "--run", f"cat {shlex.quote(str(good))}", "--repeats", "0")[1]
+    )
 
 
 def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden, tmp_path):
@@ -221,7 +246,9 @@ def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden
 
 
 @pytest.mark.parametrize(("weighted", "status"), [(0.9, 0), (1.1, 1)])
-def test_one_shifted_transit_decides_about_a_perfect_run(foucault, good, golden, tmp_path, weighted, status):
+def test_one_shifted_transit_decides_about_a_perfect_run(
+    foucault, good, golden, tmp_path, weighted, status
+):
     zeros, tolerance_m, omega = golden.transits["t"].copy(), 1e-5, 2 * np.pi / 16.4
     by = weighted * tolerance_m * omega / abs(golden.transits["ax"][100])
     zeros[100] += by
@@ -232,7 +259,9 @@ def test_one_shifted_transit_decides_about_a_perfect_run(foucault, good, golden,
     assert (f"shifted           {zeros[100] - by:.6f} s by {by:.2g} s" in out) is bool(status)
 
 
-def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(foucault, good, golden, tmp_path):
+def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(
+    foucault, good, golden, tmp_path
+):
     path = write_times(tmp_path / "zeros.csv", [0.0, *golden.transits["t"], 86400.5])
     assert foucault("score", "paris", good, "--transits", path)[0] == 0
 
@@ -241,7 +270,9 @@ def test_a_moving_release_is_no_transit():
     scene = load_scene("paris", ["release.vx=0.1", "run.t_end=120", "run.level=confirmed"])
     zeros = np.array([float(t) for t in solve(scene).transits.exact("t")])
     assert judge(None, scene, transits=zeros, explain=False).agrees
-    assert list(judge(None, scene, transits=np.array([0.0, *zeros]), explain=False).transits.extra) == [0.0]
+    assert list(
+        judge(None, scene, transits=np.array([0.0, *zeros]), explain=False).transits.extra
+    ) == [0.0]
 
 
 def test_a_picture_is_drawn_and_the_same_one_has_the_same_bytes(foucault, tmp_path, golden, states):
@@ -269,7 +300,9 @@ def test_a_picture_is_drawn_and_the_same_one_has_the_same_bytes(foucault, tmp_pa
         ("png", rb"$x^$ $\frac.csv"),
     ],
 )
-def test_a_picture_is_drawn_whatever_the_file_is_called(foucault, tmp_path, golden, states, suffix, name):
+def test_a_picture_is_drawn_whatever_the_file_is_called(
+    foucault, tmp_path, golden, states, suffix, name
+):
     pytest.importorskip("matplotlib")
     path = write_csv(tmp_path / os.fsdecode(name), golden.t[:3], states[:3])
     drawn = tmp_path / f"error.{suffix}"
@@ -283,7 +316,10 @@ def test_a_picture_is_drawn_whatever_the_file_is_called(foucault, tmp_path, gold
 
 
 def test_rows_and_transits_after_the_end_asked_for_are_ignored(whole, golden):
-    for end, ignored in ((86340, "1 row after t = 86340 s ignored"), (600, "1430 rows after t = 600 s ignored")):
+    for end, ignored in (
+        (86340, "1 row after t = 86340 s ignored"),
+        (600, "1430 rows after t = 600 s ignored"),
+    ):
         note = f"{ignored}, the last at 86400 s"
         score = judge(whole, "paris", t_end=end, transits=golden.transits["t"])
         assert (score.candidate.t[-1], score.notes, score.verdict) == (end, (note,), "agrees")
@@ -299,7 +335,9 @@ def test_rows_and_transits_after_the_end_asked_for_are_ignored(whole, golden):
         ("covers", [-0.01, 1.01], "from 0 to 1"),
     ],
 )
-def test_a_tolerance_is_above_zero_and_finite_and_a_share_at_most_the_whole(good, option, values, words):
+def test_a_tolerance_is_above_zero_and_finite_and_a_share_at_most_the_whole(
+    good, option, values, words
+):
     for value in values:
         with pytest.raises(InputError, match=words):
             judge(good, "paris", **{option: value})
@@ -320,21 +358,29 @@ def test_the_release_alone_does_not_agree(foucault):
 
 
 @pytest.mark.parametrize(
-    ("rows", "share", "status"), [(1441, 1, 0), (1440, 1, 1), (1440, 0.999, 0), (721, 0.5, 0), (720, 0.5, 1)]
+    ("rows", "share", "status"),
+    [(1441, 1, 0), (1440, 1, 1), (1440, 0.999, 0), (721, 0.5, 0), (720, 0.5, 1)],
 )
-def test_a_share_of_the_span_can_be_demanded(foucault, tmp_path, golden, states, rows, share, status):
+def test_a_share_of_the_span_can_be_demanded(
+    foucault, tmp_path, golden, states, rows, share, status
+):
     last = slice(max(0, rows - 20), rows)
-    score = judge({"t": golden.t[last], "x": states[last, 0], "y": states[last, 1]}, "paris", covers=share)
+    score = judge(
+        {"t": golden.t[last], "x": states[last, 0], "y": states[last, 1]}, "paris", covers=share
+    )
     assert (score.covered, score.passes) == (min(1, (rows - 1) / 1440), not status)
     assert ("covers too little" in str(score)) is bool(status)
-    if (rows, share) in ((1440, 1), (721, 0.5)):  # and so the command, of which these two are enough
+    # and so the command, of which these two are enough
+    if (rows, share) in ((1440, 1), (721, 0.5)):
         path = write_csv(tmp_path / "part.csv", golden.t[last], states[last])
         done, out, _ = foucault("score", "paris", path, "--covers", share, "--json")
         assert (done, json.loads(out)["covered"]) == (status, score.covered)
 
 
 @pytest.mark.parametrize("extended", [False, True])
-def test_inputs_that_the_scene_says_are_doubles_are_read_so_whatever_the_candidate_holds(good, extended):
+def test_inputs_that_the_scene_says_are_doubles_are_read_so_whatever_the_candidate_holds(
+    good, extended
+):
     scene = load_scene("paris", ["inputs=binary64"])
     score = judge(load("paris").path / "grid.csv" if extended else good, scene, explain=False)
     assert score.candidate.extended is extended
@@ -346,7 +392,9 @@ def test_transits_alone_are_a_candidate(foucault, tmp_path, golden):
     path = tmp_path / "zeros.csv"
 
     def score(times, *words):
-        status, out, _ = foucault("score", "paris", "--transits", write_times(path, times), "--json", *words)
+        status, out, _ = foucault(
+            "score", "paris", "--transits", write_times(path, times), "--json", *words
+        )
         return status, json.loads(out)
 
     status, said = score([0.0, *zeros, 86400.5], "--covers", 1)
@@ -367,7 +415,9 @@ def test_transits_alone_are_a_candidate(foucault, tmp_path, golden):
 
 
 def test_a_doubled_transit_is_an_extra_one(foucault, good, golden, tmp_path):
-    path = write_times(tmp_path / "zeros.csv", np.repeat(golden.transits["t"], [1] * 99 + [2] + [1] * 10414))
+    path = write_times(
+        tmp_path / "zeros.csv", np.repeat(golden.transits["t"], [1] * 99 + [2] + [1] * 10414)
+    )
     status, out, _ = foucault("score", "paris", good, "--transits", path)
     assert status == 1
     assert "10514 matched, 0 missed, 1 extra" in out
@@ -379,7 +429,9 @@ def test_the_worst_of_each_column_is_told(foucault, tmp_path, golden, states):
     for row, column, error in ((3, "x", 1e-6), (5, "y", -2e-6), (7, "vz", 3e-6)):
         wrong[row, COLUMNS.index(column)] += error
     path = write_csv(tmp_path / "wrong.csv", golden.t[:20], wrong)
-    said = json.loads(foucault("score", "paris", path, "--json", "--no-diagnosis")[1])["worst_of_each"]
+    said = json.loads(foucault("score", "paris", path, "--json", "--no-diagnosis")[1])[
+        "worst_of_each"
+    ]
     assert list(said) == list(COLUMNS)
     assert (said["x"]["t"], said["y"]["t"], said["vz"]["t"]) == (180.0, 300.0, 420.0)
     assert said["y"]["difference"] == pytest.approx(-2e-6)
@@ -421,9 +473,18 @@ def test_a_users_mistake_gets_a_message_and_exit_status_2(foucault, good, words,
     assert "Traceback" not in err
 
 
-def own_scene(tmp_path, drag="0", latitude="48.846111", release='x = "0.1"\ny = "0.2"', t_end="60", transits="true"):
+def own_scene(
+    tmp_path,
+    drag="0",
+    latitude="48.846111",
+    release='x = "0.1"\ny = "0.2"',
+    t_end="60",
+    transits="true",
+):
     path = tmp_path / "mine.toml"
-    path.write_text(OWN.format(drag=drag, latitude=latitude, release=release, t_end=t_end, transits=transits))
+    path.write_text(
+        OWN.format(drag=drag, latitude=latitude, release=release, t_end=t_end, transits=transits)
+    )
     return path
 
 
@@ -432,10 +493,12 @@ def own_scene(tmp_path, drag="0", latitude="48.846111", release='x = "0.1"\ny = 
     [
         {},
         {"drag": "0.05"},
-        pytest.param({"latitude": "90"}, marks=pytest.mark.long),  # the last two are at the pole as well
+        # the last two are at the pole as well
+        pytest.param({"latitude": "90"}, marks=pytest.mark.long),
         {"release": 'angle = "120"\nazimuth = "30"\nazimuth_rate = "20"', "t_end": "20"},
         {"release": 'angle = "0"\nazimuth = "0"', "latitude": "90", "transits": "false"},  # at rest
-        {"release": 'angle = "180"\nazimuth = "0"', "latitude": "90", "transits": "false"},  # upside down
+        # upside down
+        {"release": 'angle = "180"\nazimuth = "0"', "latitude": "90", "transits": "false"},
     ],
     ids=["plain", "drag", "pole", "above", "at_rest", "inverted"],
 )
@@ -456,7 +519,9 @@ def test_transits_that_the_scene_does_not_ask_for_are_not_judged(foucault, tmp_p
     path = own_scene(tmp_path, transits="false")
     zeros = write_times(tmp_path / "zeros.csv", [1, 2, 3])
     scene = load_scene(path, ["inputs=binary64"])
-    rows = write_csv(tmp_path / "run.csv", np.linspace(0, 60, 5), trajectory(scene, np.linspace(0, 60, 5)))
+    rows = write_csv(
+        tmp_path / "run.csv", np.linspace(0, 60, 5), trajectory(scene, np.linspace(0, 60, 5))
+    )
     status, out, _ = foucault("score", path, rows, "--transits", zeros)
     assert status == 0
     assert "were not judged" in out
@@ -488,7 +553,9 @@ def test_errors_as_large_as_numbers_go_are_judged(foucault, tmp_path, golden, st
     said = json.loads(out)
     assert status == 1
     assert said["diagnosis"] is None
-    assert all(np.isfinite(said[key]) for key in ("max_error_m", "rms_error_m", "digits", "h_drift_m2_s2"))
+    assert all(
+        np.isfinite(said[key]) for key in ("max_error_m", "rms_error_m", "digits", "h_drift_m2_s2")
+    )
 
 
 def test_of_collinear_inputs_the_height_is_named(foucault, tmp_path):
@@ -526,8 +593,16 @@ def test_ten_times_the_rows_of_a_day_take_hardly_more_calls_and_nothing_is_solve
 
     def calls(rows):
         times = np.linspace(0, 86400, rows)
-        np.savez(tmp_path / "day.npz", t=times, **dict(zip(COLUMNS, trajectory(paris, times).T, strict=True)))
-        return calls_of(lambda: judge(read(tmp_path / "day.npz"), paris, announce=told.append, report=told.append))
+        np.savez(
+            tmp_path / "day.npz",
+            t=times,
+            **dict(zip(COLUMNS, trajectory(paris, times).T, strict=True)),
+        )
+        return calls_of(
+            lambda: judge(
+                read(tmp_path / "day.npz"), paris, announce=told.append, report=told.append
+            )
+        )
 
     calls(100)  # imports and compiles
     few, many = calls(10_000), calls(100_000)
@@ -543,11 +618,15 @@ def test_ten_times_the_rows_of_a_day_take_hardly_more_calls_and_nothing_is_solve
         (["site.rotation_rate=0.07"], True),  # a program that speeds the Earth up
         (["site.rotation_rate=0.07", "site.gravity_is=effective"], False),
         (["site.rotation_rate=0.07", "site.equatorial_radius=0"], False),
-        (["site.gravity=0", "site.rotation_rate=0"], False),  # without any force there is none larger than g
+        # without any force there is none larger than g
+        (["site.gravity=0", "site.rotation_rate=0"], False),
     ],
 )
 def test_a_centrifugal_force_larger_than_g_is_warned_of(tmp_path, site, warned):
-    scene = load_scene("paris", [*site, "run.t_end=2", "run.grid_step=1", "run.level=self_consistent", "run.digits=10"])
+    scene = load_scene(
+        "paris",
+        [*site, "run.t_end=2", "run.grid_step=1", "run.level=self_consistent", "run.digits=10"],
+    )
     path = write_csv(tmp_path / "at_rest.csv", [0.0, 1.0], [[0.3, 0.4]] * 2, "xy")
     notes = [note for note in judge(path, scene, explain=False).notes if "larger than g" in note]
     assert bool(notes) is warned
@@ -555,10 +634,15 @@ def test_a_centrifugal_force_larger_than_g_is_warned_of(tmp_path, site, warned):
 
 
 @pytest.mark.parametrize(
-    ("early", "whole"), [(-3e-16, True), (1e-13, True), (0.9e-6, True), (1e-6, True), (1.1e-6, False)]
+    ("early", "whole"),
+    [(-3e-16, True), (1e-13, True), (0.9e-6, True), (1e-6, True), (1.1e-6, False)],
 )
-def test_a_file_that_ends_a_rounding_off_the_end_covers_all_of_it(tmp_path, golden, states, early, whole):
-    path = write_csv(tmp_path / "short.csv", np.append(golden.t[-3:-1], 86400 * (1 - early)), states[-3:])
+def test_a_file_that_ends_a_rounding_off_the_end_covers_all_of_it(
+    tmp_path, golden, states, early, whole
+):
+    path = write_csv(
+        tmp_path / "short.csv", np.append(golden.t[-3:-1], 86400 * (1 - early)), states[-3:]
+    )
     assert (judge(path, "paris", explain=False).covered == 1.0) is whole
 
 
@@ -581,17 +665,23 @@ def test_transits_within_an_interval_that_the_truth_leaves_open_are_not_judged(g
     assert np.sort([*found.at + found.errors_s, *found.extra]).tolist() == [9.0, 12.0]
 
 
-def test_a_transit_between_the_last_two_rows_is_missed_and_none_after_them(tmp_path, golden, states):
+def test_a_transit_between_the_last_two_rows_is_missed_and_none_after_them(
+    tmp_path, golden, states
+):
     zeros = golden.transits["t"]
     last = zeros[zeros <= golden.t[10]][-1]
     assert golden.t[9] < last < golden.t[10]
     path = write_csv(tmp_path / "part.csv", golden.t[:11], states[:11])
-    assert judge(path, "paris", transits=zeros[zeros < last], explain=False).transits.missed == [last]
+    assert judge(path, "paris", transits=zeros[zeros < last], explain=False).transits.missed == [
+        last
+    ]
     assert judge(path, "paris", transits=zeros[zeros <= last], explain=False).agrees
 
 
 @pytest.mark.parametrize(("early", "after"), [(0.0, 5), (0.9, 5), (1.1, 4)])
-def test_transits_alone_cover_the_motion_up_to_the_next_one_beyond_the_tolerance(golden, early, after):
+def test_transits_alone_cover_the_motion_up_to_the_next_one_beyond_the_tolerance(
+    golden, early, after
+):
     """The last of five is early by so many times what the fastest bob takes for the tolerance."""
     zeros, tolerance_m = golden.transits["t"], 0.1
     speed_m_s = judge(None, "paris", transits=zeros[:5], explain=False).errors.speed_m_s
@@ -621,8 +711,12 @@ def test_columns_in_the_place_of_the_scene_are_refused():
         judge("paris", {"t": [0.0], "x": [0.3], "y": [0.4]})
 
 
-@pytest.mark.parametrize(("part", "of_its_own"), [(0.0, False), (0.05, True), (0.15, False), (1.0, False)])
-def test_a_candidate_that_swings_less_than_a_tenth_has_a_tolerance_of_its_own_size(golden, part, of_its_own):
+@pytest.mark.parametrize(
+    ("part", "of_its_own"), [(0.0, False), (0.05, True), (0.15, False), (1.0, False)]
+)
+def test_a_candidate_that_swings_less_than_a_tenth_has_a_tolerance_of_its_own_size(
+    golden, part, of_its_own
+):
     rows = {"t": golden.t, "x": part * golden.x, "y": part * golden.y}
     score = judge(rows, "paris", explain=False)
     own = part if of_its_own else 1.0
@@ -642,7 +736,8 @@ def beyond_the_cord(*points, times=(0.0, 60.0), scene="paris"):
         (1000.9, "they are millimetres; --units mm reads them so"),
         (1001.1, "is it another pendulum, or are 1001.1 pixels"),
         (1000 * (1 + 0.9e-3j), "they are millimetres; --units mm reads them so"),
-        (1000 * (1 + 1.1e-3j), "Metres are wanted"),  # they do not begin in the direction of the release
+        # they do not begin in the direction of the release
+        (1000 * (1 + 1.1e-3j), "Metres are wanted"),
         (-1000, "Metres are wanted"),
         (0, "Metres are wanted"),
     ],
@@ -656,11 +751,13 @@ def test_positions_beyond_the_cord_are_in_a_unit_that_fits_to_a_thousandth(golde
 def test_beyond_the_cord_begins_a_hundredth_beyond_it(golden):
     assert beyond_the_cord((0.3, 0.4), (1.009 * 67, 0)) == []
     assert len(beyond_the_cord((0.3, 0.4), (1.011 * 67, 0))) == 1
-    (late,) = beyond_the_cord((300, 400), (0, 0), times=(0.5, 60.0))  # nothing is known of its release
+    # nothing is known of its release
+    (late,) = beyond_the_cord((300, 400), (0, 0), times=(0.5, 60.0))
     assert "Metres are wanted" in late
     (elsewhere,) = beyond_the_cord((300, 400), (-1000 * golden.x[1], -1000 * golden.y[1]))
     assert elsewhere.endswith("is it another pendulum, or millimetres? --units mm reads them so")
-    (at_rest,) = beyond_the_cord((99, 0), times=(0.0,), scene="at_rest")  # no scale of a release at the origin
+    # no scale of a release at the origin
+    (at_rest,) = beyond_the_cord((99, 0), times=(0.0,), scene="at_rest")
     assert "Metres are wanted" in at_rest
 
 
@@ -707,7 +804,8 @@ def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_i
     assert (score.transits.matched, score.transits.extra) == (len(true), [10.0])
     assert "input floor" not in str(score)
     rough = judge(rows, path, explain=False).errors.bound_m
-    for part, enough in ((0.9, False), (1.1, True)):  # a bound of a thousandth of the tolerance is enough
+    # a bound of a thousandth of the tolerance is enough
+    for part, enough in ((0.9, False), (1.1, True)):
         known = judge(rows, path, tolerance=part * 1000 * rough, explain=False).errors.bound_m
         assert (known == rough) is enough
 
@@ -720,7 +818,9 @@ def test_a_verdict_that_the_references_error_could_change_is_made_with_a_closer_
     rows = {"t": times, "x": x + 1e-3, "y": y}
     rough = judge(rows, path, explain=False).errors
     for bounds, closer in ((2, True), (10, False)):
-        found = judge(rows, path, tolerance=rough.max_m + bounds * rough.bound_m, explain=False).errors
+        found = judge(
+            rows, path, tolerance=rough.max_m + bounds * rough.bound_m, explain=False
+        ).errors
         assert (found.bound_m < rough.bound_m / 3) is closer
 
 
@@ -776,5 +876,10 @@ def test_a_judge_that_a_bob_without_motion_would_pass_says_so(name, tolerance, w
     assert where is None or where in notes[0]
     assert [f"Note: {note}." in str(score) for note in notes] == [True] * len(notes)
     # it is as the note says
-    still = {**rows, **{axis: np.full(len(rows["t"]), rows[axis].mean()) for axis in ("x", "y", "z")}}
-    assert (judge(still, name, tolerance=tolerance, explain=False).verdict == "agrees") == (where is not None)
+    still = {
+        **rows,
+        **{axis: np.full(len(rows["t"]), rows[axis].mean()) for axis in ("x", "y", "z")},
+    }
+    assert (judge(still, name, tolerance=tolerance, explain=False).verdict == "agrees") == (
+        where is not None
+    )

@@ -10,7 +10,11 @@ from reference import InputError, load_scene, solve
 
 WORDS = ["gate 30", "gate 127@0", "turn 45", "highest", "lowest"]
 # planar at first, an ellipse, and a wide swing
-RELEASES = {"planar": {}, "ellipse": {"release.vx": "0.05", "release.vy": "-0.03"}, "wide": {"pendulum.length": "1"}}
+RELEASES = {
+    "planar": {},
+    "ellipse": {"release.vx": "0.05", "release.vy": "-0.03"},
+    "wide": {"pendulum.length": "1"},
+}
 
 
 @cache
@@ -22,12 +26,15 @@ def swung(name: str, gravity: str = "9.8"):
 
 
 @pytest.mark.parametrize(
-    "name", ["planar", *(pytest.param(name, marks=pytest.mark.long) for name in ("ellipse", "wide"))]
+    "name",
+    ["planar", *(pytest.param(name, marks=pytest.mark.long) for name in ("ellipse", "wide"))],
 )
 def test_the_distance_of_a_passage_is_that_of_the_motion(name):
     scene, here = swung(name)
     _, there = swung(name, "9.8000001")
-    apart = max(np.sqrt((here.x - there.x) ** 2 + (here.y - there.y) ** 2 + (here.z - there.z) ** 2))
+    apart = max(
+        np.sqrt((here.x - there.x) ** 2 + (here.y - there.y) ** 2 + (here.z - there.z) ** 2)
+    )
     for word in WORDS if name == "planar" else WORDS[2:4]:
         found = score_passages("other", there.sections[word].table["t"], scene, word)
         assert found.errors.matched == len(here.sections[word].table)
@@ -40,13 +47,19 @@ def test_what_is_missed_extra_or_another_section_is_told():
     scene, here = swung("planar")
     times = here.sections["gate 30"].table["t"]
     lost = score_passages("lost", np.delete(times, 1), scene, "gate 30")
-    assert lost.verdict == "disagrees" and lost.errors.missed == [pytest.approx(times[1], abs=1e-12)]
+    assert lost.verdict == "disagrees" and lost.errors.missed == [
+        pytest.approx(times[1], abs=1e-12)
+    ]
     more = score_passages("more", np.sort([*times, times[0] + 1]), scene, "gate 30")
     assert more.verdict == "disagrees" and more.errors.extra == [times[0] + 1]
     highest, lowest = (here.sections[word].table["t"] for word in ("highest", "lowest"))
     both = score_passages("both", np.sort([*highest, lowest[0]]), scene, "highest")
-    assert both.verdict == "disagrees" and both.errors.extra == [lowest[0]]  # though the height's rate is zero there
+    # though the height's rate is zero there
+    assert both.verdict == "disagrees" and both.errors.extra == [lowest[0]]
     other = score_passages("other", lowest, scene, "highest")
-    assert other.verdict == "disagrees" and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
+    assert (
+        other.verdict == "disagrees"
+        and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
+    )
     with pytest.raises(InputError, match="no time in the scene's span"):
         score_passages("none", np.array([31.0]), scene, "gate 30")

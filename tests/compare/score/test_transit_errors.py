@@ -78,7 +78,8 @@ def test_one_at_the_very_end_may_fall_beyond_it():
 
 
 PAIR = np.sort([*TRUTH, 42.0, 42.002])
-PAIR_AX = np.insert(AX, 5, [1e-5, -1e-5])  # between two zeros the velocity reaches 1e-5 * 0.002 / 4 m/s
+# between two zeros the velocity reaches 1e-5 * 0.002 / 4 m/s
+PAIR_AX = np.insert(AX, 5, [1e-5, -1e-5])
 
 
 def test_a_close_pair_that_moves_together_is_matched_one_to_one():
@@ -114,7 +115,13 @@ def test_no_transits_at_all_are_all_missed_or_all_extra():
     assert len(against([]).missed) == 20
     assert against(TRUTH, np.empty(0), np.empty(0)).extra == TRUTH.tolist()
     none = against([], np.empty(0), np.empty(0))
-    assert (none.matched, none.missed, none.extra, none.max_error_s, none.max_conditioned_m) == (0, [], [], 0.0, 0.0)
+    assert (none.matched, none.missed, none.extra, none.max_error_s, none.max_conditioned_m) == (
+        0,
+        [],
+        [],
+        0.0,
+        0.0,
+    )
 
 
 @given(st.lists(st.floats(0, 170), max_size=30, unique=True))
@@ -144,7 +151,8 @@ def test_half_a_swing_to_the_last_bit_is_within_it():
 def test_what_is_off_by_the_tolerance_to_the_last_bit_is_within_it():
     one = np.array([0.5])
     assert TransitErrors(one, one, [], [], one).shifted(0.5) == []
-    truth = np.array([8.0, 16.0, 16.5, 24.0])  # between the pair the bob is off by 4 m/s * 0.5 s / 4
+    # between the pair the bob is off by 4 m/s * 0.5 s / 4
+    truth = np.array([8.0, 16.0, 16.5, 24.0])
     pair = transit_errors(truth[[0, 3]], truth, np.full(4, 4.0), 30.0, tolerance_m=0.5)
     assert pair.undecided == [16.0, 16.5]
 
@@ -159,7 +167,9 @@ def test_a_motion_within_the_tolerance_and_no_more_excuses(part, excused):
     depth = 1e-5 * 0.002 / 4 / OMEGA  # of the parabola between the two zeros
     pair = against(TRUTH, PAIR, PAIR_AX, tolerance_m=part * depth)
     assert pair.undecided == ([42.0, 42.002] if excused else [])
-    one = against(np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8, away=lambda t: np.full(len(t), -1e-8))
+    one = against(
+        np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8, away=lambda t: np.full(len(t), -1e-8)
+    )
     assert one.undecided == ([42.0] if excused else [])
     end = against(TRUTH[:5], until=TRUTH[5] + 1e-6, tolerance_m=part * 1e-6 * 0.05 / OMEGA)
     assert end.undecided == ([TRUTH[5]] if excused else [])

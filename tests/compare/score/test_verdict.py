@@ -38,7 +38,14 @@ def told(tmp_path_factory, golden):
     right = golden.transits["t"][:430]
     zeros = np.sort([*np.delete(right, [10, 20, 30, 40]), 100.0, 200.0])
     np.savetxt(folder / "zeros.csv", zeros, header="t", comments="", fmt="%.17g")
-    words = ["score", "paris", "--run", f"cat {shlex.quote(str(folder / 'rows.csv'))}", "--repeats", "1"]
+    words = [
+        "score",
+        "paris",
+        "--run",
+        f"cat {shlex.quote(str(folder / 'rows.csv'))}",
+        "--repeats",
+        "1",
+    ]
     words += ["--transits", str(folder / "zeros.csv"), "--t-end", "3600", "--tolerance", "1e-5"]
     text, data = (CliRunner().invoke(commands(), [*words, *more]) for more in ([], ["--json"]))
     assert (text.exit_code, data.exit_code) == (1, 1)
@@ -61,7 +68,9 @@ def test_the_verdict_comes_first_then_the_errors_then_the_reasons(told):
         "swing plane, phase", "drifts", "transits", "missed at", "extra at", "took", "inputs read as", "reference",
         "It seems that your program", "Reading: ", "Note: ",
     ]  # fmt: skip
-    places = [next(i for i, line in enumerate(lines) if line.strip().startswith(word)) for word in order]
+    places = [
+        next(i for i, line in enumerate(lines) if line.strip().startswith(word)) for word in order
+    ]
     assert places == sorted(places) and places[0] == 0
 
 
@@ -77,7 +86,8 @@ def test_the_verdict_comes_first_then_the_errors_then_the_reasons(told):
 )
 def test_the_lines_have_the_numbers_of_the_document(told, label, keys):
     lines, data = told
-    rounding = 0.06 if keys[0] in ("digits", "scd") else 0.0  # one decimal, of which digits are told
+    # one decimal, of which digits are told
+    rounding = 0.06 if keys[0] in ("digits", "scd") else 0.0
     said = numbers(line_of(lines, label))[: len(keys)]
     assert said == pytest.approx([data[key] for key in keys], rel=0.05, abs=rounding)
 
@@ -90,7 +100,11 @@ def test_the_lines_name_the_worst_number_as_the_document_does(told):
     assert numbers(said) == [worst["t"], worst["expected"], worst["got"]]
     assert worst["got"] - worst["expected"] == pytest.approx(worst["difference"], rel=1e-9)
     each = line_of(lines, "worst of each").split(", ")
-    assert [word.split()[0] for word in each] == list(data["worst_of_each"]) == ["x", "y", "z", "vx", "vy", "vz"]
+    assert (
+        [word.split()[0] for word in each]
+        == list(data["worst_of_each"])
+        == ["x", "y", "z", "vx", "vy", "vz"]
+    )
     assert [word.split()[-1] for word in each] == ["m"] * 3 + ["m/s"] * 3
 
 
@@ -111,11 +125,18 @@ def test_the_lines_and_the_document_tell_the_cause_the_reading_and_the_note(told
     assert cause["text"].removeprefix("your program ") in "\n".join(lines)
     left = line_of(lines, "With this put right, less than")
     assert data["corrected"]["max_error_m"] < numbers(left)[0] < 1e-6 < data["max_error_m"]
-    assert [f"Reading: {one['text']}." for one in data["conventions"]] == [x for x in lines if x.startswith("Reading")]
-    assert [f"Note: {note}." for note in data["notes"]] == [x for x in lines if x.startswith("Note")]
+    assert [f"Reading: {one['text']}." for one in data["conventions"]] == [
+        x for x in lines if x.startswith("Reading")
+    ]
+    assert [f"Note: {note}." for note in data["notes"]] == [
+        x for x in lines if x.startswith("Note")
+    ]
     assert "5 rows after t = 3600 s ignored" in data["notes"][0]
     assert (data["rows"], data["covered_s"]) == (61, [0.0, 3600.0])
-    assert (data["timing"]["runs"], "median of 1 after a warm-up" in line_of(lines, "took")) == (1, True)
+    assert (data["timing"]["runs"], "median of 1 after a warm-up" in line_of(lines, "took")) == (
+        1,
+        True,
+    )
 
 
 def test_what_a_score_has_not_is_not_said(golden):
@@ -136,11 +157,15 @@ def test_what_a_score_has_not_is_not_said(golden):
 def test_inputs_that_are_doubles_have_no_floor_to_compare_with(tmp_path, monkeypatch):
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0", "inverse_flattening": "inf"}
-    scene = make_scene("exact", site=site, release={"x": "0.25", "y": "0.5"}, run={"t_end": "5", "grid_step": "5"})
+    scene = make_scene(
+        "exact", site=site, release={"x": "0.25", "y": "0.5"}, run={"t_end": "5", "grid_step": "5"}
+    )
     third = np.ones(1, np.longdouble) / 3  # so that it is judged by a dataset
     score = judge({"t": [5.0], "x": third, "y": third}, scene, explain=False)
     assert document(score)["error_over_floor"] is None
-    assert "the inputs are doubles as they stand" in line_of(str(score).splitlines(), "largest error")
+    assert "the inputs are doubles as they stand" in line_of(
+        str(score).splitlines(), "largest error"
+    )
 
 
 def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
@@ -157,7 +182,14 @@ def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
 
 @pytest.mark.parametrize(
     ("share", "said"),
-    [(0.0, "0 %"), (0.29, "29 %"), (1.0, "100 %"), (1 - 1.5e-9, "99.9 %"), (1 - 0.5e-9, "100 %"), (0.012345, "1.23 %")],
+    [
+        (0.0, "0 %"),
+        (0.29, "29 %"),
+        (1.0, "100 %"),
+        (1 - 1.5e-9, "99.9 %"),
+        (1 - 0.5e-9, "100 %"),
+        (0.012345, "1.23 %"),
+    ],
 )
 def test_a_share_is_rounded_down_to_three_digits_but_for_rounding_errors(share, said):
     assert percent(share) == said

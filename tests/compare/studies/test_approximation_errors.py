@@ -35,7 +35,10 @@ def test_a_row_for_every_approximation_and_time():
 def test_errors_are_those_of_the_motions_and_never_shrink():
     rows = error_table(PARIS, chosen("linear_anharmonic"), 3600.0, times=(20.0, 1000.0))
     fine = np.linspace(0.0, 3600.0, 36001)
-    gap = APPROXIMATIONS["linear_anharmonic"].trajectory(PARIS, fine)[:, :3] - trajectory(PARIS, fine)[:, :3]
+    gap = (
+        APPROXIMATIONS["linear_anharmonic"].trajectory(PARIS, fine)[:, :3]
+        - trajectory(PARIS, fine)[:, :3]
+    )
     for row in rows:
         worst = np.max(np.linalg.norm(gap[fine <= row.t], axis=1))
         assert row.error_m == pytest.approx(worst, rel=0.02)
@@ -44,19 +47,30 @@ def test_errors_are_those_of_the_motions_and_never_shrink():
 
 
 def test_the_uniform_field_is_the_best_of_all_after_a_day_and_good_to_a_fifth_of_a_millimetre():
-    at_end = {row.approximation: row for row in error_table(PARIS, motions().values(), 86400.0) if row.t == 86400.0}
+    at_end = {
+        row.approximation: row
+        for row in error_table(PARIS, motions().values(), 86400.0)
+        if row.t == 86400.0
+    }
     assert set(at_end) == set(motions())
-    best = min((row for row in at_end.values() if row.error_m is not None), key=lambda row: row.error_m)
+    best = min(
+        (row for row in at_end.values() if row.error_m is not None), key=lambda row: row.error_m
+    )
     assert best.approximation == "gastebois_general"
     assert 1e-4 < best.error_m < 2e-4
     # The slow-down is what the recentred harmonic pendulum lacks for a day.
     assert at_end["linear_anharmonic"].error_m < 0.05 * at_end["linear_recentred"].error_m
     # Both have the right gravity and the right centre, so that only the amplitude costs: ω t A³/(16 l²).
     for word in ("linear_recentred", "gastebois_6_1", "linear_3d"):
-        assert at_end[word].error_m == pytest.approx(0.38229 * 86400 * 0.5963**3 / (16 * 67**2), rel=0.02)
+        assert at_end[word].error_m == pytest.approx(
+            0.38229 * 86400 * 0.5963**3 / (16 * 67**2), rel=0.02
+        )
     assert at_end["linear_apparent"].error_m < 0.25 < 1 < at_end["linear_g"].error_m
     # λ_a and the tilt are what it lacks for the plane: 1444" against 27".
-    assert at_end["gastebois_6_1"].plane_error_arcsec < 0.02 * at_end["linear_recentred"].plane_error_arcsec
+    assert (
+        at_end["gastebois_6_1"].plane_error_arcsec
+        < 0.02 * at_end["linear_recentred"].plane_error_arcsec
+    )
 
 
 def test_the_run_that_approximations_are_held_against_is_the_golden_dataset():
@@ -97,12 +111,16 @@ def test_numbers_stand_beside_the_reference():
 def test_limits_over_time_are_where_the_error_passes_them():
     ids = ["linear_3d", "gastebois_6_1", "mathar_item_4"]
     rows = limits(PARIS, chosen(*ids), "time", 7200.0)
-    assert [(row.approximation, row.limit) for row in rows] == [(word, name) for word in ids for name, _, _ in LIMITS]
+    assert [(row.approximation, row.limit) for row in rows] == [
+        (word, name) for word in ids for name, _, _ in LIMITS
+    ]
     truth = ReferenceMotion(PARIS, 7200.0)
     for row in rows:
         _, quantity, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
         start, end = row.good[0]
-        at_end, later = truth.largest(APPROXIMATIONS[row.approximation], [end, min(end + 17.0, 7200.0)])
+        at_end, later = truth.largest(
+            APPROXIMATIONS[row.approximation], [end, min(end + 17.0, 7200.0)]
+        )
         assert start == 0.0
         assert getattr(at_end, quantity) <= limit
         if end < 7200.0:
@@ -139,7 +157,9 @@ def test_lengths_end_where_the_logarithm_of_the_error_meets_the_limit():
 
 def test_latitudes_may_be_good_in_several_intervals():
     # 10^-2 m at the equator, and a tenth of that every 22.5 degrees
-    assert good_to_a_millimetre("latitude", lambda _, latitude: 10 ** (-2 - abs(latitude) / 22.5)) == [
+    assert good_to_a_millimetre(
+        "latitude", lambda _, latitude: 10 ** (-2 - abs(latitude) / 22.5)
+    ) == [
         (-90.0, -22.5),
         (22.5, 90.0),
     ]
@@ -147,7 +167,11 @@ def test_latitudes_may_be_good_in_several_intervals():
 
 def test_the_amplitude_at_which_the_harmonic_swing_loses_a_millimetre_in_an_hour():
     # ω t A³/(16 l²) = 1 mm at 3600 s.
-    (good,) = (row.good for row in limits(PARIS, chosen("linear_3d"), "amplitude", 3600.0) if row.limit == "1 mm")
+    (good,) = (
+        row.good
+        for row in limits(PARIS, chosen("linear_3d"), "amplitude", 3600.0)
+        if row.limit == "1 mm"
+    )
     expected = (1e-3 * 16 * 67**2 / (0.3826 * 3600)) ** (1 / 3)
     assert good[0][1] == pytest.approx(expected, rel=0.05)
 
@@ -171,9 +195,15 @@ def test_amplitude_is_the_distance_from_the_rest_position_in_the_same_direction(
     from compare.approximations.case import PaperCase
 
     for scene in (PARIS, PARIS.with_values(["release.vx=0.1"]), load_scene("hard")):
-        before, after = PaperCase.of_scene(scene), PaperCase.of_scene(varied(scene, "amplitude", 0.25))
+        before, after = (
+            PaperCase.of_scene(scene),
+            PaperCase.of_scene(varied(scene, "amplitude", 0.25)),
+        )
         rest = rest_position(after.k, after.ctx)
-        away = [case.ctx.mpc(case.position[0], case.position[1] - rest[1] * case.length) for case in (before, after)]
+        away = [
+            case.ctx.mpc(case.position[0], case.position[1] - rest[1] * case.length)
+            for case in (before, after)
+        ]
         assert abs(abs(away[1]) - 0.25) < 1e-30
         assert abs((away[1] / away[0]).imag) < 1e-30
         ratio = abs(away[1] / away[0])
@@ -184,14 +214,19 @@ def test_a_longer_cord_keeps_the_angle():
     longer = varied(PARIS, "length", 134.0)
     assert longer.exact.length == 134
     assert [float(v) for v in longer.exact.position] == [0.6, 0.8, 0.0, 0.0]
-    assert varied(load_scene("two_radians"), "length", 3.0).release == load_scene("two_radians").release
+    assert (
+        varied(load_scene("two_radians"), "length", 3.0).release
+        == load_scene("two_radians").release
+    )
 
 
 def test_a_latitude_changes_nothing_else():
     assert varied(PARIS, "latitude", 0.5) == PARIS.with_values(["site.latitude=0.5"])
 
 
-@pytest.mark.parametrize(("over", "value"), [("latitude", 91.0), ("length", -1.0), ("amplitude", 70.0)])
+@pytest.mark.parametrize(
+    ("over", "value"), [("latitude", 91.0), ("length", -1.0), ("amplitude", 70.0)]
+)
 def test_impossible_variations_are_refused(over, value):
     with pytest.raises(InputError):
         varied(PARIS, over, value)
@@ -199,7 +234,11 @@ def test_impossible_variations_are_refused(over, value):
 
 def test_a_bob_at_rest_has_no_direction_to_vary():
     with pytest.raises(InputError, match="rest position"):
-        varied(PARIS.with_values(["site.rotation_rate=0", "release.x=0", "release.y=0"]), "amplitude", 1.0)
+        varied(
+            PARIS.with_values(["site.rotation_rate=0", "release.x=0", "release.y=0"]),
+            "amplitude",
+            1.0,
+        )
 
 
 def test_a_sweep_chooses_its_values():

@@ -13,10 +13,15 @@ from compare.studies.approximation_limits import varied
 from reference import parse_scene, trajectory
 
 BASE = parse_scene(
-    {"id": "order", "title": "Paris, against which orders are measured", "release": {"x": "0.3", "y": "0.4"}}
+    {
+        "id": "order",
+        "title": "Paris, against which orders are measured",
+        "release": {"x": "0.3", "y": "0.4"},
+    }
 )
 TIMES = np.linspace(0.0, 60.0, 121)  # s, at which a motion is compared
-EXACT_M, EXACT_RELATIVE = 2e-12, 1e-13  # rounding of a metre-sized motion, and of a measured frequency
+# rounding of a metre-sized motion, and of a measured frequency
+EXACT_M, EXACT_RELATIVE = 2e-12, 1e-13
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,9 @@ CIRCLE = (  # cos φ = 0.8, angular velocity 1 rad/s
 )
 
 CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), STILL)
-SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), ("release.x=3e-3", "release.y=4e-3"))
+SQUARE_IN_RATE = Order(
+    "rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), ("release.x=3e-3", "release.y=4e-3")
+)
 LINEAR = (SQUARE_IN_RATE, CUBE_IN_AMPLITUDE)
 ABOUT_REST = (Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ON_AXIS, 1e-3), CUBE_IN_AMPLITUDE)
 SMALL_ANGLES = (Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 1e-3), CUBE_IN_AMPLITUDE)
@@ -108,7 +115,10 @@ ORDERS = {
     "frequency_apparent": (FREQUENCY_IN_AMPLITUDE, FREQUENCY_IN_RATE),
     "frequency_anharmonic": (FREQUENCY_EXACT, FREQUENCY_IN_RATE),
     "precession_sine": (Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), 1e-2), SQUARE_AT_POLE),
-    "precession_tilted": (Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ON_AXIS, 1e-2), SQUARE_AT_POLE),
+    "precession_tilted": (
+        Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ON_AXIS, 1e-2),
+        SQUARE_AT_POLE,
+    ),
     "precession_spherical": (Order("amplitude", 4, (4.0, 8.0, 16.0), AT_POLE),),
     "rest_equation": (replace(IN_RATE, power=None), Order("length", None, (1, 67, 10000))),
     **{
@@ -182,12 +192,16 @@ def slope(order, errors):
     return np.polyfit(np.log(order.values), np.log(errors), 1)[0]
 
 
-@pytest.mark.parametrize(("word", "which"), [(word, i) for word, orders in ORDERS.items() for i in range(len(orders))])
+@pytest.mark.parametrize(
+    ("word", "which"), [(word, i) for word, orders in ORDERS.items() for i in range(len(orders))]
+)
 def test_the_error_has_the_slope_of_its_theory(word, which, size):
     order = size(of_ends, whole)(ORDERS[word][which])
     errors = errors_of(word, order)
     if order.power is None:
-        assert max(errors) < (EXACT_M if isinstance(APPROXIMATIONS[word], Motion) else EXACT_RELATIVE)
+        assert max(errors) < (
+            EXACT_M if isinstance(APPROXIMATIONS[word], Motion) else EXACT_RELATIVE
+        )
     else:
         assert min(errors) > 0
         assert abs(slope(order, errors) - order.power) < 0.25, errors
@@ -203,7 +217,9 @@ def test_the_slope_tells_a_wrong_order(size):
 
 
 @pytest.mark.parametrize("word", ["mathar_item_1", "mathar_item_1_variant", "linear_g", "method_2"])
-def test_without_the_centrifugal_force_the_tilt_costs_as_many_metres_as_the_rest_position_is_off(word):
+def test_without_the_centrifugal_force_the_tilt_costs_as_many_metres_as_the_rest_position_is_off(
+    word,
+):
     # The bob swings about a wrong point d = 0.115 m away: it is 2 d off after half a swing.
     small = varied(BASE.with_values(["release.x=0.003", "release.y=0"]), "amplitude", 0.001)
     assert error(word, small) == pytest.approx(0, abs=0.24)

@@ -16,7 +16,10 @@ from reference import InputError
 
 
 def run(
-    items: list[tuple[str, str]], journal_path: Path | None = None, report: Counted | None = None, **fields: Any
+    items: list[tuple[str, str]],
+    journal_path: Path | None = None,
+    report: Counted | None = None,
+    **fields: Any,
 ) -> list[Answer]:
     return campaign(Answers(**fields), items, journal_path=journal_path, report=report)
 
@@ -33,21 +36,31 @@ def loaded(patch: pytest.MonkeyPatch, per_core: float) -> None:
     patch.setattr(os, "getloadavg", lambda: (load, load, load))
 
 
-def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     loaded(monkeypatch, per_core=0.5)
     results = run([("m", word) for word in ("a", "dies", "b", "hangs", "c")])
     assert [one.status for one in results] == ["ok", "crashed", "ok", "out_of_time", "ok"]
-    assert [results[i].text for i in (0, 2, 3, 4)] == ["a 7", "b 7", "hangs: no answer within 2 s", "c 7"]
+    assert [results[i].text for i in (0, 2, 3, 4)] == [
+        "a 7",
+        "b 7",
+        "hangs: no answer within 2 s",
+        "c 7",
+    ]
     assert results[1].text.startswith("dies: its process ended")
 
 
 def test_on_a_busy_machine_an_answer_is_awaited_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     loaded(monkeypatch, per_core=4.0)
-    _, hung = run([("m", "a"), ("m", "hangs")], patience_s=0.5)  # the first item has time for imports besides
+    # the first item has time for imports besides
+    _, hung = run([("m", "a"), ("m", "hangs")], patience_s=0.5)
     assert (hung.status, hung.text) == ("out_of_time", "hangs: no answer within 2 s")
 
 
-def test_items_that_differ_in_their_last_part_share_a_process_with_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_items_that_differ_in_their_last_part_share_a_process_with_one_thread(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "5")
     before = dict(os.environ)
     first, other, second = run([("m", "a"), ("n", "a"), ("m", "b")])
@@ -68,7 +81,9 @@ def test_results_of_the_same_recipe_and_machine_are_not_measured_again(
 
     def measured(**fields: Any) -> tuple[list[Answer], list[tuple[int, int, str]]]:
         reports.clear()
-        return run(items, journal_path=path, report=lambda *now: reports.append(now), **fields), [*reports]
+        return run(items, journal_path=path, report=lambda *now: reports.append(now), **fields), [
+            *reports
+        ]
 
     again, counted = measured()
     assert again[0] == first[0]
@@ -91,18 +106,27 @@ def test_after_an_interruption_the_results_before_it_are_there(tmp_path: Path) -
     items = [("m", "a"), ("m", "b"), ("m", "c")]
     with pytest.raises(KeyboardInterrupt):
         run(items, journal_path=path, report=interrupt)
-    assert [json.loads(line)["item"] for line in path.read_text().splitlines()] == [["m", "a"], ["m", "b"]]
+    assert [json.loads(line)["item"] for line in path.read_text().splitlines()] == [
+        ["m", "a"],
+        ["m", "b"],
+    ]
 
 
 @pytest.mark.usefixtures("in_process")
-@pytest.mark.parametrize("half", ['{"recipe": "cut off by a full di', "\x00\x00", "\udcff not UTF-8"])
+@pytest.mark.parametrize(
+    "half", ['{"recipe": "cut off by a full di', "\x00\x00", "\udcff not UTF-8"]
+)
 def test_after_half_a_line_the_next_result_has_a_line_of_its_own(tmp_path: Path, half: str) -> None:
     path, items = tmp_path / "rows.jsonl", [("m", "a"), ("m", "b")]
     first = run(items[:1], journal_path=path)
     with path.open("a", errors="surrogateescape") as stream:
         stream.write(half)
     reports: list[str] = []
-    second = run(items, journal_path=path, report=lambda finished, total, now: reports.append(f"{finished} of {total}"))
+    second = run(
+        items,
+        journal_path=path,
+        report=lambda finished, total, now: reports.append(f"{finished} of {total}"),
+    )
     assert second[0] == first[0]
     assert run(items, journal_path=path, report=lambda *now: reports.append("again")) == second
     assert reports == ["1 of 2"]
@@ -113,9 +137,12 @@ def test_after_half_a_line_the_next_result_has_a_line_of_its_own(tmp_path: Path,
     "line",
     [
         pytest.param('{"recipe": "x", "item": [[1]], "result": {}}', id="an item that has no hash"),
-        pytest.param('{"recipe": "MARK", "item": ["m", "a"], "result": {}}', id="a result without a status"),
         pytest.param(
-            '{"recipe": "MARK", "item": ["m", "a"], "result": {"text": [], "status": "ok"}}', id="other types"
+            '{"recipe": "MARK", "item": ["m", "a"], "result": {}}', id="a result without a status"
+        ),
+        pytest.param(
+            '{"recipe": "MARK", "item": ["m", "a"], "result": {"text": [], "status": "ok"}}',
+            id="other types",
         ),
         pytest.param('{"recipe": "MARK", "item": 7, "result": 7}', id="no lists"),
     ],

@@ -36,10 +36,24 @@ ROW = Row("rk4", "space", 0.1, "step", "binary64", Status.OK, steps=6000, h_drif
             Status.SILENTLY_WRONG,
             ROW,
             CALM,
-            ["success was reported with 1.0 digits", "local errors of 6000 steps add up", "h drifts"],
+            [
+                "success was reported with 1.0 digits",
+                "local errors of 6000 steps add up",
+                "h drifts",
+            ],
         ),
-        (Status.SILENTLY_WRONG, ROW, replace(CALM, magnified=1e8), ["amplifies an error at the release 1e+08 times"]),
-        (Status.SILENTLY_WRONG, ROW, replace(CALM, amplitude=1e-11), ["cancellation against z ≈ −l costs 11 digits"]),
+        (
+            Status.SILENTLY_WRONG,
+            ROW,
+            replace(CALM, magnified=1e8),
+            ["amplifies an error at the release 1e+08 times"],
+        ),
+        (
+            Status.SILENTLY_WRONG,
+            ROW,
+            replace(CALM, amplitude=1e-11),
+            ["cancellation against z ≈ −l costs 11 digits"],
+        ),
         (
             Status.SILENTLY_WRONG,
             replace(ROW, formulation="angles"),
@@ -52,7 +66,12 @@ ROW = Row("rk4", "space", 0.1, "step", "binary64", Status.OK, steps=6000, h_drif
             replace(CALM, amplitude=1.0),
             ["height of the suspension"],
         ),
-        (Status.NOT_FINITE, replace(ROW, reason=""), CALM, ["no measured property of the scene explains it"]),
+        (
+            Status.NOT_FINITE,
+            replace(ROW, reason=""),
+            CALM,
+            ["no measured property of the scene explains it"],
+        ),
         (Status.REFUSED, replace(ROW, reason="not below"), CALM, ["not below"]),
     ],
 )
@@ -73,7 +92,9 @@ def character_of(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]
 
 
 def test_the_rates_of_a_small_swing_are_those_of_the_linear_pendulum() -> None:
-    traits = character_of("paris", "run.t_end=600", "site.rotation_rate=0", "release.x=1e-4", "release.y=0")
+    traits = character_of(
+        "paris", "run.t_end=600", "site.rotation_rate=0", "release.x=1e-4", "release.y=0"
+    )
     assert traits.fastest == pytest.approx(math.sqrt(9.80665 / 67), rel=1e-5)
     assert traits.ratio == pytest.approx(1, abs=1e-3)
     assert traits.magnified == pytest.approx(1, rel=0.01)

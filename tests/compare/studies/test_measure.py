@@ -39,13 +39,16 @@ def costing(start_s: float, s_per_s: float, ends: list[float]) -> Method:
     [
         (0.0, 1.0, "ok", 1.0),
         (0.04, 0.001, "ok", 0.041),
-        (2.9, 0.05, "ok", 2.95),  # a stiff start: the probe alone, times 64, is far beyond the limit
+        # a stiff start: the probe alone, times 64, is far beyond the limit
+        (2.9, 0.05, "ok", 2.95),
         (2.0, 30.0, "extrapolated", 32.0),
         (0.0, 30.0, "extrapolated", 30.0),
         (0.0, 600.0, "extrapolated", 600.0),
     ],
 )
-def test_a_start_is_counted_once(truth: GridTruth, start_s: float, rest_s: float, status: str, cost_s: float) -> None:
+def test_a_start_is_counted_once(
+    truth: GridTruth, start_s: float, rest_s: float, status: str, cost_s: float
+) -> None:
     ends: list[float] = []
     bench = Bench(load_scene("paris", ["inputs=binary64"]), truth, 3.0, repeats=1, transits=False)
     row = bench.row(costing(start_s, rest_s / T_END, ends), "plane", 1.0)
@@ -53,7 +56,8 @@ def test_a_start_is_counted_once(truth: GridTruth, start_s: float, rest_s: float
     assert row.cpu_s == pytest.approx(cost_s, rel=1e-9)
     assert (max(ends) == T_END) == (status == "ok")
     assert row.reached_t == max(ends)
-    assert sum(ends) * rest_s / T_END < 4 * 3.0 + 600 / 64  # never much more than the limit, once it is known
+    # never much more than the limit, once it is known
+    assert sum(ends) * rest_s / T_END < 4 * 3.0 + 600 / 64
 
 
 def test_a_probe_that_passes_the_limit_is_all_that_is_run(truth: GridTruth) -> None:

@@ -26,7 +26,8 @@ def only(rows, bound_m=1e-20):
 
 def test_a_clean_ladder_shows_its_order():
     order = only(ladder([1e-2 * 16.0**-i for i in range(5)]))
-    assert (order.method, order.declared, order.settings) == ("rk4", 4, 4)  # the least may be rounding
+    # the least may be rounding
+    assert (order.method, order.declared, order.settings) == ("rk4", 4, 4)
     assert order.observed == pytest.approx(4)
     assert order.standard_error == pytest.approx(0, abs=1e-9)
 
@@ -61,14 +62,21 @@ def test_errors_near_the_bound_of_the_reference_are_left_out():
 
 
 def test_only_whole_runs_count_and_only_methods_with_an_order():
-    assert only(ladder([1e-2 * 16.0**-i for i in range(6)], status=Status.EXTRAPOLATED)).observed is None
+    assert (
+        only(ladder([1e-2 * 16.0**-i for i in range(6)], status=Status.EXTRAPOLATED)).observed
+        is None
+    )
     assert orders(ladder([1e-2, 1e-4, 1e-6, 1e-9], method="heyoka_double"), 1e-20) == []
 
 
 def test_a_program_declares_no_order_and_shows_the_one_it_has():
     """It tells neither steps nor evaluations, but {setting} is its step."""
-    rows = [replace(row, steps=None) for row in ladder([1e-2 * 16.0**-i for i in range(5)], method="mine")]
+    rows = [
+        replace(row, steps=None)
+        for row in ladder([1e-2 * 16.0**-i for i in range(5)], method="mine")
+    ]
     order = only(rows)
-    assert orders([replace(row, setting=0.0) for row in rows], 1e-20) == []  # its command has no {setting}
+    # its command has no {setting}
+    assert orders([replace(row, setting=0.0) for row in rows], 1e-20) == []
     assert (order.method, order.declared) == ("mine", None)
     assert order.observed == pytest.approx(4)

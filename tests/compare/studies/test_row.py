@@ -49,10 +49,26 @@ def test_what_can_go_wrong_says_what_to_do_and_has_a_letter_of_its_own() -> None
 @pytest.mark.parametrize(
     ("error", "status", "reason"),
     [
-        (IntegrationError("heyoka stopped at t = 9.8 s."), Status.GAVE_UP, "heyoka stopped at t = 9.8 s."),
-        (UnreachableError("no circle.", "Take another."), Status.REFUSED, "no circle. Take another."),
-        (InputError("t_end", "0", "a time above 0"), Status.REFUSED, "t_end: got '0', expected a time above 0."),
-        (ZeroDivisionError("division by zero"), Status.GAVE_UP, "ZeroDivisionError: division by zero"),
+        (
+            IntegrationError("heyoka stopped at t = 9.8 s."),
+            Status.GAVE_UP,
+            "heyoka stopped at t = 9.8 s.",
+        ),
+        (
+            UnreachableError("no circle.", "Take another."),
+            Status.REFUSED,
+            "no circle. Take another.",
+        ),
+        (
+            InputError("t_end", "0", "a time above 0"),
+            Status.REFUSED,
+            "t_end: got '0', expected a time above 0.",
+        ),
+        (
+            ZeroDivisionError("division by zero"),
+            Status.GAVE_UP,
+            "ZeroDivisionError: division by zero",
+        ),
     ],
 )
 def test_an_integrator_gives_up_and_a_method_refuses(error, status, reason):
@@ -62,12 +78,15 @@ def test_an_integrator_gives_up_and_a_method_refuses(error, status, reason):
 
 def test_exact_numbers_keep_a_difference_of_any_size() -> None:
     tiny = Fraction(1, 10**60)
-    assert difference([THIRD + tiny, THIRD], [THIRD, THIRD + 2 * tiny]) == pytest.approx([1e-60, -2e-60], rel=1e-15)
+    assert difference([THIRD + tiny, THIRD], [THIRD, THIRD + 2 * tiny]) == pytest.approx(
+        [1e-60, -2e-60], rel=1e-15
+    )
 
 
 def test_a_double_is_taken_as_it_stands_beside_an_exact_number() -> None:
     doubles = np.array([float(THIRD)])
-    off = float(Fraction(float(THIRD)) - THIRD)  # 1.9e-17, which a subtraction of doubles would lose
+    # 1.9e-17, which a subtraction of doubles would lose
+    off = float(Fraction(float(THIRD)) - THIRD)
     assert off != 0
     assert difference(doubles, [THIRD]) == [off]
     assert difference([THIRD], doubles) == [-off]

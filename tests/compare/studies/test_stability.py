@@ -42,7 +42,9 @@ def shortened(folder: Path, name: str, t_end: str, grid_step: str) -> str:
     """Write a scene that ships with another end and grid; return the path."""
     text = (data_root() / "scenes" / f"{name}.toml").read_text()
     text = re.sub('t_end = ".*"', f't_end = "{t_end}"', text)
-    (folder / f"{name}.toml").write_text(re.sub('grid_step = ".*"', f'grid_step = "{grid_step}"', text))
+    (folder / f"{name}.toml").write_text(
+        re.sub('grid_step = ".*"', f'grid_step = "{grid_step}"', text)
+    )
     return str(folder / f"{name}.toml")
 
 
@@ -59,12 +61,19 @@ def cells(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config)
     with pytest.MonkeyPatch.context() as patch:
         measured_here(patch)
         measured = stability(names, methods, limit_s=0.5, journal_path=journal_path)
-    assert stability(names, methods, limit_s=0.5, journal_path=journal_path) == measured  # from the journal
+    # from the journal
+    assert stability(names, methods, limit_s=0.5, journal_path=journal_path) == measured
     return measured
 
 
-def test_space_is_silently_wrong_above_the_horizontal_and_momentum_is_not(cells: list[Cell]) -> None:
-    by_key = {(Path(cell.scene).stem, cell.precision): cell for cell in cells if cell.method == "heyoka_double"}
+def test_space_is_silently_wrong_above_the_horizontal_and_momentum_is_not(
+    cells: list[Cell],
+) -> None:
+    by_key = {
+        (Path(cell.scene).stem, cell.precision): cell
+        for cell in cells
+        if cell.method == "heyoka_double"
+    }
     space = by_key["near_inverted", "double, space"]
     assert space.status == "silently_wrong"
     assert "the rod is pushed" in space.reason
@@ -73,11 +82,16 @@ def test_space_is_silently_wrong_above_the_horizontal_and_momentum_is_not(cells:
 
 def test_a_stiff_method_wins_where_it_is_stiff_and_loses_where_it_is_not() -> None:
     def evaluations(name: str, scene_id: str, t_end: str) -> int:
-        scene, method = load_scene(scene_id, ["inputs=binary64", f"run.t_end={t_end}"]), METHODS[name]
+        scene, method = (
+            load_scene(scene_id, ["inputs=binary64", f"run.t_end={t_end}"]),
+            METHODS[name],
+        )
         problem = Problem.of(scene, suited(scene, method.formulations), [0.0, float(t_end)])
         return int(method.prepare(problem, 1e-9)().rhs_evaluations)
 
-    assert 100 * evaluations("scipy_radau", "creeping", "4") < evaluations("scipy_dop853", "creeping", "4")
+    assert 100 * evaluations("scipy_radau", "creeping", "4") < evaluations(
+        "scipy_dop853", "creeping", "4"
+    )
     assert evaluations("scipy_radau", "hard", "5") > 3 * evaluations("scipy_dop853", "hard", "5")
 
 
@@ -127,7 +141,10 @@ def test_what_the_motion_magnifies_is_not_the_methods_fault(tmp_path: Path) -> N
     program.write_text(RIGHT_TO_SO_MANY_DIGITS)
     command = shlex.join([sys.executable, str(program), str(tmp_path)])
     programs = {digits: f"{command} {{t_end}} {digits}" for digits in ("3.1", "2.9", "0.9")}
-    cells = {(cell.scene, cell.method): cell for cell in stability([*lost], ["heyoka_double"], programs=programs)}
+    cells = {
+        (cell.scene, cell.method): cell
+        for cell in stability([*lost], ["heyoka_double"], programs=programs)
+    }
     expected = {
         (calm, "3.1"): Status.OK,
         (calm, "2.9"): Status.SILENTLY_WRONG,
@@ -146,7 +163,9 @@ def test_what_the_motion_magnifies_is_not_the_methods_fault(tmp_path: Path) -> N
 def cell_of(status: Status, digits: float) -> Cell:
     """The cell of a run that was asked for 9 digits and kept so many."""
     names = ("paris", "scipy_dop853", "double, space")
-    return Cell(*names, status, digits, 9.0, 0.02, "as measured", setting=1e-9, kind="tolerance", load=0.5)
+    return Cell(
+        *names, status, digits, 9.0, 0.02, "as measured", setting=1e-9, kind="tolerance", load=0.5
+    )
 
 
 def test_the_headline_counts_the_methods_own_failures_only() -> None:
@@ -158,12 +177,22 @@ def test_the_headline_counts_the_methods_own_failures_only() -> None:
     ]
     first, _, *_ = lines = headlines(cells)
     assert first.startswith("1 of 4 runs are silently wrong")
-    assert any(line.startswith("2 more are as far off because the motion itself magnifies") for line in lines)
+    assert any(
+        line.startswith("2 more are as far off because the motion itself magnifies")
+        for line in lines
+    )
     document = document_of(cells, [])
     assert (document["silently_wrong"], document["ill_conditioned"]) == (1, 2)
     text = text_table(document)
-    assert "scipy_dop853" in text and re.search(r"setting +asked", text) and re.search(r"1e-9 +9\.0", text)
-    assert "1e-9" in page_text(document).partition("What each run was asked for")[2].partition("</table>")[0]
+    assert (
+        "scipy_dop853" in text
+        and re.search(r"setting +asked", text)
+        and re.search(r"1e-9 +9\.0", text)
+    )
+    assert (
+        "1e-9"
+        in page_text(document).partition("What each run was asked for")[2].partition("</table>")[0]
+    )
 
 
 @pytest.mark.usefixtures("here")
@@ -176,7 +205,9 @@ def test_a_method_that_is_asked_for_nothing_unusual_is_ill_conditioned_where_the
 @pytest.mark.usefixtures("here")
 def test_a_stiff_start_is_not_extrapolated_into_out_of_time(tmp_path: Path) -> None:
     """A start of 1e-5 s takes nearly all of the run's time, so 64 times the probe's is far beyond the limit."""
-    (cell,) = stability([shortened(tmp_path, "creeping_far", "0.01", "0.00005")], ["scipy_radau"], limit_s=1.0)
+    (cell,) = stability(
+        [shortened(tmp_path, "creeping_far", "0.01", "0.00005")], ["scipy_radau"], limit_s=1.0
+    )
     assert cell.status == "ok", cell
 
 
@@ -188,12 +219,18 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
 
 
 @pytest.mark.usefixtures("here")
-def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_are_measured(tmp_path: Path) -> None:
+def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_are_measured(
+    tmp_path: Path,
+) -> None:
     own = tmp_path / "stiff.toml"
-    own.write_text('id = "stiff"\n[pendulum]\ndrag = "1e9"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "600"\n')
+    own.write_text(
+        'id = "stiff"\n[pendulum]\ndrag = "1e9"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "600"\n'
+    )
     solved: list[tuple[float, int]] = []
     hard = shortened(tmp_path, "hard", "10", "1")
-    lost, measured = stability([str(own), hard], ["rkmk4"], solving=lambda done, total: solved.append((done, total)))
+    lost, measured = stability(
+        [str(own), hard], ["rkmk4"], solving=lambda done, total: solved.append((done, total))
+    )
     assert solved == sorted(solved) and (1, 2) in solved and solved[-1] == (2, 2)
     assert (lost.status, lost.digits, lost.cpu_s) == (Status.UNREACHABLE, None, None)
     assert lost.reason.startswith("The reference cannot solve it: ") and "Stiff" in lost.reason
@@ -210,7 +247,9 @@ def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
 
 @pytest.mark.usefixtures("here")
 def test_the_command_reports_rows_and_a_page(foucault, tmp_path: Path, size) -> None:
-    scenes = ",".join(shortened(tmp_path, name, "10", "1") for name in size(["hard"], ["hard", "two_radians"]))
+    scenes = ",".join(
+        shortened(tmp_path, name, "10", "1") for name in size(["hard"], ["hard", "two_radians"])
+    )
     words = ("stability", "--scenes", scenes, "--methods", "rkmk4,scipy_dop853", "--json")
     status, out, _ = foucault(*words, "--out", tmp_path / "out")
     assert status == 0
@@ -219,4 +258,6 @@ def test_the_command_reports_rows_and_a_page(foucault, tmp_path: Path, size) -> 
     page = (tmp_path / "out/index.html").read_text()
     assert "<svg" in page
     wrong = any(row["status"] == Status.SILENTLY_WRONG for row in rows)
-    assert ("<p>None.</p>" in page.partition("<h2>Silently wrong</h2>")[2].partition("</section>")[0]) is not wrong
+    assert (
+        "<p>None.</p>" in page.partition("<h2>Silently wrong</h2>")[2].partition("</section>")[0]
+    ) is not wrong

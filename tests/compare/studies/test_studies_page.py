@@ -30,13 +30,18 @@ def page(kept: dict[str, Any]) -> str:
 
 
 def test_every_sentence_and_figure_of_the_page_follows_from_the_kept_results(page: str) -> None:
-    assert studies.PAGE.read_text(encoding="utf-8") == page, "python tests/bench/studies.py --page writes it anew"
+    assert studies.PAGE.read_text(encoding="utf-8") == page, (
+        "python tests/bench/studies.py --page writes it anew"
+    )
 
 
 def test_the_page_names_the_one_command_and_each_study(page: str) -> None:
     text = " ".join(page.replace("\\\n", " ").split())
     assert "`make studies`" in text
-    assert "tests/bench/studies.py" in (ROOT / "Makefile").read_text(encoding="utf-8").partition("\nstudies:")[2]
+    assert (
+        "tests/bench/studies.py"
+        in (ROOT / "Makefile").read_text(encoding="utf-8").partition("\nstudies:")[2]
+    )
     for command in studies_page.COMMANDS.values():
         assert command in text
 
@@ -47,7 +52,10 @@ def changed(value: Any, field: str, place: int = 0) -> Any:
         return [changed(one, field, place) for place, one in enumerate(value)]
     if not isinstance(value, dict):
         return value
-    return {name: another(one, place) if name == field else changed(one, field, place) for name, one in value.items()}
+    return {
+        name: another(one, place) if name == field else changed(one, field, place)
+        for name, one in value.items()
+    }
 
 
 def another(value: Any, place: int) -> Any:
@@ -56,9 +64,17 @@ def another(value: Any, place: int) -> Any:
     if isinstance(value, dict):
         return {name: another(one, place) for name, one in value.items()}
     if isinstance(value, str):
-        return ("silently_wrong" if place % 3 else "not_installed") if value in [*Status] else f"7{value}"
+        return (
+            ("silently_wrong" if place % 3 else "not_installed")
+            if value in [*Status]
+            else f"7{value}"
+        )
     return (
-        value if value is None else value * (2 + place % 5) if isinstance(value, int) else value * (1.2 + place % 5 / 9)
+        value
+        if value is None
+        else value * (2 + place % 5)
+        if isinstance(value, int)
+        else value * (1.2 + place % 5 / 9)
     )
 
 
@@ -83,11 +99,20 @@ def test_every_line_with_a_number_is_held_by_the_results(kept: dict[str, Any]) -
     free = {line for line in lines if re.search(r"\d", line) and not line.startswith(DEFINED)}
     all_studies = [([*kept], field) for field in FIELDS]
     one_study = [([name], field) for name, field in (*ONE_STUDY, *itertools.product(kept, FIELDS))]
-    for names, field in [*all_studies[:FIRST], *one_study[: len(ONE_STUDY)], *all_studies[FIRST:], *one_study]:
+    for names, field in [
+        *all_studies[:FIRST],
+        *one_study[: len(ONE_STUDY)],
+        *all_studies[FIRST:],
+        *one_study,
+    ]:
         if not free:
             break
-        with suppress(studies_page.NotSoError, LookupError, StopIteration, ValueError, TypeError, Warning):
-            free &= {*studies_page.lines(kept | {name: changed(kept[name], field) for name in names})}
+        with suppress(
+            studies_page.NotSoError, LookupError, StopIteration, ValueError, TypeError, Warning
+        ):
+            free &= {
+                *studies_page.lines(kept | {name: changed(kept[name], field) for name in names})
+            }
     assert free == set()
     assert all(any(line.startswith(words) for line in lines) for words in DEFINED)
 

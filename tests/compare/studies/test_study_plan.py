@@ -32,7 +32,8 @@ def test_every_scene_gets_times_that_are_doubles_and_about_as_many(name: str) ->
 
 def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
     assert declared(["rk4"], "long_runs") == [("rk4", "plane", 0.05)]
-    assert {name for name, _, _ in declared(None, "stability")} == {*METHODS} - {"mpmath_odefun"}  # minutes a scene
+    # minutes a scene
+    assert {name for name, _, _ in declared(None, "stability")} == {*METHODS} - {"mpmath_odefun"}
     with pytest.raises(InputError, match="got 'mpmath_odefun', expected methods that declare runs"):
         declared(["rk4", "mpmath_odefun"], "stability")
     with pytest.raises(InputError, match="rk5"):

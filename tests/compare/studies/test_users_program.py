@@ -51,8 +51,13 @@ def command(tmp_path_factory, scene):
     folder = tmp_path_factory.mktemp("program")
     (folder / "p.py").write_text(PROGRAM)
     times = np.linspace(0, 10, 41)  # other times than those of the grid
-    np.savetxt(folder / "rows.txt", np.column_stack([times, trajectory(scene, times)[:, :2]]), fmt="%.17g")
-    return " ".join(map(shlex.quote, [sys.executable, str(folder / "p.py"), str(folder / "rows.txt")])) + " {t_end} "
+    np.savetxt(
+        folder / "rows.txt", np.column_stack([times, trajectory(scene, times)[:, :2]]), fmt="%.17g"
+    )
+    return (
+        " ".join(map(shlex.quote, [sys.executable, str(folder / "p.py"), str(folder / "rows.txt")]))
+        + " {t_end} "
+    )
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +70,8 @@ def golden(scene):
     [
         ("works", Status.OK, ""),
         ("stops", Status.GAVE_UP, "its output ends at t = 4 s of 10 s"),
-        ("drifts", Status.OK, ""),  # whether that is too much is judged against what it was asked for
+        # whether that is too much is judged against what it was asked for
+        ("drifts", Status.OK, ""),
         ("blows", Status.NOT_FINITE, "nan in row 22"),
         ("fails", Status.GAVE_UP, "exit status 1"),
         ("dies", Status.CRASHED, "exit status -11"),
@@ -95,7 +101,9 @@ grid_step = "1"
 
 
 @pytest.mark.usefixtures("here")
-def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole(foucault, command, tmp_path):
+def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole(
+    foucault, command, tmp_path
+):
     pytest.importorskip("scipy")
     pytest.importorskip("matplotlib")
     path = tmp_path / "short.toml"
@@ -107,7 +115,9 @@ def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole
     out = tmp_path / "out"
     programs = {"right": f"{words} works", "<drifting>": f"{words} drifts {'x' * 3000}"}
     options = [word for name, run in programs.items() for word in ("--run", run, "--name", name)]
-    status, text, _ = foucault("stability", "--scenes", path, "--methods", "scipy_dop853", *options, "--out", out)
+    status, text, _ = foucault(
+        "stability", "--scenes", path, "--methods", "scipy_dop853", *options, "--out", out
+    )
     assert status == 0
     assert f"<drifting> breaks on 1 of 1 scenes: {path} (wrong from t = 5.25 s on)." in text
     assert "right breaks on 0 of 1 scenes." in text
@@ -117,7 +127,11 @@ def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole
     assert (cells["right"]["status"], cells["right"]["wrong_from_s"]) == ("ok", None)
     assert cells["right"]["digits"] > 9
     drifting = cells["<drifting>"]
-    assert (drifting["status"], drifting["wrong_from_s"], drifting["asked"]) == ("silently_wrong", 5.25, 6.0)
+    assert (drifting["status"], drifting["wrong_from_s"], drifting["asked"]) == (
+        "silently_wrong",
+        5.25,
+        6.0,
+    )
     assert drifting["reason"].startswith("From t = 5.25 s on it is wrong.")
     page = (out / "index.html").read_text()
     assert "x" * 500 not in page and "&lt;drifting&gt;" in page and "<drifting>" not in page

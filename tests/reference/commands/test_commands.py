@@ -21,8 +21,12 @@ SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
 def test_scenes_lists_every_scene(foucault):
     status, out, _ = foucault("scenes")
     assert status == 0
-    assert all(name in out for name in ("paris", "pantheon", "pole", "equator", "southern", "spherical"))
-    assert {scene["id"] for scene in json.loads(foucault("scenes", "--json")[1])["scenes"]} >= {"paris"}
+    assert all(
+        name in out for name in ("paris", "pantheon", "pole", "equator", "southern", "spherical")
+    )
+    assert {scene["id"] for scene in json.loads(foucault("scenes", "--json")[1])["scenes"]} >= {
+        "paris"
+    }
 
 
 def test_show_says_what_the_flags_of_a_scene_mean(foucault):
@@ -49,10 +53,13 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
     for scene in ("conical", "weightless"):
         status, out, _ = foucault("show", scene)
         assert (status, "no period: " in out) == (0, True)
-    motion = json.loads(foucault("show", "paris", "--set", "site.rotation_rate=0", "--json")[1])["motion"]
+    motion = json.loads(foucault("show", "paris", "--set", "site.rotation_rate=0", "--json")[1])[
+        "motion"
+    ]
     assert motion["precession_error_deg_per_h"] > abs(motion["precession_deg_per_h"])
     assert "full_turn_h" not in motion
-    motion = json.loads(foucault("show", "damped", "--json")[1])["motion"]  # its last highest points were 157° an hour
+    # its last highest points were 157° an hour
+    motion = json.loads(foucault("show", "damped", "--json")[1])["motion"]
     assert motion == {
         "reason": "its last swing is less than 16 times as wide as the rest position is off the plumb line"
     }
@@ -67,7 +74,11 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
 @pytest.mark.parametrize(
     ("scene", "changes", "left_out"),
     [
-        ("fast_pole", ("run.t_end=10",), dict.fromkeys(("precession_deg_per_h", "full_turn_h"), "right angle")),
+        (
+            "fast_pole",
+            ("run.t_end=10",),
+            dict.fromkeys(("precession_deg_per_h", "full_turn_h"), "right angle"),
+        ),
         (
             "paris",
             ("run.t_end=20", "site.gravity_is=effective", "release.x=0.005", "release.y=0"),
@@ -77,7 +88,9 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
         ("paris", ("run.t_end=60",), {}),
     ],
 )
-def test_every_number_of_a_swing_that_is_left_out_has_its_reason(foucault, scene, changes, left_out):
+def test_every_number_of_a_swing_that_is_left_out_has_its_reason(
+    foucault, scene, changes, left_out
+):
     words = ["show", scene, "--proved", *(word for change in changes for word in ("--set", change))]
     document, out = json.loads(foucault(*words, "--json")[1]), foucault(*words)[1]
     for part in ("motion", "proved"):
@@ -92,7 +105,8 @@ def test_every_number_of_a_swing_that_is_left_out_has_its_reason(foucault, scene
         assert told is None or {told[3]} == {*reasons.values()}
 
 
-ROUND = {  # swings that go over the top, and the same bobs with too little energy for it, or a wide swing's
+# swings that go over the top, and the same bobs with too little energy for it, or a wide swing's
+ROUND = {
     ("over_top", "run.t_end=10"): True,
     ("barely_over", "run.t_end=20"): True,
     ("over_top", "run.t_end=10", "pendulum.drag=0.001"): True,
@@ -109,7 +123,9 @@ def test_a_bob_that_goes_over_the_top_has_no_period_and_the_proof_says_the_same(
     assigned = [word for change in changes for word in ("--set", change)]
     document = json.loads(foucault("show", scene, *assigned, "--proved", "--json")[1])
     for part in ("motion", "proved"):
-        assert ("lie on one side" in document[part].get("reason", "")) == ROUND[words], document[part]
+        assert ("lie on one side" in document[part].get("reason", "")) == ROUND[words], document[
+            part
+        ]
         assert (document[part].get("period_s") is None) == ROUND[words]
 
 
@@ -127,7 +143,9 @@ def test_a_proof_without_a_swing_says_why(foucault, words, reason):
 
 
 def test_uncertain_inputs_that_leave_the_swing_open_say_so(foucault):
-    line = foucault("show", "paris", "--set", "run.t_end=20", "--uncertain", "y0=0.1")[1].splitlines()[-1]
+    line = foucault("show", "paris", "--set", "run.t_end=20", "--uncertain", "y0=0.1")[
+        1
+    ].splitlines()[-1]
     assert "no period: the intervals of these inputs leave it open" in line
 
 
@@ -163,7 +181,9 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
     assert "Omega_y" not in out.partition("left out")[0]
     _, out, _ = foucault("show", "spherical", "--equations")
     assert "rotation_rate is 0" in out
-    _, out, _ = foucault("show", "equator", "--equations", "--set", "pendulum.drag=0.1", "--set", "site.gravity=0")
+    _, out, _ = foucault(
+        "show", "equator", "--equations", "--set", "pendulum.drag=0.1", "--set", "site.gravity=0"
+    )
     assert "gamma" in out
     assert "gravity: it is 0" in out
     minute = ("--set", "run.t_end=60")
@@ -173,7 +193,9 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
     text = foucault("show", "paris", "--equations", *without, *minute)[1]
     assert "transits are off" in text
     assert "the enclosure" not in text
-    planar = foucault("show", "spherical", "--equations", "--set", "release.x=0", "--set", "release.vx=0")[1]
+    planar = foucault(
+        "show", "spherical", "--equations", "--set", "release.x=0", "--set", "release.vx=0"
+    )[1]
     assert "xdot is identically zero" in planar
 
 
@@ -181,9 +203,15 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
     ("changes", "left_out"),
     [
         (("run.level=computed", "run.digits=6"), "extended precision: double serves 6 digits."),
-        (("run.level=computed", "run.digits=10"), "precision beyond long double: it serves 10 digits."),
+        (
+            ("run.level=computed", "run.digits=10"),
+            "precision beyond long double: it serves 10 digits.",
+        ),
         (("run.level=computed", "run.digits=30"), None),
-        (("run.level=confirmed", "run.digits=6"), "precision beyond long double: it serves 6 digits."),
+        (
+            ("run.level=confirmed", "run.digits=6"),
+            "precision beyond long double: it serves 6 digits.",
+        ),
         (("run.level=enclosed", "run.digits=12"), None),
     ],
     ids=lambda one: one[0] + one[1] if isinstance(one, tuple) else "",
@@ -219,7 +247,17 @@ def test_generate_json_has_the_keys_of_the_contract_and_nothing_else_on_stdout(f
     status, out, _ = foucault("generate", "paris", *SHORT, "--json", "--out", str(tmp_path / "p"))
     document = json.loads(out)
     assert status == 0
-    assert {"scene", "out", "level", "digits", "engine", "transits", "bound_m", "cpu_s", "compile_s"} <= set(document)
+    assert {
+        "scene",
+        "out",
+        "level",
+        "digits",
+        "engine",
+        "transits",
+        "bound_m",
+        "cpu_s",
+        "compile_s",
+    } <= set(document)
     assert (document["scene"], document["level"], document["digits"]) == ("paris", "computed", 10)
     assert (document["engine"], document["transits"]) == ("heyoka", 7)
     assert 0 < document["bound_m"] < 1e-8
@@ -271,7 +309,9 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("words", "field", "expected"), BAD, ids=[" ".join(row[0][1:]) for row in BAD])
+@pytest.mark.parametrize(
+    ("words", "field", "expected"), BAD, ids=[" ".join(row[0][1:]) for row in BAD]
+)
 def test_a_users_mistake_ends_with_exit_2_a_message_and_nothing_written(
     foucault, words, field, expected, tmp_path, monkeypatch
 ):
@@ -293,7 +333,9 @@ def test_an_unknown_level_or_command_is_wrong_usage(foucault):
 
 def test_an_engine_that_so_few_digits_do_not_need_is_refused(foucault, tmp_path):
     pytest.importorskip("numba")
-    status, out, err = foucault("generate", "paris", *SHORT, "--engine", "limbs", "--out", tmp_path / "p")
+    status, out, err = foucault(
+        "generate", "paris", *SHORT, "--engine", "limbs", "--out", tmp_path / "p"
+    )
     assert (status, out) == (2, "")
     assert "--engine: got 'limbs', expected auto or heyoka. So few digits need only " in err
     assert list(tmp_path.iterdir()) == []
@@ -337,16 +379,31 @@ def test_help_loads_neither_heyoka_nor_flint_nor_numpy():
         "try: runpy.run_module('foucault', run_name='__main__')\n"
         f"except SystemExit: print([name for name in {heavy} if name in sys.modules])"
     )
-    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     assert process.stdout.strip().endswith("[]")
 
 
 def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
     master, slave = pty.openpty()
-    words = [sys.executable, "-m", "foucault", "generate", "paris", "--t-end", "1200", "--level", "computed"]
+    words = [
+        sys.executable,
+        "-m",
+        "foucault",
+        "generate",
+        "paris",
+        "--t-end",
+        "1200",
+        "--level",
+        "computed",
+    ]
     slow = ["--digits", "30", "--engine", "heyoka"]  # so long that the bar is drawn
     with subprocess.Popen(
-        [*words, *slow, "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
+        [*words, *slow, "--out", str(tmp_path / "p")],
+        stdout=subprocess.DEVNULL,
+        stderr=slave,
+        cwd=ROOT,
     ) as process:
         os.close(slave)
         output = b""
@@ -364,8 +421,18 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
 
 
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
-    words = ["generate", "paris", "--t-end", "14400", "--engine", "heyoka", "--out", str(tmp_path / "p")]
-    status, err, group = interrupted(words, lambda group, _: members(group) > 1)  # the confirming run has begun
+    words = [
+        "generate",
+        "paris",
+        "--t-end",
+        "14400",
+        "--engine",
+        "heyoka",
+        "--out",
+        str(tmp_path / "p"),
+    ]
+    # the confirming run has begun
+    status, err, group = interrupted(words, lambda group, _: members(group) > 1)
     assert status == 130
     assert b"Traceback" not in err
     assert list(tmp_path.iterdir()) == []
@@ -374,11 +441,16 @@ def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
 
 def test_interrupted_a_command_that_keeps_nothing_says_that_it_stopped():
     words = ["show", "paris", "--sensitivity"]
-    status, err, _ = interrupted(words, lambda group, _: "heyoka" in Path(f"/proc/{group}/maps").read_text())
+    status, err, _ = interrupted(
+        words, lambda group, _: "heyoka" in Path(f"/proc/{group}/maps").read_text()
+    )
     assert (status, err) == (130, b"foucault: stopped\n")
 
 
 def test_show_says_how_many_digits_the_flow_costs(foucault):
     document = json.loads(foucault("show", "two_radians", "--sensitivity", "--json")[1])
     assert 2 < document["digits_lost"] < 4
-    assert f"the flow costs {document['digits_lost']:.1f} digits" in foucault("show", "two_radians", "--sensitivity")[1]
+    assert (
+        f"the flow costs {document['digits_lost']:.1f} digits"
+        in foucault("show", "two_radians", "--sensitivity")[1]
+    )

@@ -31,7 +31,9 @@ def project(tmp_path_factory):
 def made(project, tmp_path_factory):
     """The datasets of three scenes, made by two workers, and what was said of them."""
     out = tmp_path_factory.mktemp("everything") / "all"
-    said = foucault_of(project, "generate", "--all", *SHORT, "--workers", "2", "--out", out, "--json")
+    said = foucault_of(
+        project, "generate", "--all", *SHORT, "--workers", "2", "--out", out, "--json"
+    )
     assert said.returncode == 0, said.stderr
     return out, json.loads(said.stdout)
 
@@ -69,7 +71,8 @@ def test_it_goes_on_with_what_is_missing_or_damaged(project, made, tmp_path):
     out = Path(shutil.copytree(made[0], tmp_path / "all"))
     before = contents(out / "paris"), contents(out / "conical")
     (out / "paris" / "grid.csv").write_text("t,x\n")
-    (out / ".conical.partial-abc").mkdir()  # of a command that was killed once it had put the dataset in place
+    # of a command that was killed once it had put the dataset in place
+    (out / ".conical.partial-abc").mkdir()
     kept = (out / "conical" / "manifest.json").stat()
     done = foucault_of(project, "generate", "--all", *SHORT, "--out", out)
     assert (done.returncode, done.stderr) == (0, "")
@@ -111,19 +114,32 @@ def kill_the_solving_worker(command, but=0):
 def test_a_scene_that_fails_costs_only_itself(tmp_path):
     """The first is killed at its millions of steps; the second needs too many to begin."""
     project, out = own_project(tmp_path / "own", FEW), tmp_path / "all"
-    replace_in(project / "data/scenes/conical.toml", ("rotation_rate = ", 'rotation_rate = "20"  # '))
+    replace_in(
+        project / "data/scenes/conical.toml", ("rotation_rate = ", 'rotation_rate = "20"  # ')
+    )
     replace_in(project / "data/scenes/pantheon.toml", ("[pendulum]", '[pendulum]\ndrag = "1e9"'))
     words = ["generate", "--all", *SHORT, "--workers", "1", "--out", str(out), "--json"]
     command = [sys.executable, "-m", "foucault", *words]
     with subprocess.Popen(
-        command, cwd=project, env=environment_of(project), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command,
+        cwd=project,
+        env=environment_of(project),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     ) as process:
         first = kill_the_solving_worker(process)
         kill_the_solving_worker(process, but=first)  # what dies is tried once more
         said, err = process.communicate()
     assert process.returncode == 1
-    found = {row["dataset"]: (row["status"], bool(row["reason"])) for row in json.loads(said)["rows"]}
-    assert found == {"conical": ("crashed", True), "pantheon": ("unreachable", True), "paris": ("ok", False)}
+    found = {
+        row["dataset"]: (row["status"], bool(row["reason"])) for row in json.loads(said)["rows"]
+    }
+    assert found == {
+        "conical": ("crashed", True),
+        "pantheon": ("unreachable", True),
+        "paris": ("ok", False),
+    }
     assert "2 of 3 datasets failed" in err
     assert [path.name for path in out.iterdir()] == ["paris"]
     # what is left is out of reach alone
@@ -135,7 +151,9 @@ def test_a_scene_that_fails_costs_only_itself(tmp_path):
 def test_a_cluster_makes_the_same_bytes(foucault, tmp_path):
     pytest.importorskip("distributed")
     project = own_project(tmp_path / "own", ["paris"])
-    done = foucault_of(project, "generate", "--all", *SHORT, "--cluster", "local:1", "--out", tmp_path / "there")
+    done = foucault_of(
+        project, "generate", "--all", *SHORT, "--cluster", "local:1", "--out", tmp_path / "there"
+    )
     assert done.returncode == 0, done.stderr
     assert foucault("generate", "paris", *SHORT, "--out", tmp_path / "here")[0] == 0
     assert contents(tmp_path / "there" / "paris") == contents(tmp_path / "here")
@@ -149,8 +167,12 @@ def test_the_seal_of_a_dataset_that_ships_is_kept_and_of_no_other(project):
     assert "0 were there, 3 made" in foucault_of(project, *words).stdout
     index = json.loads((golden / "index.json").read_text())
     manifests = {name: json.loads((golden / name / "manifest.json").read_text()) for name in FEW}
-    assert index == {name: {"seal": manifests[name]["seal"], "options": "--engine heyoka"} for name in FEW}
-    (golden / "index.json").write_text(json.dumps(index | {"paris": {**index["paris"], "seal": "0" * 64}}))
+    assert index == {
+        name: {"seal": manifests[name]["seal"], "options": "--engine heyoka"} for name in FEW
+    }
+    (golden / "index.json").write_text(
+        json.dumps(index | {"paris": {**index["paris"], "seal": "0" * 64}})
+    )
     assert "2 were there, 1 made" in foucault_of(project, *words).stdout
 
 

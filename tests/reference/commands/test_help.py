@@ -28,7 +28,9 @@ COMMANDS = [str(one.name) for part in (computing, comparing) for one in part.reg
 
 
 @pytest.mark.parametrize("word", ["--help", "-h"])
-def test_the_help_says_what_the_program_does_how_to_begin_and_each_command_in_a_line(foucault, word, monkeypatch):
+def test_the_help_says_what_the_program_does_how_to_begin_and_each_command_in_a_line(
+    foucault, word, monkeypatch
+):
     monkeypatch.setenv("COLUMNS", "80")
     status, out, _ = foucault(word)
     assert status == 0
@@ -59,7 +61,9 @@ def test_the_help_of_a_command_fits_on_two_screens(foucault, monkeypatch, comman
     assert len(lines) <= 50 and max(map(len, lines)) <= 80
 
 
-def test_what_the_help_of_score_leaves_out_works_and_stands_on_the_page_that_it_names(foucault, tmp_path):
+def test_what_the_help_of_score_leaves_out_works_and_stands_on_the_page_that_it_names(
+    foucault, tmp_path
+):
     out = foucault("score", "--help")[1]
     page = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
     for option, value in {"--approximation": "ID", "--name": "WORD", "--repeats": "N"}.items():
@@ -73,7 +77,11 @@ def test_what_the_help_of_score_leaves_out_works_and_stands_on_the_page_that_it_
 
 
 def test_the_version_is_that_of_the_package(foucault):
-    assert foucault("--version") == (0, f"foucault {version('foucault-reference')}, data {DATA_VERSION}\n", "")
+    assert foucault("--version") == (
+        0,
+        f"foucault {version('foucault-reference')}, data {DATA_VERSION}\n",
+        "",
+    )
 
 
 @pytest.mark.parametrize(
@@ -109,7 +117,11 @@ def test_limits_of_the_command_line_are_those_of_python():
 def asked(*words: str) -> dict[str, str]:
     """Return the variables with which bash asks what it can offer for the last of the words."""
     line = " ".join(["foucault", *words])
-    return {"_FOUCAULT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words))}
+    return {
+        "_FOUCAULT_COMPLETE": "complete_bash",
+        "COMP_WORDS": line,
+        "COMP_CWORD": str(len(words)),
+    }
 
 
 def test_a_shell_completes_a_command_by_a_process_of_its_own():
@@ -129,14 +141,19 @@ def test_a_shell_completes_a_command_by_a_process_of_its_own():
     [
         (("generate", "par"), ["paris", "paris_30d", "paris_measured"]),
         (("study", "paris", "--methods", "rk4,rkng"), ["rk4,rkng56", "rk4,rkng67"]),
-        (("stability", "--scenes", "hard,par"), ["hard,paris", "hard,paris_30d", "hard,paris_measured"]),
+        (
+            ("stability", "--scenes", "hard,par"),
+            ["hard,paris", "hard,paris_30d", "hard,paris_measured"],
+        ),
         (("generate", "paris", "--level", "con"), ["confirmed"]),
         (("show", "paris", "--set", "site.lat"), ["site.latitude="]),
         (("verify", "paris.b"), ["paris.binary64"]),
         (("score", "paris", "--approximation", "linear_3"), ["linear_3d"]),
     ],
 )
-def test_a_shell_completes_commands_scenes_methods_and_fields(foucault, monkeypatch, words, offered):
+def test_a_shell_completes_commands_scenes_methods_and_fields(
+    foucault, monkeypatch, words, offered
+):
     for name, value in asked(*words).items():
         monkeypatch.setenv(name, value)
     assert foucault()[1].split() == offered

@@ -52,7 +52,9 @@ def test_work_that_begins_late_is_estimated_from_its_own_rate(clock, capsys):
     assert capsys.readouterr().err == ""  # too early for an estimate
     clock.now = 150.0
     move(10.0)
-    assert capsys.readouterr().err == "creeping: about 2.3 minutes: 10 of 100 s simulated after 50 s\n"
+    assert (
+        capsys.readouterr().err == "creeping: about 2.3 minutes: 10 of 100 s simulated after 50 s\n"
+    )
 
 
 def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
@@ -72,7 +74,9 @@ def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(c
     for seconds in range(100):
         clock.now = 100.0 + seconds
         move(0.004 * seconds)
-    assert capsys.readouterr().err == "creeping: about 6.9 hours: 0.24 of 100 s simulated after 61 s\n"
+    assert (
+        capsys.readouterr().err == "creeping: about 6.9 hours: 0.24 of 100 s simulated after 61 s\n"
+    )
 
 
 def test_runs_are_counted_and_those_that_were_stored_cost_nothing(clock, capsys):
@@ -92,7 +96,13 @@ def test_without_a_terminal_the_notice_is_what_moves(capfd):
 
 @pytest.mark.parametrize(
     ("seconds", "words"),
-    [(41.7, "42 seconds"), (651.0, "11 minutes"), (5000.0, "83 minutes"), (12600.0, "3.5 hours"), (2e5, "2.3 days")],
+    [
+        (41.7, "42 seconds"),
+        (651.0, "11 minutes"),
+        (5000.0, "83 minutes"),
+        (12600.0, "3.5 hours"),
+        (2e5, "2.3 days"),
+    ],
 )
 def test_a_rough_time_has_two_digits_and_the_unit_that_suits_it(seconds, words):
     assert in_words(seconds) == words

@@ -46,7 +46,9 @@ def hall(tmp_path: Path) -> Path:
         (["--uncertain", "gravity=±0.01"], {"pendulum.length": "0.001", "site.gravity": "0.01"}),
     ],
 )
-def test_generate_writes_ranges_for_the_widths_of_the_scene_and_of_the_option(hall, tmp_path, options, widths):
+def test_generate_writes_ranges_for_the_widths_of_the_scene_and_of_the_option(
+    hall, tmp_path, options, widths
+):
     result = invoke("generate", str(hall), "--out", str(tmp_path / "out"), *options)
     assert result.exit_code == 0, result.stderr
     assert load_ranges(tmp_path / "out").uncertain == widths
@@ -54,14 +56,18 @@ def test_generate_writes_ranges_for_the_widths_of_the_scene_and_of_the_option(ha
 
 def test_without_its_widths_the_scene_has_a_dataset(hall, tmp_path):
     out = tmp_path / "out"
-    result = invoke("generate", str(hall), "--uncertain", "none", "--level", "computed", "--out", str(out))
+    result = invoke(
+        "generate", str(hall), "--uncertain", "none", "--level", "computed", "--out", str(out)
+    )
     assert result.exit_code == 0 and (out / "manifest.json").is_file()
 
 
 def test_show_and_score_take_the_widths_of_the_scene(hall, tmp_path):
     shown = json.loads(invoke("show", str(hall), "--json").stdout)
     assert shown["ranges"]["uncertain"] == {"pendulum.length": "±0.001"}
-    assert "ranges" not in json.loads(invoke("show", str(hall), "--uncertain", "none", "--json").stdout)
+    assert "ranges" not in json.loads(
+        invoke("show", str(hall), "--uncertain", "none", "--json").stdout
+    )
     rows = tmp_path / "rows.csv"
     rows.write_text("t,x,y\n0,0.5,0.3\n")
     assert "cannot be told apart" in invoke("score", str(hall), str(rows)).stdout

@@ -17,25 +17,44 @@ def run(*words):
 def test_generate_writes_ranges(tmp_path):
     done = run("generate", "paris", "--t-end", "120", *BOX, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
-    assert "3 grid times, 14 transits, for every pendulum.length ±0.001, site.latitude ±0.001: enclosed" in done.output
+    assert (
+        "3 grid times, 14 transits, for every pendulum.length ±0.001, site.latitude ±0.001: enclosed"
+        in done.output
+    )
     assert "period between 16.43" in done.output
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["grid.csv", "ranges.json", "transits.csv"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "grid.csv",
+        "ranges.json",
+        "transits.csv",
+    ]
     done = run("generate", "paris", "--t-end", "120", *BOX, "--out", tmp_path / "out", "--json")
     assert json.loads(done.stdout)["transits"] == 14
 
 
 def test_show_tells_period_and_first_transits():
     done = run("show", "paris", "--set", "run.t_end=120", *BOX)
-    assert "proved for every pendulum.length ±0.001, site.latitude ±0.001] period_s = 16.43" in done.output
+    assert (
+        "proved for every pendulum.length ±0.001, site.latitude ±0.001] period_s = 16.43"
+        in done.output
+    )
     assert "transit 1 = 8.2177" in done.output
-    assert "which input limits you: what each alone moves the period by, to first order, and its share" in done.output
-    assert "  pendulum.length ±0.001: 1.3e-04 s, 99.6 % (the period changes by 0.1226" in done.output
-    ranges = json.loads(run("show", "paris", "--set", "run.t_end=120", *BOX, "--json").stdout)["ranges"]
+    assert (
+        "which input limits you: what each alone moves the period by, to first order, and its share"
+        in done.output
+    )
+    assert (
+        "  pendulum.length ±0.001: 1.3e-04 s, 99.6 % (the period changes by 0.1226" in done.output
+    )
+    ranges = json.loads(run("show", "paris", "--set", "run.t_end=120", *BOX, "--json").stdout)[
+        "ranges"
+    ]
     low, high = map(float, ranges["limits"]["pendulum.length"]["s_per_unit"])
     assert low < high < low + 1e-9
     assert low == pytest.approx(16.4356 / 2 / 67, rel=1e-4)  # of small swings
     assert sum(limit["share"] for limit in ranges["limits"].values()) == pytest.approx(1)
-    assert [float(end) for end in ranges["first_transits_s"][0]] == pytest.approx([8.2178, 8.2178], abs=3e-4)
+    assert [float(end) for end in ranges["first_transits_s"][0]] == pytest.approx(
+        [8.2178, 8.2178], abs=3e-4
+    )
 
 
 @pytest.mark.parametrize(
@@ -44,7 +63,11 @@ def test_show_tells_period_and_first_transits():
         (["--uncertain", "length"], 2, "expected KEY=±WIDTH"),
         (["--uncertain", "length=1mm"], 2, "expected half of a width"),
         (["--uncertain", "lenght=±0.001"], 2, "an input on which the motion depends"),
-        (["--uncertain", "length=±1", "--uncertain", "length=±2"], 2, "expected one width of length"),
+        (
+            ["--uncertain", "length=±1", "--uncertain", "length=±2"],
+            2,
+            "expected one width of length",
+        ),
         ([*BOX, "--level", "confirmed"], 2, "enclosed, together with uncertain"),
         ([*BOX, "--digits", "20"], 2, "no such option where inputs are uncertain"),
         ([*BOX, "--function"], 2, "no such option where inputs are uncertain"),

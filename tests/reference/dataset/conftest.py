@@ -14,7 +14,9 @@ from reference.dataset.write import write
 
 @pytest.fixture(scope="session")
 def original(tmp_path_factory):
-    solution = reference.solve(reference.load_scene("paris"), t_end="300", digits=20, level="confirmed")
+    solution = reference.solve(
+        reference.load_scene("paris"), t_end="300", digits=20, level="confirmed"
+    )
     return write(solution, tmp_path_factory.mktemp("golden") / "paris")
 
 

@@ -18,7 +18,9 @@ from reference.numbers.columns import STATE
 @pytest.fixture(scope="module")
 def decimal_grid(tmp_path_factory):
     """30 s of Paris on a grid of 0.1 s, whose times are no doubles."""
-    scene = make_scene("tenths", run={"t_end": "30", "grid_step": "0.1", "digits": 30, "level": "self_consistent"})
+    scene = make_scene(
+        "tenths", run={"t_end": "30", "grid_step": "0.1", "digits": 30, "level": "self_consistent"}
+    )
     return load(write(solve(scene, transits=False), tmp_path_factory.mktemp("golden") / "tenths"))
 
 
@@ -33,8 +35,12 @@ def nearly_inverted(tmp_path_factory):
 
 def on_another_grid(golden, step):
     """An independent solution of the same scene, on times that are doubles."""
-    solution = solve(golden.scene.with_values([f"run.grid_step={step}"]), digits=30, level="self_consistent")
-    rows = [[Fraction(value, 1 << solution.grid.bits) for value in row] for row in solution.grid.values]
+    solution = solve(
+        golden.scene.with_values([f"run.grid_step={step}"]), digits=30, level="self_consistent"
+    )
+    rows = [
+        [Fraction(value, 1 << solution.grid.bits) for value in row] for row in solution.grid.values
+    ]
     return np.array([float(t) for t in solution.times]), rows
 
 
@@ -42,7 +48,10 @@ def distance_m(evaluated, rows):
     """Largest distance of positions, all digits counted."""
     worst = 0.0
     for near, low, row in zip(evaluated.states, evaluated.low, rows, strict=True):
-        error = [Fraction(a) + Fraction(b) - c for a, b, c in zip(near[:3], low[:3], row[:3], strict=True)]
+        error = [
+            Fraction(a) + Fraction(b) - c
+            for a, b, c in zip(near[:3], low[:3], row[:3], strict=True)
+        ]
         worst = max(worst, float(sum(part * part for part in error)) ** 0.5)
     return worst
 
@@ -67,9 +76,9 @@ def test_at_a_golden_time_it_is_the_golden_state(decimal_grid):
     evaluated = dense(decimal_grid, [1.0], 2.0**-110)
     for i, name in enumerate(STATE):
         printed = decimal_grid.exact(name)[k]
-        assert abs(Fraction(evaluated.states[0, i]) + Fraction(evaluated.low[0, i]) - printed) < Fraction(
-            evaluated.bound_m
-        )
+        assert abs(
+            Fraction(evaluated.states[0, i]) + Fraction(evaluated.low[0, i]) - printed
+        ) < Fraction(evaluated.bound_m)
     assert evaluated.bound_m < float(decimal_grid.manifest.bounds.position_m) + 1e-29
 
 
@@ -78,7 +87,11 @@ def test_a_double_beside_a_grid_time_is_not_taken_for_it(decimal_grid):
     for text in ("8.3", "0.3", "29.9", "29.3"):
         t = float(text)
         evaluated = dense(decimal_grid, [t], 2.0**-90)
-        k = decimal_grid.decimals("t").index(text) if text in decimal_grid.decimals("t") else round(t * 10)
+        k = (
+            decimal_grid.decimals("t").index(text)
+            if text in decimal_grid.decimals("t")
+            else round(t * 10)
+        )
         late = Fraction(t) - Fraction(text)
         moved = decimal_grid.exact("x")[k] + late * decimal_grid.exact("vx")[k]
         value = Fraction(evaluated.states[0, 0]) + Fraction(evaluated.low[0, 0])
@@ -97,8 +110,11 @@ def test_a_step_beyond_the_end_is_measured_and_more_is_refused(decimal_grid):
     evaluated = dense(decimal_grid, [30.05])
     assert 0 < evaluated.bound_m < 1e-15
     ahead = dense(decimal_grid, [30.0])
-    assert evaluated.states[0, 0] == pytest.approx(ahead.states[0, 0] + 0.05 * ahead.states[0, 3], abs=1e-4)
-    assert dense(decimal_grid, [math.nextafter(30.1, 31)]).bound_m < 1e-15  # the end, as a program may add it up
+    assert evaluated.states[0, 0] == pytest.approx(
+        ahead.states[0, 0] + 0.05 * ahead.states[0, 3], abs=1e-4
+    )
+    # the end, as a program may add it up
+    assert dense(decimal_grid, [math.nextafter(30.1, 31)]).bound_m < 1e-15
     with pytest.raises(InputError, match=r"run\.t_end"):
         dense(decimal_grid, [30.11])
 

@@ -30,7 +30,9 @@ def solution():
 @pytest.fixture(scope="module")
 def proved():
     pytest.importorskip("flint")
-    return reference.solve("paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=False)
+    return reference.solve(
+        "paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=False
+    )
 
 
 @pytest.fixture(scope="module")
@@ -52,12 +54,21 @@ def moved(solution, **changes):
 @pytest.mark.parametrize(
     ("change", "place"),
     [
-        (lambda solution: moved(solution, position_m=solution.checks[0].position_m * 2), "position_m"),
-        (lambda solution: moved(solution, position_m=solution.checks[0].position_m / 2), "position_m"),
+        (
+            lambda solution: moved(solution, position_m=solution.checks[0].position_m * 2),
+            "position_m",
+        ),
+        (
+            lambda solution: moved(solution, position_m=solution.checks[0].position_m / 2),
+            "position_m",
+        ),
         (lambda solution: moved(solution, steps=3), "cross_checks.*steps"),
         (lambda solution: replace(solution, run=replace(solution.run, order=3)), "run.order"),
         (lambda solution: replace(solution, checks=()), "the number of cross_checks"),
-        (lambda solution: replace(solution, scene=solution.scene.with_values(["title=Another"])), "title"),
+        (
+            lambda solution: replace(solution, scene=solution.scene.with_values(["title=Another"])),
+            "title",
+        ),
     ],
 )
 def test_a_manifest_of_other_runs_or_another_title_is_refused(change, place, solution):
@@ -87,9 +98,18 @@ def test_a_manifest_of_another_proof_is_refused(changes, place, proved):
 @pytest.mark.parametrize(
     ("change", "place"),
     [
-        (lambda said: said["states"][-1]["values"]["x"].update(decimal="0.1"), r"states\[1\].values.x.decimal"),
-        (lambda said: said["transits"][0]["values"]["t"].update(bound="1e-40"), r"transits\[0\].values.t.bound"),
-        (lambda said: said["transits"][-1]["values"]["ax"].update(hexfloat="0x1.0p+0"), "values.ax.hexfloat"),
+        (
+            lambda said: said["states"][-1]["values"]["x"].update(decimal="0.1"),
+            r"states\[1\].values.x.decimal",
+        ),
+        (
+            lambda said: said["transits"][0]["values"]["t"].update(bound="1e-40"),
+            r"transits\[0\].values.t.bound",
+        ),
+        (
+            lambda said: said["transits"][-1]["values"]["ax"].update(hexfloat="0x1.0p+0"),
+            "values.ax.hexfloat",
+        ),
         (lambda said: said["states"][0].update(row=2), r"states\[0\].row"),
         (lambda said: said["transits"].pop(), "transits"),
         (lambda said: said["columns"].update(t="min"), "columns.t = min"),
@@ -121,5 +141,7 @@ def test_a_page_of_another_level_is_found_by_reading_it_back(old, new, written, 
     assert old in page
     (folder / "certified.txt").write_text(page.replace(old, new))
     sealed(folder)
-    assert "certified.txt: its head does not say" in "\n".join(read_back.problems(read_files(folder)))
+    assert "certified.txt: its head does not say" in "\n".join(
+        read_back.problems(read_files(folder))
+    )
     assert problems_of(folder)

@@ -67,8 +67,17 @@ def test_a_table_of_the_page_names_what_the_code_writes_in_its_order(title):
 
 
 def test_every_part_of_the_two_documents_has_its_table():
-    parts = {one for module in (manifest, render, function) for one in vars(module).values() if isinstance(one, type)}
-    written = [one for one in parts if issubclass(one, manifest.ManifestPart) and one is not manifest.ManifestPart]
+    parts = {
+        one
+        for module in (manifest, render, function)
+        for one in vars(module).values()
+        if isinstance(one, type)
+    }
+    written = [
+        one
+        for one in parts
+        if issubclass(one, manifest.ManifestPart) and one is not manifest.ManifestPart
+    ]
     described = [set(names) for names in PARTS.values()]
     extended = set(own(manifest.CrossCheckRecord))  # its table continues that of a run
     assert all(set(own(one)) in [*described, extended] for one in written)
@@ -76,7 +85,10 @@ def test_every_part_of_the_two_documents_has_its_table():
 
 def test_the_files_are_those_of_the_code_and_say_which_are_optional():
     rows = re.findall(r"^\| `([\w.]+)` \| (always|optional) \|", section("Files"), re.M)
-    assert {name for name, when in rows if when == "always"} == {manifest.MANIFEST, *manifest.ALWAYS}
+    assert {name for name, when in rows if when == "always"} == {
+        manifest.MANIFEST,
+        *manifest.ALWAYS,
+    }
     assert [name for name, when in rows if when == "optional"] == list(manifest.OPTIONAL)
 
 
@@ -85,7 +97,8 @@ def test_words_and_numbers_are_those_of_the_code():
     assert PAGE.startswith(f"# The format of golden datasets\n\nFormat {manifest.FORMAT},")
     assert all(f"`{level}`" in section("manifest.json") for level in LEVELS)
     assert all(
-        f"`{name}_hex`" in section("grid.binary64.csv and transits.binary64.csv") for name in NUMBERS["transits"]
+        f"`{name}_hex`" in section("grid.binary64.csv and transits.binary64.csv")
+        for name in NUMBERS["transits"]
     )
     assert f"At most {render.MOST} states and {render.MOST} transits" in PAGE
     assert all(f"`{flag}`" in section("vectors.json") for flag in render.NOTES)
@@ -123,12 +136,18 @@ def test_promised_keys_are_printed(foucault, tmp_path):
     status, out, _ = foucault("verify", tmp_path / "laboratory", "--json")
     document = json.loads(out)
     assert (status, promised("verify") - document.keys() - document["rows"][0].keys()) == (0, set())
-    status, out, _ = foucault("sweep", "laboratory", "--over", "site.latitude=40,45", "--t-end", "60", "--json")
+    status, out, _ = foucault(
+        "sweep", "laboratory", "--over", "site.latitude=40,45", "--t-end", "60", "--json"
+    )
     document = json.loads(out)
     assert (status, promised("sweep") - document.keys() - document["rows"][0].keys()) == (0, set())
 
 
 def test_every_exit_status_stands_there():
     listed = set(map(int, re.findall(r"^\| (\d+) \|", PROMISES, re.M)))
-    kinds = [one for one in vars(errors).values() if isinstance(one, type) and issubclass(one, errors.FoucaultError)]
+    kinds = [
+        one
+        for one in vars(errors).values()
+        if isinstance(one, type) and issubclass(one, errors.FoucaultError)
+    ]
     assert listed == {0, UNFORESEEN, UNREAD, *(one.exit_status for one in kinds)}

@@ -31,7 +31,9 @@ from reference.scenes.shipped import WITHOUT_FUNCTION, golden_root, scene_ids
 @pytest.fixture(scope="module")
 def solution():
     scene = reference.load_scene("paris")
-    return reference.solve(scene, t_end="300", digits=20, level="enclosed", engine="limbs", function=True)
+    return reference.solve(
+        scene, t_end="300", digits=20, level="enclosed", engine="limbs", function=True
+    )
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +52,11 @@ def changed(folder, change=None, data=None):
     if change is not None:
         change(said)
     texts = {FUNCTION[0]: json.dumps(said, indent=1) + "\n"}
-    seal(folder, json.loads((folder / MANIFEST).read_text()), texts | ({FUNCTION[1]: data} if data is not None else {}))
+    seal(
+        folder,
+        json.loads((folder / MANIFEST).read_text()),
+        texts | ({FUNCTION[1]: data} if data is not None else {}),
+    )
 
 
 def test_it_is_written_sealed_and_verified(whole):
@@ -70,7 +76,9 @@ def test_it_leaves_the_other_files_as_they_are(whole, solution, tmp_path):
     assert "--function" not in other.manifest.command
     assert other.function is None
     with_function, without = reference.load(whole), reference.load(folder)
-    assert [with_function.grid.decimals(name) for name in STATE] == [without.grid.decimals(name) for name in STATE]
+    assert [with_function.grid.decimals(name) for name in STATE] == [
+        without.grid.decimals(name) for name in STATE
+    ]
     assert with_function.transits.decimals("t") == without.transits.decimals("t")
 
 
@@ -93,7 +101,9 @@ def test_solution_and_dataset_have_the_same_motion_at_times_of_any_shape(whole, 
             golden.at(t)
 
 
-def test_without_a_function_a_dataset_is_integrated_anew_and_a_solution_refuses(whole, solution, tmp_path):
+def test_without_a_function_a_dataset_is_integrated_anew_and_a_solution_refuses(
+    whole, solution, tmp_path
+):
     golden = reference.load(whole)
     plain = replace(golden, function=None)
     times = np.array([[299.5, 3.25], [17.25, 300.0]])
@@ -163,23 +173,35 @@ def test_forged_coefficients_are_found_where_the_motion_leaves_the_bound(whole, 
     files, rng = read_files(whole), np.random.default_rng(9)
     _, function = files.function
     ends = function.times
-    degree, count, pieces = (n - 1 if i == 0 else n for i, n in enumerate(function.coefficients.shape))
+    degree, count, pieces = (
+        n - 1 if i == 0 else n for i, n in enumerate(function.coefficients.shape)
+    )
     inside = [
-        np.unique([*rng.uniform(*ends[i : i + 2], 100), ends[i], np.nextafter(ends[i + 1], 0)]) for i in range(pieces)
+        np.unique([*rng.uniform(*ends[i : i + 2], 100), ends[i], np.nextafter(ends[i + 1], 0)])
+        for i in range(pieces)
     ]
     truth = [states(files.scene.exact, times) for times in inside]
     leaving = 0
     for _ in range(size(20, 300)):
-        k, j, i = int(rng.integers(0, degree + 1)), int(rng.integers(count)), int(rng.integers(pieces))
+        k, j, i = (
+            int(rng.integers(0, degree + 1)),
+            int(rng.integers(count)),
+            int(rng.integers(pieces)),
+        )
         for ulps in (1, 30, 1000):
             coefficients = function.coefficients.copy()
-            coefficients[k, j, i] += rng.choice([-1, 1]) * ulps * np.spacing(abs(coefficients[k, j, i]))
+            coefficients[k, j, i] += (
+                rng.choice([-1, 1]) * ulps * np.spacing(abs(coefficients[k, j, i]))
+            )
             forged = replace(function, coefficients=coefficients)
             data = np.ascontiguousarray(coefficients.transpose(2, 1, 0)).tobytes()
             folder.joinpath(FUNCTION[1]).write_bytes(data)
             assert verify(folder).problems == ["function.f64: a byte was changed (sha256 differs)"]
             at, (high, low) = forged.at(inside[i]), truth[i]
-            off = {name: np.abs((getattr(at, name) - high[:, n]) - low[:, n]).max() for n, name in enumerate(STATE)}
+            off = {
+                name: np.abs((getattr(at, name) - high[:, n]) - low[:, n]).max()
+                for n, name in enumerate(STATE)
+            }
             leaves = max(off[name] / forged.bound[name] for name in STATE)
             changed(folder, data=data)
             found = verify(folder).problems
@@ -191,7 +213,11 @@ def test_forged_coefficients_are_found_where_the_motion_leaves_the_bound(whole, 
 
 
 def test_generate_makes_it_by_default_and_not_with_no_function(foucault, tmp_path):
-    scene = (ROOT / "data/scenes/laboratory.toml").read_text().replace('id = "laboratory"', 'id = "mine"')
+    scene = (
+        (ROOT / "data/scenes/laboratory.toml")
+        .read_text()
+        .replace('id = "laboratory"', 'id = "mine"')
+    )
     (tmp_path / "mine.toml").write_text(scene)
     words = (
         "generate",
@@ -208,17 +234,28 @@ def test_generate_makes_it_by_default_and_not_with_no_function(foucault, tmp_pat
         out = tmp_path / f"out{len(option)}{there}"
         status, _, err = foucault(*words, *option, "--out", out)
         assert status == 0, err
-        assert {name for name in FUNCTION if (out / name).exists()} == (set(FUNCTION) if there else set())
+        assert {name for name in FUNCTION if (out / name).exists()} == (
+            set(FUNCTION) if there else set()
+        )
         assert ("--function" in json.loads((out / MANIFEST).read_text())["command"]) is there
-    status, _, err = foucault(*words[:-3], "--level", "computed", "--function", "--out", tmp_path / "no")
+    status, _, err = foucault(
+        *words[:-3], "--level", "computed", "--function", "--out", tmp_path / "no"
+    )
     assert (status, "--function" in err) == (2, True)
 
 
 def test_what_ships_has_the_function_of_doubles():
     """`generate NAME` makes the bytes that ship: decimals have no function, doubles have one, mostly alone."""
-    for name, reading, alone in (("paris", "decimal", False), ("paris", "binary64", False), ("pole", "binary64", True)):
+    for name, reading, alone in (
+        ("paris", "decimal", False),
+        ("paris", "binary64", False),
+        ("pole", "binary64", True),
+    ):
         scene = reference.load_scene(name, [f"inputs={reading}"])
-        making, doubles = making_of(scene, dataset_id(scene), ROOT / "elsewhere"), reading == "binary64"
+        making, doubles = (
+            making_of(scene, dataset_id(scene), ROOT / "elsewhere"),
+            reading == "binary64",
+        )
         assert (making.function, making.tables) == (doubles, not alone)
         golden = reference.load(dataset_id(scene))
         assert (golden.function is not None, golden.manifest.alone) == (doubles, alone)
@@ -229,7 +266,9 @@ def test_every_scene_ships_its_function_of_doubles_or_says_how_large_it_is(fouca
     assert {*functions} == {f"{name}.binary64" for name in {*scene_ids()} - {*WITHOUT_FUNCTION}}
     alone = [folder for folder in functions.values() if read_manifest(folder).alone]
     files = [path for folder in alone for path in folder.iterdir()]
-    files += [folder / name for folder in functions.values() if folder not in alone for name in FUNCTION]
+    files += [
+        folder / name for folder in functions.values() if folder not in alone for name in FUNCTION
+    ]
     assert sum(path.stat().st_size for path in files) <= 12_000_000
     _, said, _ = foucault("scenes")
     lines = [line for line in said.splitlines() if "without a golden function" in line]
@@ -241,7 +280,9 @@ def alone(solution, tmp_path_factory):
     return reference.write(solution, tmp_path_factory.mktemp("alone") / "paris", tables=False)
 
 
-def test_a_function_alone_is_a_dataset_with_the_same_motion_and_transits(alone, whole, solution, tmp_path):
+def test_a_function_alone_is_a_dataset_with_the_same_motion_and_transits(
+    alone, whole, solution, tmp_path
+):
     assert {path.name for path in alone.iterdir()} == {MANIFEST, *FUNCTION}
     files = read_files(alone)
     assert files.manifest.command.endswith("--confirm none --function --no-tables")
@@ -259,7 +300,9 @@ def test_a_function_alone_is_a_dataset_with_the_same_motion_and_transits(alone, 
             bounds = zip(ours.bound(name), theirs.bound(name), strict=True)
             numbers = zip(ours.exact(name), theirs.exact(name), strict=True)
             ulp = Fraction(float(np.spacing(np.abs(ours[name]).max())))
-            assert all(abs(a - b) <= p + q + ulp for (a, b), (p, q) in zip(numbers, bounds, strict=True)), name
+            assert all(
+                abs(a - b) <= p + q + ulp for (a, b), (p, q) in zip(numbers, bounds, strict=True)
+            ), name
     assert np.abs(golden.transits["ax"] / printed.transits["ax"] - 1).max() < 1e-13
     with pytest.raises(InputError, match="a golden function, or tables"):
         reference.write(replace(solution, proof=None), tmp_path / "nothing", tables=False)
@@ -268,8 +311,14 @@ def test_a_function_alone_is_a_dataset_with_the_same_motion_and_transits(alone, 
 @pytest.mark.parametrize(
     ("change", "problem"),
     [
-        (lambda said: said["counts"].update(transits=35), "xdot has 36 zeros, the manifest counts 35"),
-        (lambda said: said.update(command=said["command"].replace(" --no-tables", "")), "command does not follow"),
+        (
+            lambda said: said["counts"].update(transits=35),
+            "xdot has 36 zeros, the manifest counts 35",
+        ),
+        (
+            lambda said: said.update(command=said["command"].replace(" --no-tables", "")),
+            "command does not follow",
+        ),
         (lambda said: said["scene"]["site"].update(latitude="48"), "id = paris does not follow"),
         (lambda said: said["files"].pop(FUNCTION[0]), "a golden function alone"),
     ],
@@ -291,7 +340,11 @@ def test_tables_are_left_out_only_where_there_is_a_function(foucault, tmp_path):
     words = ("generate", "paris", "--t-end", "20", "--digits", "12", "--no-function", "--no-tables")
     status, _, err = foucault(*words, "--out", tmp_path / "no")
     assert (status, "--no-tables" in err) == (2, True)
-    making = making_of(reference.load_scene("paris", ["site.latitude=1"]), "paris+site.latitude=1", ROOT / "elsewhere")
+    making = making_of(
+        reference.load_scene("paris", ["site.latitude=1"]),
+        "paris+site.latitude=1",
+        ROOT / "elsewhere",
+    )
     assert making.function and making.tables
 
 

@@ -47,19 +47,24 @@ def verified(project, *folders):
     return ["\n".join(row["problems"]) for row in said["rows"]]
 
 
-def test_in_its_place_or_copied_from_there_a_dataset_has_the_seal_of_the_index(project, original, tmp_path):
+def test_in_its_place_or_copied_from_there_a_dataset_has_the_seal_of_the_index(
+    project, original, tmp_path
+):
     ships = ship(project, original)
     copy = copied(ships, tmp_path / "copy")
     forged = copied(ships, tmp_path / "forged", retitle)
     others = [
         copied(ships, tmp_path / "span", lambda m: m["scene"]["run"].update(t_end="60")),
-        copied(ships, tmp_path / "command", lambda m: m.update(command=m["command"] + " --no-confirm")),
+        copied(
+            ships, tmp_path / "command", lambda m: m.update(command=m["command"] + " --no-confirm")
+        ),
     ]
     in_place, of_copy, of_forged, *of_others = verified(project, ships, copy, forged, *others)
     assert (in_place, of_copy) == ("", "")
     ours, theirs = (read_files(folder).manifest.seal[:12] for folder in (forged, ships))
     assert of_forged == f"manifest.json: its seal {ours}… {SEAL}, {theirs}… (index.json)"
-    assert not any(SEAL in said for said in of_others)  # another scene or command is another dataset
+    # another scene or command is another dataset
+    assert not any(SEAL in said for said in of_others)
 
     forge(ships, manifest=retitle)
     assert SEAL in verified(project, ships)[0]
@@ -67,7 +72,9 @@ def test_in_its_place_or_copied_from_there_a_dataset_has_the_seal_of_the_index(p
     assert verified(project, forged) == [""]  # there is nothing that it could be a copy of
 
 
-def test_a_copy_that_was_made_here_with_other_versions_need_not_have_it(project, original, tmp_path):
+def test_a_copy_that_was_made_here_with_other_versions_need_not_have_it(
+    project, original, tmp_path
+):
     ships = ship(project, original)
     made_here = copied(ships, tmp_path / "here", retitle)
     made_nowhere = copied(ships, tmp_path / "nowhere", lambda m: m["generator"].update(heyoka="1"))
@@ -80,7 +87,9 @@ def test_a_copy_that_was_made_here_with_other_versions_need_not_have_it(project,
 @pytest.mark.parametrize("audit", [True, False])
 def test_a_proof_in_its_place_says_that_it_was_audited(project, tmp_path, audit):
     pytest.importorskip("flint")
-    solution = reference.solve("paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=audit)
+    solution = reference.solve(
+        "paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=audit
+    )
     elsewhere = reference.write(solution, tmp_path / "paris")
     in_place, of_copy = verified(project, ship(project, elsewhere), elsewhere)
     assert of_copy == ""
@@ -91,7 +100,18 @@ def test_a_proof_in_its_place_says_that_it_was_audited(project, tmp_path, audit)
 def test_no_proof_is_written_there_unaudited(project):
     """Paris, at the level of what ships."""
     pytest.importorskip("flint")
-    words = ("generate", "paris", "--t-end", "20", "--digits", "12", "--no-audit", "--no-confirm", "--engine", "heyoka")
+    words = (
+        "generate",
+        "paris",
+        "--t-end",
+        "20",
+        "--digits",
+        "12",
+        "--no-audit",
+        "--no-confirm",
+        "--engine",
+        "heyoka",
+    )
     done = foucault_of(project, *words, "--out", "data/golden/paris", numba=False)
     assert (done.returncode, "expected an audited proof" in done.stderr) == (2, True)
     assert not (project / "data/golden/paris").exists()

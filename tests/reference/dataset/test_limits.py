@@ -14,7 +14,16 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.files import read_files
-from reference.dataset.manifest import ALWAYS, MANIFEST, Count, Decimals, Manifest, Name, Text, differences
+from reference.dataset.manifest import (
+    ALWAYS,
+    MANIFEST,
+    Count,
+    Decimals,
+    Manifest,
+    Name,
+    Text,
+    differences,
+)
 from reference.dataset.place import MAX_ID, dataset_id
 from reference.dataset.record import bounds_of
 from reference.dataset.verify import problems_of, verify
@@ -29,7 +38,10 @@ def problems(dataset):
 
 
 def test_twenty_problems_are_listed_at_most(dataset):
-    forge(dataset, transits=lambda rows, _: [row.__setitem__(3, moved(row[3], Fraction(1))) for row in rows])
+    forge(
+        dataset,
+        transits=lambda rows, _: [row.__setitem__(3, moved(row[3], Fraction(1))) for row in rows],
+    )
     assert len(verify(dataset).problems) == len(problems_of(dataset)) == 20
 
 
@@ -37,7 +49,11 @@ def test_twenty_problems_are_listed_at_most(dataset):
 def test_twenty_foreign_files_are_named_and_the_others_counted(dataset, more):
     for k in range(20 + more):
         (dataset / f"{k}.txt").touch()
-    notes = [note for note in verify(dataset).foreign if "not part of the dataset" in note or note.startswith("and ")]
+    notes = [
+        note
+        for note in verify(dataset).foreign
+        if "not part of the dataset" in note or note.startswith("and ")
+    ]
     assert len(notes) == min(20, 20 + more) + (more > 0)
     assert (notes[-1] == f"and {more} more") is (more > 0)
 
@@ -76,10 +92,15 @@ def sealed(dataset, name, old, new):
 def test_a_dataset_needs_the_files_of_every_one_and_no_others(dataset):
     document = json.loads((dataset / MANIFEST).read_text())
     files = {name: document["files"][name] for name in (*ALWAYS, "transits.csv")}
-    assert set(Manifest.model_validate({**document, "files": files}).files) == {*ALWAYS, "transits.csv"}
+    assert set(Manifest.model_validate({**document, "files": files}).files) == {
+        *ALWAYS,
+        "transits.csv",
+    }
     for name in ALWAYS:
         with pytest.raises(ValidationError, match=f"files: {name} and transits.csv must be there"):
-            Manifest.model_validate({**document, "files": {other: files[other] for other in ALWAYS if other != name}})
+            Manifest.model_validate(
+                {**document, "files": {other: files[other] for other in ALWAYS if other != name}}
+            )
 
 
 def placed(**cells):
@@ -90,16 +111,25 @@ def placed(**cells):
             for row, text in texts.items():
                 cell = rows[row][header.index(column)]
                 places = len(cell.partition(".")[2])
-                rows[row][header.index(column)] = fixed_decimal(Fraction(text), places) if column != "bound" else text
+                rows[row][header.index(column)] = (
+                    fixed_decimal(Fraction(text), places) if column != "bound" else text
+                )
 
     return change
 
 
 @pytest.mark.parametrize(
     ("row", "t", "bound", "outside"),
-    [(0, "-0.9", "1", False), (0, "-1", "1", True), (-1, "302", "2", False), (-1, "302.1", "2", True)],
+    [
+        (0, "-0.9", "1", False),
+        (0, "-1", "1", True),
+        (-1, "302", "2", False),
+        (-1, "302.1", "2", True),
+    ],
 )
-def test_transits_lie_after_the_release_and_up_to_the_end_as_far_as_their_bounds_tell(dataset, row, t, bound, outside):
+def test_transits_lie_after_the_release_and_up_to_the_end_as_far_as_their_bounds_tell(
+    dataset, row, t, bound, outside
+):
     """The run ends at 300 s."""
     forge(dataset, transits=placed(t={row: t}, bound={row: f"{bound}.0e+00"}))
     assert ("outside (0, t_end]" in problems(dataset)) is outside
@@ -122,14 +152,18 @@ def test_transits_alternate_unless_some_may_be_undecided(dataset, word, found):
 
 def test_transits_at_which_the_cord_is_nearly_level_pass(tmp_path):
     """There vz = -(x vx + y vy)/z bends within |z|, a ten-millionth of the cord's length."""
-    solution = reference.solve(reference.load_scene("over_top"), t_end="10", digits=10, level="computed")
+    solution = reference.solve(
+        reference.load_scene("over_top"), t_end="10", digits=10, level="computed"
+    )
     assert min(map(abs, solution.transits.exact("z"))) < 1e-7
     assert problems_of(write(solution, tmp_path / "over")) == []
 
 
 def test_a_transit_at_which_the_cord_is_level_passes_and_its_place_is_checked(tmp_path):
     """There nothing in the table tells vz; a planar swing through a right angle has xdot = 0 just there."""
-    solution = reference.solve(reference.load_scene("separatrix"), t_end="0.3", digits=10, level="computed")
+    solution = reference.solve(
+        reference.load_scene("separatrix"), t_end="0.3", digits=10, level="computed"
+    )
     assert max(map(abs, solution.transits.exact("z"))) < 1e-15
     folder = write(solution, tmp_path / "level")
     assert problems_of(folder) == []
@@ -148,7 +182,9 @@ def test_the_doubles_have_the_words_of_the_decimals(dataset):
     cells = row.split(",")
     for place, new in ((0, "9"), (2, "-1" if cells[2] == "+1" else "+1"), (8, "1.0e-05")):
         copy = Path(shutil.copytree(dataset, dataset.with_name(f"other {place}")))
-        sealed(copy, "transits.binary64.csv", row, ",".join([*cells[:place], new, *cells[place + 1 :]]))
+        sealed(
+            copy, "transits.binary64.csv", row, ",".join([*cells[:place], new, *cells[place + 1 :]])
+        )
         assert "row 3 has another direction, number or bound" in problems(copy)
 
 
@@ -162,11 +198,18 @@ def test_a_double_in_other_digits_than_its_own_is_found(dataset):
 
 
 def test_the_id_of_a_users_own_scene_names_changes_that_it_has(tmp_path):
-    scene = make_scene("mine", site={"latitude": "1"}, run={"t_end": "60", "digits": 8, "level": "computed"})
+    scene = make_scene(
+        "mine", site={"latitude": "1"}, run={"t_end": "60", "digits": 8, "level": "computed"}
+    )
     solution = reference.solve(scene)
     for name in ("mine", "mine+site.latitude=1", "mine+site.latitude=1,release.x=0.3"):
         assert problems_of(write(solution, tmp_path / name, name)) == []
-    for name in ("yours", "mine+site.latitude=2", "mine+site.latitude=1,release.x=0.4", "mine.decimal"):
+    for name in (
+        "yours",
+        "mine+site.latitude=2",
+        "mine+site.latitude=1,release.x=0.4",
+        "mine.decimal",
+    ):
         with pytest.raises(DatasetError, match="does not follow from the scene"):
             write(solution, tmp_path / name, name)
 
@@ -193,13 +236,19 @@ def test_an_id_of_more_than_160_characters_is_a_hash(paris, length, whole):
         ("57.5", "1.0e-01", "0", False),
     ],
 )
-def test_between_transits_xdot_has_one_sign_but_within_the_bound_of_a_time(dataset, t, bound, vx, found):
+def test_between_transits_xdot_has_one_sign_but_within_the_bound_of_a_time(
+    dataset, t, bound, vx, found
+):
     """The seventh transit of Paris, after which xdot is positive, may be where the grid has a row, at 60 s."""
     forge(dataset, grid=placed(vx={1: vx}), transits=placed(t={6: t}, bound={6: bound}))
-    assert ("grid.csv: t = 60: the sign of vx contradicts the transits before it" in problems(dataset)) is found
+    assert (
+        "grid.csv: t = 60: the sign of vx contradicts the transits before it" in problems(dataset)
+    ) is found
 
 
-@pytest.mark.parametrize(("change", "count"), [(lambda row: f"{row},0", 8), (lambda row: row.rpartition(",")[0], 6)])
+@pytest.mark.parametrize(
+    ("change", "count"), [(lambda row: f"{row},0", 8), (lambda row: row.rpartition(",")[0], 6)]
+)
 def test_a_row_with_a_number_too_many_or_too_few_is_told_with_both_counts(dataset, change, count):
     row = (dataset / "grid.csv").read_text().splitlines()[2]
     sealed(dataset, "grid.csv", row, change(row))
@@ -227,7 +276,9 @@ def test_where_two_documents_differ_is_told_with_both_values(old, new, told):
 @pytest.fixture(scope="module")
 def proved(tmp_path_factory):
     pytest.importorskip("flint")
-    solution = reference.solve("paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=False)
+    solution = reference.solve(
+        "paris", t_end="20", digits=12, level="enclosed", confirm="none", audit=False
+    )
     return write(solution, tmp_path_factory.mktemp("proved") / "paris")
 
 
@@ -235,11 +286,14 @@ def proved(tmp_path_factory):
     ("kind", "proof", "right", "wrong"),
     [
         ("grid", False, ["0.50", "1.0"], ["0.49", "1.1"]),
-        ("transits", False, ["0.50", "1.0", "9.0"], ["0.49"]),  # whose states two runs know less closely
+        # whose states two runs know less closely
+        ("transits", False, ["0.50", "1.0", "9.0"], ["0.49"]),
         ("transits", True, ["0.50", "1.0"], ["0.49", "1.1"]),
     ],
 )
-def test_a_bound_is_from_half_a_unit_to_one_of_the_last_digit(original, request, tmp_path, kind, proof, right, wrong):
+def test_a_bound_is_from_half_a_unit_to_one_of_the_last_digit(
+    original, request, tmp_path, kind, proof, right, wrong
+):
     source = request.getfixturevalue("proved") if proof else original
     for units in (*right, *wrong):
         folder = Path(shutil.copytree(source, tmp_path / units / "paris"))
@@ -252,7 +306,9 @@ def test_a_bound_is_from_half_a_unit_to_one_of_the_last_digit(original, request,
 
         forge(folder, manifest=change)
         said = f"bounds.{kind}.y = "
-        assert any(said in problem and "half a unit" in problem for problem in problems_of(folder)) is (units in wrong)
+        assert any(
+            said in problem and "half a unit" in problem for problem in problems_of(folder)
+        ) is (units in wrong)
 
 
 def other_sections(document, *words):
@@ -282,7 +338,9 @@ PASSAGES = {  # what is changed, and what verify says
 
 
 @pytest.mark.parametrize("change", PASSAGES)
-def test_passages_are_those_of_the_scenes_sections_counted_from_1_with_bounds_of_half_a_unit(passing, tmp_path, change):
+def test_passages_are_those_of_the_scenes_sections_counted_from_1_with_bounds_of_half_a_unit(
+    passing, tmp_path, change
+):
     changes, said = PASSAGES[change]
     folder = Path(shutil.copytree(passing, tmp_path / passing.name))
     forge(folder, **changes)

@@ -18,16 +18,25 @@ from reference.dataset.verify import recompute, verify
 from reference.dataset.write import write
 from reference.numbers.precision import fixed_decimal
 
-SPEEDS = {0: "-0.0077460679307865453684", 2: "-0.0077460679307865453685"}  # m/s to the east, by the zeros in the dip
+# m/s to the east, by the zeros in the dip
+SPEEDS = {0: "-0.0077460679307865453684", 2: "-0.0077460679307865453685"}
 BEND = Fraction("0.26")  # third derivative of x in the dip, in m/s³
 SAID = "not decided without --recompute: the possible transits, the proof, the cross-checks (confirmation: none)"
 
 
-@pytest.fixture(scope="module", params=[2, pytest.param(0, marks=pytest.mark.long)])  # none is what a run finds first
+# none is what a run finds first
+@pytest.fixture(scope="module", params=[2, pytest.param(0, marks=pytest.mark.long)])
 def undecided(request, tmp_path_factory):
-    changes = ["run.t_end=24", "run.grid_step=2", "run.digits=10", f"release.vx={SPEEDS[request.param]}"]
+    changes = [
+        "run.t_end=24",
+        "run.grid_step=2",
+        "run.digits=10",
+        f"release.vx={SPEEDS[request.param]}",
+    ]
     scene = reference.load_scene("close_pair", changes)
-    return write(reference.solve(scene), tmp_path_factory.mktemp(f"zeros_{request.param}") / "grazing")
+    return write(
+        reference.solve(scene), tmp_path_factory.mktemp(f"zeros_{request.param}") / "grazing"
+    )
 
 
 @pytest.fixture
@@ -39,7 +48,10 @@ def test_what_a_proof_leaves_undecided_passes_and_is_said(grazing):
     manifest = read_files(grazing).manifest
     (part,) = manifest.possible
     # xdot = BEND s²/2 is below the proof's radius for as long as sqrt(8 radius/BEND); what is halved there ends later
-    width, radius = Fraction(part.to_s) - Fraction(part.from_s), Fraction(manifest.enclosure.velocity_radius_m_s)
+    width, radius = (
+        Fraction(part.to_s) - Fraction(part.from_s),
+        Fraction(manifest.enclosure.velocity_radius_m_s),
+    )
     assert part.parity == "even" and width**2 < 16 * 8 * radius / BEND
     found = verify(grazing)
     assert (found.problems, found.undecided) == ([], [SAID])
@@ -51,7 +63,9 @@ def interval(document, **ends):
 
 
 def another(document, *ends):
-    document["possible"].insert(0, dict(zip(("from_s", "to_s", "parity"), (*ends, "unknown"), strict=True)))
+    document["possible"].insert(
+        0, dict(zip(("from_s", "to_s", "parity"), (*ends, "unknown"), strict=True))
+    )
     document["counts"]["possible"] += 1
 
 
@@ -59,7 +73,9 @@ REFUTED = {
     "an odd number": lambda document: interval(document, parity="odd"),
     "the transit before": lambda document: interval(document, from_s="22.2", parity="unknown"),
     "the first transit": lambda document: another(document, "0", "0.5"),
-    "a narrow one in the middle of a swing": lambda document: another(document, "0.4", "0.40000000001"),
+    "a narrow one in the middle of a swing": lambda document: another(
+        document, "0.4", "0.40000000001"
+    ),
     "a wide one between two transits": lambda document: another(document, "0.48", "0.49"),
     "nearly all": lambda document: another(document, "0", "22.9"),
 }
@@ -69,7 +85,9 @@ REFUTED = {
 def test_an_interval_in_which_the_motion_is_decided_is_found(grazing, name):
     forge(grazing, manifest=REFUTED[name])
     found = verify(grazing)
-    assert any("the motion has" in problem and "that is decided" in problem for problem in found.problems)
+    assert any(
+        "the motion has" in problem and "that is decided" in problem for problem in found.problems
+    )
     assert found.undecided == []
 
 
@@ -86,7 +104,9 @@ def test_a_transit_outside_the_intervals_must_be_listed(grazing, places):
 
 @pytest.mark.parametrize("late", [Fraction(1, 1000), Fraction(1, 10**8)])
 def test_a_transit_outside_the_intervals_is_where_the_motion_has_it(grazing, late):
-    forge(grazing, transits=lambda rows, _: [row.__setitem__(1, moved(row[1], late)) for row in rows])
+    forge(
+        grazing, transits=lambda rows, _: [row.__setitem__(1, moved(row[1], late)) for row in rows]
+    )
     assert "t is off by" in verify(grazing).problems[0]
 
 
@@ -101,7 +121,13 @@ def test_all_directions_turned_are_found(grazing):
 
 def test_a_passage_that_is_possible_up_to_an_end_of_many_decimals_is_written(tmp_path):
     """The double nearest to 6.4 has 49 decimals, and a possible passage ends there."""
-    changes = ["inputs=binary64", "run.t_end=6.4", "run.grid_step=6.4", "run.sections=highest", "run.digits=10"]
+    changes = [
+        "inputs=binary64",
+        "run.t_end=6.4",
+        "run.grid_step=6.4",
+        "run.sections=highest",
+        "run.digits=10",
+    ]
     scene = reference.load_scene("inverted_rest", [*changes, "run.level=enclosed"])
     solution = reference.solve(scene, confirm="none", audit=False)
     (low, high, parity), *_ = solution.sections["highest"].possible
@@ -134,7 +160,13 @@ OVERDAMPED = {
     "pendulum": {"length": "0.11", "drag": "24"},
     "site": {"latitude": "50"},
     "release": {"x": "0.00001", "y": "0"},
-    "run": {"t_end": "10.6", "grid_step": "1", "digits": 15, "level": "enclosed", "sections": ["highest"]},
+    "run": {
+        "t_end": "10.6",
+        "grid_step": "1",
+        "digits": 15,
+        "level": "enclosed",
+        "sections": ["highest"],
+    },
 }
 
 

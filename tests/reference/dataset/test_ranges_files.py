@@ -63,7 +63,11 @@ def test_the_manifest_says_the_box_and_what_holds_the_tables(ranges, tmp_path):
         ("0.123456", "0.123789", ("0.12345", "0.12379")),
         ("-0.02", "0.03", ("-0.020", "0.030")),
         ("99.5", "250.5", ("99", "251")),
-        ("-1e-30", "2e-30", ("-0.0000000000000000000000000000010", "0.0000000000000000000000000000020")),
+        (
+            "-1e-30",
+            "2e-30",
+            ("-0.0000000000000000000000000000010", "0.0000000000000000000000000000020"),
+        ),
     ],
 )
 def test_ends_are_rounded_outward_to_the_digits_of_the_width(low, high, texts):
@@ -97,7 +101,11 @@ def test_ranges_are_read_back_as_printed(ranges, tmp_path):
     folder = write_ranges(ranges, tmp_path / "out")
     read = reference.load_ranges(folder)
     assert read.scene.with_values(["run.digits=30"]).exact == ranges.scene.exact
-    assert (read.uncertain, read.times, read.directions) == (ranges.uncertain, ranges.times, ranges.directions)
+    assert (read.uncertain, read.times, read.directions) == (
+        ranges.uncertain,
+        ranges.times,
+        ranges.directions,
+    )
     assert (read.possible, read.engine, read.proof) == ((), ranges.engine, None)
     for name in ranges.grid.columns:
         assert (read.grid.low(name) <= ranges.grid.low(name)).all()
@@ -125,10 +133,22 @@ CHANGES = {
     "a low end": ("grid.csv", lambda row: row.update(x_low=narrower(row["x_low"])) or row),
     "a time": ("grid.csv", lambda row: row.update(t=narrower(row["t"])) or row),
     "a transit": ("transits.csv", lambda row: row.update(t_low=narrower(row["t_low"])) or row),
-    "a direction": ("transits.csv", lambda row: row.update(direction=str(-int(row["direction"]))) or row),
-    "a length": ("ranges.json", lambda said: said["scene"]["pendulum"].update(length="67.1") or said),
-    "a width": ("ranges.json", lambda said: said["uncertain"].update({"pendulum.length": "±0.0011"}) or said),
-    "a period": ("ranges.json", lambda said: said.update(period_s=[narrower(said["period_s"][0]), "16.44"]) or said),
+    "a direction": (
+        "transits.csv",
+        lambda row: row.update(direction=str(-int(row["direction"]))) or row,
+    ),
+    "a length": (
+        "ranges.json",
+        lambda said: said["scene"]["pendulum"].update(length="67.1") or said,
+    ),
+    "a width": (
+        "ranges.json",
+        lambda said: said["uncertain"].update({"pendulum.length": "±0.0011"}) or said,
+    ),
+    "a period": (
+        "ranges.json",
+        lambda said: said.update(period_s=[narrower(said["period_s"][0]), "16.44"]) or said,
+    ),
     "a count": ("ranges.json", lambda said: said["counts"].update(transits=1) or said),
 }
 
@@ -143,9 +163,15 @@ def test_verify_finds_what_is_not_proved_even_if_it_is_sealed_anew(ranges, tmp_p
     if file == "ranges.json":
         said = change(json.loads((folder / file).read_text(encoding="utf-8")))
     else:
-        said, lines = json.loads((folder / "ranges.json").read_text(encoding="utf-8")), rows(folder / file)
+        said, lines = (
+            json.loads((folder / "ranges.json").read_text(encoding="utf-8")),
+            rows(folder / file),
+        )
         change(lines[2])
-        text = "".join(",".join(line) + "\n" for line in [list(lines[0]), *(list(row.values()) for row in lines)])
+        text = "".join(
+            ",".join(line) + "\n"
+            for line in [list(lines[0]), *(list(row.values()) for row in lines)]
+        )
         (folder / file).write_text(text, encoding="utf-8")
         if sealed:
             said["sha256"][file] = hashlib.sha256(text.encode()).hexdigest()
@@ -193,7 +219,10 @@ def test_ranges_that_were_made_with_derivatives_are_proved_again_with_them(tmp_p
         (lambda said: said.update(format=2), r"format = 2, proved again 1"),
         (lambda said: said.update(id="paris"), "id = paris, proved again"),
         (lambda said: said.update(period_s=None), "period_s = None, proved again an interval"),
-        (lambda said: said["proof"].update(radius_m="1e-30"), "proof.radius_m = 1e-30, proved again"),
+        (
+            lambda said: said["proof"].update(radius_m="1e-30"),
+            "proof.radius_m = 1e-30, proved again",
+        ),
         (lambda said: said["proof"].update(bits=1000), "proof.bits = 1000, proved again"),
         (lambda said: said["proof"].update(steps=1), "proof.steps = 1, proved again"),
     ],
@@ -241,5 +270,7 @@ def test_ranges_of_a_proof_that_looked_for_no_transits_do_not_say_that_there_are
 def test_the_ends_of_an_uncertain_flattening_are_those_of_its_inverse():
     """1/f = 298.257223564 ± 1: f between 1/299.257223564 and 1/297.257223564."""
     inputs = reference.load_scene("paris").exact
-    low, high = (end_of(inputs, {"site.inverse_flattening": "±1"}, side).flattening for side in (1, -1))
+    low, high = (
+        end_of(inputs, {"site.inverse_flattening": "±1"}, side).flattening for side in (1, -1)
+    )
     assert (1 / low, 1 / high) == (Fraction("299.257223564"), Fraction("297.257223564"))

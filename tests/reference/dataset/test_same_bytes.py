@@ -55,7 +55,10 @@ def jitter(monkeypatch, share: int) -> list[str]:
         def noise(value: int, place: int) -> int:
             return value + (value * (place * 7919 % 13 - 6) * share >> prec)
 
-        rows = [tuple(noise(value, i + j) for j, value in enumerate(row)) for i, row in enumerate(table.values)]
+        rows = [
+            tuple(noise(value, i + j) for j, value in enumerate(row))
+            for i, row in enumerate(table.values)
+        ]
         return Table(table.columns, table.bits, rows)
 
     def run(self, plan, *words):
@@ -64,18 +67,23 @@ def jitter(monkeypatch, share: int) -> list[str]:
         if not plan.number.hardware:
             return found
         prec = plan.number.prec
-        zeros = {word: part._replace(table=moved(part.table, prec)) for word, part in found.zeros.items()}
+        zeros = {
+            word: part._replace(table=moved(part.table, prec)) for word, part in found.zeros.items()
+        }
         return replace(found, grid=moved(found.grid, prec), zeros=zeros, steps=found.steps + 1)
 
     monkeypatch.setattr(Heyoka, "run", run)
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})  # one core, so that nothing escapes to a child
+    # one core, so that nothing escapes to a child
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
     return types
 
 
 @pytest.mark.parametrize(
     ("name", "share"),
     [
-        *one_in(2, [(name, (3, 40)[(i + k) % 2]) for i, name in enumerate(SHORT) for k in range(2)]),
+        *one_in(
+            2, [(name, (3, 40)[(i + k) % 2]) for i, name in enumerate(SHORT) for k in range(2)]
+        ),
         *(pytest.param(name, share, marks=pytest.mark.long) for name in LONG for share in (3, 40)),
     ],
 )
@@ -85,7 +93,9 @@ def test_noise_in_hardware_changes_no_byte_of_what_ships(monkeypatch, name, shar
     assert any(word.startswith("real(") for word in types)
 
 
-def test_the_noise_is_felt_where_hardware_computes_the_result_and_the_guard_writes_nothing(monkeypatch):
+def test_the_noise_is_felt_where_hardware_computes_the_result_and_the_guard_writes_nothing(
+    monkeypatch,
+):
     paris = load_scene("paris", ["run.t_end=120", "run.digits=12"])
     rough, proof = replace_level(paris, "computed"), replace_level(paris, "enclosed")
     before = [render(reference.solve(scene)) for scene in (rough, proof)]
@@ -111,12 +121,23 @@ def test_another_processor_gives_the_bytes_that_ship(tmp_path, size):
 
     made_again("weightless")  # what numba compiles for it is kept
     expected = [*swept(), *confirmed()]
-    folders = {"NUMBA_CACHE_DIR": tmp_path / "numba", "HOME": tmp_path, "XDG_CACHE_HOME": tmp_path / "cache"}
+    folders = {
+        "NUMBA_CACHE_DIR": tmp_path / "numba",
+        "HOME": tmp_path,
+        "XDG_CACHE_HOME": tmp_path / "cache",
+    }
     for function in size((sums, limbs, octet), ()):
         kept = Path(function.stats.cache_path).parent
         shutil.copytree(kept, tmp_path / "numba" / kept.name)
-    path = os.pathsep.join([str(Path(__file__).parents[2] / "helpers"), os.environ.get("PYTHONPATH", "")])
-    environment = os.environ | OTHER_PROCESSOR | {"PYTHONPATH": path} | {key: str(at) for key, at in folders.items()}
+    path = os.pathsep.join(
+        [str(Path(__file__).parents[2] / "helpers"), os.environ.get("PYTHONPATH", "")]
+    )
+    environment = (
+        os.environ
+        | OTHER_PROCESSOR
+        | {"PYTHONPATH": path}
+        | {key: str(at) for key, at in folders.items()}
+    )
     words = [sys.executable, "-c", SCRIPT, size(processor(), ""), *size(SHORT[1:], (*SHORT, *LONG))]
     done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -137,7 +158,14 @@ def test_no_number_type_of_the_hardware_stands_in_what_ships(name):
     manifest = manifest_of(name)
     for run in (manifest.run, *manifest.cross_checks):
         assert re.fullmatch(r"(real|limbs)\([0-9]+\)", run.number), run
-    assert set(manifest.generator) == {"foucault-data", "heyoka", "mpmath", "numba", "numpy", "python-flint"}
+    assert set(manifest.generator) == {
+        "foucault-data",
+        "heyoka",
+        "mpmath",
+        "numba",
+        "numpy",
+        "python-flint",
+    }
 
 
 def test_the_commands_of_what_ships_make_what_ships():
@@ -162,11 +190,20 @@ def test_the_commands_of_what_ships_make_what_ships():
 
 
 def test_options_are_read_as_they_are_written():
-    for making in (Making(), Making("heyoka", audit=False), Making("limbs", confirm="none"), Making(confirm="sampled")):
-        assert Making.of(f"foucault generate paris {making.options} --set site.latitude=0") == making
+    for making in (
+        Making(),
+        Making("heyoka", audit=False),
+        Making("limbs", confirm="none"),
+        Making(confirm="sampled"),
+    ):
+        assert (
+            Making.of(f"foucault generate paris {making.options} --set site.latitude=0") == making
+        )
 
 
-def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch, foucault, tmp_path):
+def test_without_numba_what_ships_is_refused_and_not_made_otherwise(
+    monkeypatch, foucault, tmp_path
+):
     monkeypatch.setitem(sys.modules, "numba", None)
     for words in (("conical",), ("conical", "--out", tmp_path / "conical")):
         status, out, err = foucault("generate", *words)
@@ -189,7 +226,9 @@ for k in range(20):
 def test_seals_that_several_processes_keep_at_once_are_all_kept(tmp_path):
     project = own_project(tmp_path / "own", [])
     words = [[sys.executable, "-c", KEEPING, str(k)] for k in range(3)]
-    processes = [subprocess.Popen(command, cwd=project, env=environment_of(project)) for command in words]
+    processes = [
+        subprocess.Popen(command, cwd=project, env=environment_of(project)) for command in words
+    ]
     assert [process.wait() for process in processes] == [0] * 3
     (only,) = (project / "data/golden").iterdir()
     kept = json.loads(only.read_text())

@@ -15,7 +15,8 @@ from reference.solver.choice import confirming_plan, first_prec
 from reference.solver.pilot import run_pilot
 
 SHIPPED = sorted(seals())
-THIRTY_DAYS = "paris_30d"  # heyoka would take half an hour for it, and a proof with its audit takes longer
+# heyoka would take half an hour for it, and a proof with its audit takes longer
+THIRTY_DAYS = "paris_30d"
 
 
 def test_paris_is_among_them_with_its_whole_day():
@@ -27,7 +28,8 @@ def test_paris_is_among_them_with_its_whole_day():
     assert paris.manifest.counts.transits == len(paris.transits["t"]) == 10514
 
 
-@pytest.mark.parametrize("name", one_in(8, SHIPPED))  # test_same_bytes loads each, which checks hash and seal
+# test_same_bytes loads each, which checks hash and seal
+@pytest.mark.parametrize("name", one_in(8, SHIPPED))
 def test_it_passes_every_check(name):
     assert problems_of(data_root() / "golden" / name) == []
 
@@ -57,9 +59,12 @@ ALWAYS = ("conical.binary64", "museum_gate.binary64", "straight_down.binary64")
 
 
 @pytest.mark.parametrize(
-    "name", [name if name in ALWAYS else pytest.param(name, marks=pytest.mark.long) for name in SHIPPED]
+    "name",
+    [name if name in ALWAYS else pytest.param(name, marks=pytest.mark.long) for name in SHIPPED],
 )
-def test_a_run_of_60_bits_more_and_mostly_in_another_formulation_lies_within_every_bound(name, tally):
+def test_a_run_of_60_bits_more_and_mostly_in_another_formulation_lies_within_every_bound(
+    name, tally
+):
     golden = reference.load(name)
     scene, times = golden.scene, golden.times
     pilot = run_pilot(scene.exact, times)
@@ -72,12 +77,18 @@ def test_a_run_of_60_bits_more_and_mostly_in_another_formulation_lies_within_eve
     parts = [(golden.grid, finer.grid, STATE)]
     if golden.manifest.counts.transits:
         assert finer.directions == [int(sign) for sign in golden.transits["direction"]]
-        bounded = ("t", "x", "y", "z", "vy") if golden.manifest.alone else ("t", "x", "y", "z", "vy", "ax")
+        bounded = (
+            ("t", "x", "y", "z", "vy")
+            if golden.manifest.alone
+            else ("t", "x", "y", "z", "vy", "ax")
+        )
         parts.append((golden.transits, finer.transits, bounded))
     numbers = 0
     for printed, computed, columns in parts:
         for column in columns:
-            rows = zip(printed.exact(column), computed.exact(column), printed.bound(column), strict=True)
+            rows = zip(
+                printed.exact(column), computed.exact(column), printed.bound(column), strict=True
+            )
             assert all(abs(ours - theirs) <= bound for ours, theirs, bound in rows), column
             numbers += len(printed.exact(column))
     tally(f"{name}: {numbers} numbers within their bounds of a run in {finer.plan.number}")

@@ -33,7 +33,10 @@ def wide(passing, tmp_path_factory):
     """The same motion with wide bounds on transits and passages, which a dataset without a proof may have."""
 
     def widened(bounds):
-        return {name: bound if name == "t" else f"{float(bound) * WIDER:.1e}" for name, bound in bounds.items()}
+        return {
+            name: bound if name == "t" else f"{float(bound) * WIDER:.1e}"
+            for name, bound in bounds.items()
+        }
 
     def widen(document):
         bounds = document["bounds"]
@@ -93,7 +96,13 @@ def corner_of_the_box(quantity, numbers, bounds):
 LAWS = [  # table, law, of which numbers it is, which one is changed, what verify says
     ("sections", distance_squared, POSITION, "z", "the bob is not at the distance"),
     ("transits", distance_squared, POSITION, "z", "the bob is not at the distance"),
-    ("sections", across_the_sphere, (*POSITION, *VELOCITY), "vz", "the velocity is not along the sphere"),
+    (
+        "sections",
+        across_the_sphere,
+        (*POSITION, *VELOCITY),
+        "vz",
+        "the velocity is not along the sphere",
+    ),
     ("sections", energy, ("x", "y", "vx", "vy"), "x", "the invariant h differs"),
     ("transits", energy_at_transit, ("x", "y", "vy"), "x", "the invariant h differs"),
     ("transits", acceleration_at_transit, ("x", "y", "vy"), "ax", "the equations of motion give"),
@@ -114,7 +123,9 @@ def test_a_row_may_break_a_law_by_what_its_bounds_allow_and_not_by_a_tenth_more(
     if changed == "ax":
         by = allowed + float(files.manifest.bound(kind, "ax"))
     else:
-        ahead = [number + 1e-6 * (name == changed) for name, number in zip(columns, numbers, strict=True)]
+        ahead = [
+            number + 1e-6 * (name == changed) for name, number in zip(columns, numbers, strict=True)
+        ]
         slope = (law(*ahead) - law(*numbers)) / 1e-6
         by = allowed / slope
 
@@ -142,7 +153,9 @@ def change_a_row(folder, kind, cells, place=1, **more):
 # ---------------------------------------------------------------------------------------------- bounds on times, digits
 
 
-@pytest.mark.parametrize(("bound", "found"), [("2.0e-06", False), ("2.2e-06", False), ("2.3e-06", True)])
+@pytest.mark.parametrize(
+    ("bound", "found"), [("2.0e-06", False), ("2.2e-06", False), ("2.3e-06", True)]
+)
 def test_the_bound_of_a_time_may_be_twice_what_the_runs_are_apart_rounded_up(swing, bound, found):
     def a_microsecond_apart(document):
         document["cross_checks"][0]["transit_s"] = "1.0e-06"
@@ -152,7 +165,8 @@ def test_the_bound_of_a_time_may_be_twice_what_the_runs_are_apart_rounded_up(swi
 
 
 @pytest.mark.parametrize(
-    ("digits", "bound", "found"), [(10, "1.3e-07", False), (10, "1.4e-07", True), (6, "1.0e-02", False)]
+    ("digits", "bound", "found"),
+    [(10, "1.3e-07", False), (10, "1.4e-07", True), (6, "1.0e-02", False)],
 )
 def test_the_bound_of_a_time_may_be_the_error_of_xdot_over_xddot_unless_xdot_may_graze_zero(
     tmp_path, digits, bound, found
@@ -179,7 +193,9 @@ def test_the_bound_of_a_time_is_at_least_half_a_unit_of_its_last_digit(swing, pa
 
 @pytest.mark.parametrize("kind, column", [("grid", "x"), ("transits", "t"), ("transits", "x")])
 @pytest.mark.parametrize("side", [-1, 1])
-def test_a_double_is_that_of_some_number_within_the_bound_of_the_decimal(passing, tmp_path, kind, column, side):
+def test_a_double_is_that_of_some_number_within_the_bound_of_the_decimal(
+    passing, tmp_path, kind, column, side
+):
     folder = Path(shutil.copytree(passing, tmp_path / passing.name))
     files = read_files(folder)
     plain, name = files.tables[f"{kind}.csv"], f"{kind}.binary64.csv"
@@ -207,16 +223,22 @@ def test_a_column_with_a_digit_less_than_asked_for_is_found(passing, tmp_path, c
     def say_so(document):
         document["decimals"]["grid"][column] -= 1
         wider = {column: f"{10 * float(document['bounds']['grid'][column]):.1e}"}
-        document["bounds"] = bounds_of(document["bounds"]["grid"] | wider, document["bounds"]["transits"]).model_dump()
+        document["bounds"] = bounds_of(
+            document["bounds"]["grid"] | wider, document["bounds"]["transits"]
+        ).model_dump()
 
     forge(folder, grid=cut, manifest=say_so)
-    assert problems_of(folder) == [f"manifest.json: decimals: {column} of grid has fewer than 15 digits"]
+    assert problems_of(folder) == [
+        f"manifest.json: decimals: {column} of grid has fewer than 15 digits"
+    ]
 
 
 # ------------------------------------------------------------------------------------------------------- proven limits
 
 
-@pytest.mark.parametrize("name", ["over_top", "conical", "damped", "fast_pole", "weightless", "overdamped", "hard"])
+@pytest.mark.parametrize(
+    "name", ["over_top", "conical", "damped", "fast_pole", "weightless", "overdamped", "hard"]
+)
 def test_no_rate_of_xddot_exceeds_its_bound(name):
     golden = reference.load(name)
     k = Start.of(golden.scene.exact, 53).k.converted(float)

@@ -68,7 +68,9 @@ def test_a_dataset_that_counts_no_transits_must_have_none(dataset):
     assert problems(dataset) == "manifest.json: 0 transits are not the motion's, which are 36"
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"schema_version": 3}', "nonsense", "", "\ufeff{}", '{"a":' * 100_000])
+@pytest.mark.parametrize(
+    "text", ["{", "[]", '{"schema_version": 3}', "nonsense", "", "\ufeff{}", '{"a":' * 100_000]
+)
 def test_a_broken_manifest_is_found(dataset, text):
     (dataset / MANIFEST).write_text(text)
     assert problems(dataset).startswith("manifest.json")
@@ -97,19 +99,32 @@ def level(document, word):
 
 
 def possible(document, *intervals):
-    document["possible"] = [{"from_s": str(a), "to_s": str(b), "parity": "even"} for a, b in intervals]
+    document["possible"] = [
+        {"from_s": str(a), "to_s": str(b), "parity": "even"} for a, b in intervals
+    ]
     document["counts"]["possible"], document["transits"] = len(intervals), "undecided intervals"
 
 
 def proved(document, kind, part):
     """A proof whose radii are a part of the bounds: a tenth, but of one kind."""
     level(document, "enclosed")
-    names = {"position_m": "position_radius_m", "velocity_m_s": "velocity_radius_m_s", "transit_s": "transit_radius_s"}
+    names = {
+        "position_m": "position_radius_m",
+        "velocity_m_s": "velocity_radius_m_s",
+        "transit_s": "transit_radius_s",
+    }
     radii = {
         name: f"{float(Fraction(document['bounds'][of]) * Fraction(part if of == kind else '0.1')):.3e}"
         for of, name in names.items()
     }
-    document["enclosure"] = {"method": "m", "prec": 1, "order": 1, "steps": 1, **radii, "agreement_bits": 1}
+    document["enclosure"] = {
+        "method": "m",
+        "prec": 1,
+        "order": 1,
+        "steps": 1,
+        **radii,
+        "agreement_bits": 1,
+    }
 
 
 def one_run_twice(document):
@@ -212,10 +227,14 @@ def test_what_keeps_to_the_same_rules_passes(dataset, change):
     assert not any(rule in problem for problem in problems_of(dataset) for rule in rules)
 
 
-COLUMNS = [*(("grid", name) for name in GRID_HEADER[1:]), *(("transits", name) for name in TRANSITS)]
+COLUMNS = [
+    *(("grid", name) for name in GRID_HEADER[1:]),
+    *(("transits", name) for name in TRANSITS),
+]
 
 
-ONLY_MOTION = [("transits", "t"), ("transits", "vy")]  # where the bob turns, h hardly depends on its speed
+# where the bob turns, h hardly depends on its speed
+ONLY_MOTION = [("transits", "t"), ("transits", "vy")]
 
 
 # of 30 and a million bounds one in each column, the other under --long
@@ -223,7 +242,9 @@ ONLY_MOTION = [("transits", "t"), ("transits", "vy")]  # where the bob turns, h 
     *((*pair, 3) for pair in COLUMNS),
     *one_in(2, ((*pair, bounds) for i, pair in enumerate(COLUMNS) for bounds in ((30, 10**6), (10**6, 30))[i % 2])),
 ])  # fmt: skip
-def test_a_number_that_is_off_by_three_bounds_or_more_is_found_in_every_column(dataset, kind, column, bounds):
+def test_a_number_that_is_off_by_three_bounds_or_more_is_found_in_every_column(
+    dataset, kind, column, bounds
+):
     files = read_files(dataset)
     row, side = (3, 1) if kind == "grid" else (7, -1)
     by = side * bounds * bound_of(files, kind, column, row)
@@ -262,7 +283,9 @@ def test_a_time_with_more_digits_than_it_needs_is_found(dataset):
         grid=lambda rows, _: [row.__setitem__(0, f"{row[0]}.0") for row in rows],
         manifest=lambda document: document["decimals"]["grid"].update(t=1),
     )
-    assert problems(dataset) == "manifest.json: decimals of the grid's t do not follow from the scene"
+    assert (
+        problems(dataset) == "manifest.json: decimals of the grid's t do not follow from the scene"
+    )
 
 
 @pytest.mark.parametrize("column", range(1, 7))
@@ -335,9 +358,15 @@ def drop(*which: int):
 
 @pytest.mark.parametrize(
     "rows, said",
-    [((4,), "transits 4 and 5 do not alternate"), ((6, 7), "contradicts"), ((3, 4), "are not the motion's")],
+    [
+        ((4,), "transits 4 and 5 do not alternate"),
+        ((6, 7), "contradicts"),
+        ((3, 4), "are not the motion's"),
+    ],
 )
-def test_transits_left_out_are_found_by_their_neighbours_by_the_grid_or_by_the_motion(dataset, rows, said):
+def test_transits_left_out_are_found_by_their_neighbours_by_the_grid_or_by_the_motion(
+    dataset, rows, said
+):
     """Transits 7 and 8 of Paris lie on both sides of t = 60 s, 4 and 5 between two grid times."""
     forge(dataset, transits=drop(*rows))
     assert said in problems(dataset)
@@ -351,7 +380,9 @@ ORDER = {
     "not in order": swap,
     "outside": lambda rows, _: rows[-1].__setitem__(1, "3" + rows[-1][1]),
     "does not count from 1": lambda rows, _: rows[2].__setitem__(0, "9"),
-    "do not alternate": lambda rows, _: rows[4].__setitem__(2, "-1" if rows[4][2] == "+1" else "+1"),
+    "do not alternate": lambda rows, _: rows[4].__setitem__(
+        2, "-1" if rows[4][2] == "+1" else "+1"
+    ),
 }
 
 
@@ -364,7 +395,9 @@ def test_transits_out_of_order_are_found(dataset, said):
 @pytest.mark.parametrize("direction", ["0", "+2", "-2", "2", "1", "+1.0", ""])
 def test_a_direction_is_plus_or_minus_one_and_nothing_else(dataset, direction):
     forge(dataset, transits=lambda rows, _: rows[4].__setitem__(2, direction))
-    assert f"row 5: direction = {direction!r} is not a number of this column's form" in problems(dataset)
+    assert f"row 5: direction = {direction!r} is not a number of this column's form" in problems(
+        dataset
+    )
 
 
 def test_two_transits_at_one_time_are_found(dataset):
@@ -377,7 +410,9 @@ def test_two_transits_at_one_time_are_found(dataset):
     one_in(3, [(1, "600"), (2, "600"), (3, "600"), (2, "3600"), (4, "600"), (8, "3600")]),
 )
 def test_few_digits_pass_their_own_checks(tmp_path, digits, span):
-    solution = reference.solve(reference.load_scene("paris"), t_end=span, digits=digits, level="confirmed")
+    solution = reference.solve(
+        reference.load_scene("paris"), t_end=span, digits=digits, level="confirmed"
+    )
     assert problems(write(solution, tmp_path / "paris")) == ""
 
 
@@ -388,7 +423,11 @@ def test_a_dataset_with_drag_may_lose_energy(tmp_path):
 
 @pytest.fixture(scope="module", params=["confirmed", "enclosed"])
 def swing(request):
-    scene = {"id": "swing", "release": {"angle": "5", "azimuth": "30"}, "run": {"t_end": "40", "grid_step": "20"}}
+    scene = {
+        "id": "swing",
+        "release": {"angle": "5", "azimuth": "30"},
+        "run": {"t_end": "40", "grid_step": "20"},
+    }
     return reference.solve(scene, level=request.param, digits=15, sections=["highest", "gate 30"])
 
 
@@ -402,8 +441,12 @@ def test_a_dataset_with_sections_is_written_read_and_verified(swing, written):
     assert verify(written).problems == []
     assert list(golden.sections) == list(swing.sections)
     for word, passages in swing.sections.items():
-        assert golden.sections[word].exact("t") == pytest.approx(passages.table.exact("t"), abs=1e-13)
-        assert golden.sections[word].exact("vy") == pytest.approx(passages.table.exact("vy"), abs=1e-13)
+        assert golden.sections[word].exact("t") == pytest.approx(
+            passages.table.exact("t"), abs=1e-13
+        )
+        assert golden.sections[word].exact("vy") == pytest.approx(
+            passages.table.exact("vy"), abs=1e-13
+        )
         ways = [f"{way:+d}" for way in passages.directions]
         assert golden.sections[word].decimals("direction") == ways
         assert golden.sections[word].decimals("k") == [str(k) for k in range(1, len(ways) + 1)]
@@ -430,18 +473,24 @@ def test_a_forged_passage_is_found(written, tmp_path, said, section, columns, pa
         changed = moved(row[i], Fraction(row[i]) * Fraction(part))
         row[i] = f"{int(changed):+d}" if columns == ["direction"] else changed
     text = "".join(",".join(row) + "\n" for row in (sheet.header, *rows))
-    seal(folder, json.loads((folder / MANIFEST).read_text()), read_files(folder).texts | {name: text})
+    seal(
+        folder, json.loads((folder / MANIFEST).read_text()), read_files(folder).texts | {name: text}
+    )
     assert said in problems(folder)
 
 
 def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(tmp_path, foucault):
     """Two rows and no transits, of a million seconds."""
-    scene = reference.load_scene("paris", ["run.t_end=1000000", "run.grid_step=1000000", "run.digits=4"])
+    scene = reference.load_scene(
+        "paris", ["run.t_end=1000000", "run.grid_step=1000000", "run.digits=4"]
+    )
     folder = write(reference.solve(scene, level="computed", transits=False), tmp_path / "paris")
     status, out, _ = foucault("verify", folder)
     ok, note = out.rstrip("\n").split("; ", 1)
     assert (status, ok) == (0, f"{folder}: ok")
-    assert note.startswith("not decided without --recompute: the motion (each row was checked by itself; ")
+    assert note.startswith(
+        "not decided without --recompute: the motion (each row was checked by itself; "
+    )
     assert re.search(r"integrating it again would take about [0-9]+ s\)$", note)
     (row,) = json.loads(foucault("verify", folder, "--json")[1])["rows"]
     assert row == {"path": str(folder), "ok": True, "problems": [], "notes": [note]}
@@ -449,11 +498,16 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(tmp_pa
 
 def test_where_two_runs_do_not_decide_the_motion_finer_ones_follow(tmp_path):
     """This swing loses more than ten digits, and the manifest names a run of too few bits for them."""
-    scene = reference.load_scene("near_inverted", ["id=inverted", "run.transits=false", "run.level=confirmed"])
+    scene = reference.load_scene(
+        "near_inverted", ["id=inverted", "run.transits=false", "run.level=confirmed"]
+    )
     folder = write(reference.solve(scene), tmp_path / "inverted")
     forge(folder, manifest=lambda document: document["run"].update(number="real(64)"))
     found = verify(folder)
-    assert (found.problems, found.undecided) == ([], ["not decided without --recompute: the cross-checks"])
+    assert (found.problems, found.undecided) == (
+        [],
+        ["not decided without --recompute: the cross-checks"],
+    )
 
 
 def test_recomputing_finds_what_no_physics_can_see_and_names_it_with_both_values(dataset, foucault):
@@ -471,9 +525,13 @@ def test_recomputing_finds_what_no_physics_can_see_and_names_it_with_both_values
 def test_recomputing_names_the_first_line_of_a_table_that_differs(dataset):
     text = read_files(dataset).texts["grid.csv"].splitlines()
     last = text[2][-1]
-    forge(dataset, grid=lambda rows, _: rows[1].__setitem__(-1, rows[1][-1][:-1] + str(int(last) ^ 1)))
+    forge(
+        dataset, grid=lambda rows, _: rows[1].__setitem__(-1, rows[1][-1][:-1] + str(int(last) ^ 1))
+    )
     wrong, _ = recompute(dataset)
-    assert wrong[0].startswith("grid.csv: 1 line differs; line 3 is ") and wrong[0].endswith(f"recomputed {text[2]}")
+    assert wrong[0].startswith("grid.csv: 1 line differs; line 3 is ") and wrong[0].endswith(
+        f"recomputed {text[2]}"
+    )
     document = json.loads((dataset / MANIFEST).read_text())
     del document["files"]["vectors.json"]
     seal(dataset, document, {})
@@ -486,7 +544,9 @@ def measured_otherwise(document):
 
 
 @pytest.mark.parametrize("level", ["computed", "confirmed"])
-def test_figures_that_another_machine_measures_otherwise_are_told_and_not_wrong(tmp_path, foucault, level):
+def test_figures_that_another_machine_measures_otherwise_are_told_and_not_wrong(
+    tmp_path, foucault, level
+):
     """Those of runs in double or long double, and of other versions of the libraries; a digit or a bound is neither."""
     solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level=level)
     dataset = write(solution, tmp_path / "paris")

@@ -59,7 +59,9 @@ def test_headers_and_digits_after_the_point_are_fixed(dataset):
     transits = (dataset / "transits.csv").read_text().splitlines()
     assert transits[0] == "k,t,direction,x,y,z,vy,ax,bound"
     for lines in (grid[1:], transits[1:]):
-        shapes = {tuple(len(text.partition(".")[2]) for text in line.split(",")[1:-1]) for line in lines}
+        shapes = {
+            tuple(len(text.partition(".")[2]) for text in line.split(",")[1:-1]) for line in lines
+        }
         assert len(shapes) == 1
 
 
@@ -78,24 +80,40 @@ def test_the_largest_number_of_a_column_has_the_digits_asked(dataset):
 def test_doubles_are_given_with_seventeen_digits_and_as_hexfloats(dataset):
     grid, doubles = columns_of(dataset, "grid.csv"), columns_of(dataset, "grid.binary64.csv")
     for name in grid:
-        for text, plain, hexadecimal in zip(grid[name], doubles[name], doubles[f"{name}_hex"], strict=True):
+        for text, plain, hexadecimal in zip(
+            grid[name], doubles[name], doubles[f"{name}_hex"], strict=True
+        ):
             assert float(Fraction(text)) == float(plain) == float.fromhex(hexadecimal)
             assert len(plain.lstrip("-").partition("e")[0]) == 18
 
 
-def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_that_are_printed(tmp_path):
+def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_that_are_printed(
+    tmp_path,
+):
     """Fifteen digits are printed and some twenty are known; the truth here is a run of forty."""
     scene = reference.load_scene("paris", ["run.t_end=600", "run.digits=15"])
-    solution, truth = reference.solve(scene), reference.solve(scene, digits=40, level="computed", engine="limbs")
+    solution, truth = (
+        reference.solve(scene),
+        reference.solve(scene, digits=40, level="computed", engine="limbs"),
+    )
     dataset = write(solution, tmp_path / "few")
     for kind, known, table in (
         ("grid", solution.grid, truth.grid),
         ("transits", solution.transits, truth.transits),
     ):
-        printed, doubles = columns_of(dataset, f"{kind}.csv"), columns_of(dataset, f"{kind}.binary64.csv")
+        printed, doubles = (
+            columns_of(dataset, f"{kind}.csv"),
+            columns_of(dataset, f"{kind}.binary64.csv"),
+        )
         nearest = {"doubles": 0, "decimals": 0, "all": 0}
         for name in table.columns:
-            cells = zip(printed[name], doubles[f"{name}_hex"], table.exact(name), known.bound(name), strict=True)
+            cells = zip(
+                printed[name],
+                doubles[f"{name}_hex"],
+                table.exact(name),
+                known.bound(name),
+                strict=True,
+            )
             for text, hexfloat, exact, bound in cells:
                 double = float.fromhex(hexfloat)
                 assert abs(Fraction(double) - exact) <= Fraction(math.ulp(double)) / 2 + bound
@@ -105,7 +123,9 @@ def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_th
         assert nearest["doubles"] > 0.95 * nearest["all"] > nearest["decimals"]
     states = json.loads((dataset / "vectors.json").read_text())["states"]
     hexfloats = columns_of(dataset, "grid.binary64.csv")["x_hex"]
-    assert [state["values"]["x"]["hexfloat"] for state in states] == [hexfloats[state["row"] - 1] for state in states]
+    assert [state["values"]["x"]["hexfloat"] for state in states] == [
+        hexfloats[state["row"] - 1] for state in states
+    ]
 
 
 @pytest.mark.parametrize("name", ["manifest.json", "vectors.json", "function.json"])
@@ -120,7 +140,9 @@ def test_the_documents_follow_their_published_schemas(dataset, name):
 
 
 def test_vectors_are_a_few_states_and_transits_with_bounds_taken_from_the_tables(tmp_path):
-    scene = reference.load_scene("paris", ["run.t_end=900", "run.grid_step=10", "run.digits=15", "run.level=computed"])
+    scene = reference.load_scene(
+        "paris", ["run.t_end=900", "run.grid_step=10", "run.digits=15", "run.level=computed"]
+    )
     dataset = write(reference.solve(scene), tmp_path / "vectors")
     found, tables = json.loads((dataset / "vectors.json").read_text()), read_files(dataset).tables
     assert len(found["states"]) == MOST == 16
@@ -128,7 +150,11 @@ def test_vectors_are_a_few_states_and_transits_with_bounds_taken_from_the_tables
     assert MOST - 2 <= few <= MOST
     assert found["states"][0]["flags"] == ["release"] and found["states"][-1]["flags"] == ["end"]
     last = len(tables["transits.csv"].rows)
-    assert [t["k"] for t in found["transits"] if "end" in t["flags"]] == [found["transits"][-1]["k"]] == [last]
+    assert (
+        [t["k"] for t in found["transits"] if "end" in t["flags"]]
+        == [found["transits"][-1]["k"]]
+        == [last]
+    )
     assert (found["states"][0]["row"], found["states"][-1]["row"]) == (1, 91)
     pair = [t["k"] for t in found["transits"] if "closest_pair" in t["flags"]]
     times = [Fraction(row[1]) for row in tables["transits.csv"].rows]
@@ -146,18 +172,25 @@ def test_vectors_are_a_few_states_and_transits_with_bounds_taken_from_the_tables
         row = tables["grid.csv"].rows[state["row"] - 1]
         assert [value["decimal"] for value in state["values"].values()] == list(row)
         assert (
-            Fraction(state["values"]["t"]["bound"]) == 0 < Fraction(state["values"]["x"]["bound"]) < Fraction(1, 10**14)
+            Fraction(state["values"]["t"]["bound"])
+            == 0
+            < Fraction(state["values"]["x"]["bound"])
+            < Fraction(1, 10**14)
         )
     for transit in found["transits"]:
         row = tables["transits.csv"].rows[transit["k"] - 1]
         assert (transit["direction"], transit["values"]["t"]["bound"]) == (int(row[2]), row[-1])
-        assert float.fromhex(transit["values"]["t"]["hexfloat"]) == pytest.approx(float(row[1]), rel=1e-15)
+        assert float.fromhex(transit["values"]["t"]["hexfloat"]) == pytest.approx(
+            float(row[1]), rel=1e-15
+        )
 
 
 def test_the_manifest_names_no_date_host_or_wall_time(dataset):
     text = (dataset / MANIFEST).read_text().lower()
     assert os.uname().nodename.lower() not in text
-    assert not any(word in text for word in ("date", "wall", "cpu", "host", str(Path.home()).lower()))
+    assert not any(
+        word in text for word in ("date", "wall", "cpu", "host", str(Path.home()).lower())
+    )
 
 
 def test_the_manifest_records_the_check_and_its_disagreement(dataset):
@@ -193,7 +226,9 @@ def test_a_dataset_is_read_back_as_arrays_strings_and_fractions(dataset, solutio
     assert abs(golden.exact("x")[3] - solution.grid.exact("x")[3]) <= Fraction(1, 2 * 10**25)
     assert len(golden.transits["t"]) == 36
     assert golden.scene == solution.scene
-    with pytest.raises(AttributeError, match=r"a Golden has no attribute 'transit'; it has transits, "):
+    with pytest.raises(
+        AttributeError, match=r"a Golden has no attribute 'transit'; it has transits, "
+    ):
         _ = golden.transit
     assert golden.level == solution.level == "confirmed"
     assert golden.exact("t") == solution.exact("t") == list(golden.times)
@@ -212,7 +247,11 @@ def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):
             assert all(abs(one - other) <= unit / 2 for one, other in exact)
             assert np.allclose(table[name], printed[name], rtol=1e-15, atol=float(unit))
             bounds = zip(table.bound(name), printed.bound(name), strict=True)
-            own = list(table.bound(name)) if name == "t" else [table.largest_bounds()[name]] * len(table)
+            own = (
+                list(table.bound(name))
+                if name == "t"
+                else [table.largest_bounds()[name]] * len(table)
+            )
             for (one, other), alone in zip(bounds, own, strict=True):
                 assert one + unit / 2 <= other <= (alone + unit / 2) * Fraction(11, 10)
     with pytest.raises(KeyError, match="'w' is no column"):
@@ -242,7 +281,9 @@ def test_the_tables_of_a_dataset_are_frames(dataset):
 def test_a_dataset_of_a_function_alone_says_that_it_lists_no_sections():
     golden = load("museum_gate.binary64")
     assert golden.scene.run.sections == ("gate 127",) and not golden.sections
-    with pytest.raises(InputError, match=r"got 'gate 127', .* there are: none.*sections=…\) finds any"):
+    with pytest.raises(
+        InputError, match=r"got 'gate 127', .* there are: none.*sections=…\) finds any"
+    ):
         golden.sections["gate 127"]
 
 
@@ -254,7 +295,11 @@ def test_a_table_without_rows_has_no_bounds_and_no_other_columns_for_that():
 
 
 def test_what_has_no_transits_says_why(tmp_path):
-    planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run={"t_end": "60", "digits": 10})
+    planar = make_scene(
+        site={"rotation_rate": "0"},
+        release={"x": "0", "y": "0.4"},
+        run={"t_end": "60", "digits": 10},
+    )
     path = write(reference.solve(planar), tmp_path / "planar")
     assert load(path).manifest.transits == "xdot is identically zero"
     off = write(reference.solve(planar, transits=False), tmp_path / "off")
@@ -347,7 +392,11 @@ def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch, tmp_pa
         return default_folder(scene, dataset_id(scene))
 
     assert folder(paris).parts[-3:] == ("data", "golden", "paris")
-    assert folder(paris.with_values(["inputs=binary64"])).parts[-3:] == ("data", "golden", "paris.binary64")
+    assert folder(paris.with_values(["inputs=binary64"])).parts[-3:] == (
+        "data",
+        "golden",
+        "paris.binary64",
+    )
     assert folder(paris.with_values(["run.t_end=60"])) == Path("golden/paris")
     assert folder(paris.with_values(["site.latitude=0"])) == Path("golden/paris+site.latitude=0")
     assert folder(make_scene("mine")) == Path("golden/mine")
@@ -359,7 +408,9 @@ def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch, tmp_pa
         assert folder(paris.model_copy(update=words)) == Path("golden/paris")
 
 
-def test_a_name_means_the_same_folder_to_those_who_write_and_those_who_read(monkeypatch, tmp_path, dataset, paris):
+def test_a_name_means_the_same_folder_to_those_who_write_and_those_who_read(
+    monkeypatch, tmp_path, dataset, paris
+):
     monkeypatch.chdir(tmp_path)
     assert golden_folder("paris") == Path("paris")  # a folder here
     dataset.rename(tmp_path / "elsewhere")
@@ -375,14 +426,20 @@ def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     paris = paris.with_values(["run.level=confirmed"])
     plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
     assert command(paris, "paris", "--engine heyoka") == f"{plain} --engine heyoka"
-    changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
+    changed = paris.with_values(
+        ["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"]
+    )
     sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
     text = command(changed, dataset_id(changed), "--engine heyoka")
     assert sets in text and text.startswith(plain)
     words = [word for word in text.split() if "=" in word]
     assert paris.with_values(words) == changed
-    assert command(make_scene("mine"), "mine", Making().options).startswith("foucault generate mine.toml --t-end")
-    assert command(make_scene("mine"), "mine+site.latitude=1", Making().options).endswith("--set site.latitude=1")
+    assert command(make_scene("mine"), "mine", Making().options).startswith(
+        "foucault generate mine.toml --t-end"
+    )
+    assert command(make_scene("mine"), "mine+site.latitude=1", Making().options).endswith(
+        "--set site.latitude=1"
+    )
 
 
 def test_what_is_printed_is_compared_with_what_was_proved_before_it_is_in_place(tmp_path):
@@ -391,7 +448,9 @@ def test_what_is_printed_is_compared_with_what_was_proved_before_it_is_in_place(
     scene = reference.load_scene("paris", ["run.t_end=20", "run.grid_step=10", "run.digits=12"])
     proved = reference.solve(scene, confirm="none", audit=False)
     folder = write(proved, tmp_path / "paris")
-    forge(folder, grid=lambda rows, _: rows[1].__setitem__(1, moved(rows[1][1], Fraction(1, 10**60))))
+    forge(
+        folder, grid=lambda rows, _: rows[1].__setitem__(1, moved(rows[1][1], Fraction(1, 10**60)))
+    )
     assert problems_of(folder) == []
     texts = {path.name: path.read_text() for path in folder.iterdir()}
     with pytest.raises(DatasetError, match="this is not what was proved"):
@@ -406,11 +465,17 @@ def test_a_number_that_its_error_reaches_gets_the_double_of_the_printed_one():
     assert nearest_doubles(table, sheet) == {"x": [0.9, 17 / 16, -17 / 16, -0.9]}
 
 
-LEVEL_CORD = {  # released near the horizontal: many transits with a level cord, where vz = -y vy/z means little
+# released near the horizontal: many transits with a level cord, where vz = -y vy/z means little
+LEVEL_CORD = {
     "id": "level_cord",
     "pendulum": {"length": "0.196"},
     "site": {"latitude": "1.228134", "gravity": "0.740342943", "altitude": "1142.5"},
-    "release": {"angle": "175", "azimuth": "-149.276", "angle_rate": "16", "azimuth_rate": "16.5758637"},
+    "release": {
+        "angle": "175",
+        "azimuth": "-149.276",
+        "angle_rate": "16",
+        "azimuth_rate": "16.5758637",
+    },
     "run": {"t_end": "80.72", "grid_step": "2.69"},
 }
 
@@ -418,6 +483,8 @@ LEVEL_CORD = {  # released near the horizontal: many transits with a level cord,
 @pytest.mark.parametrize("name", ["two_radians", "level_cord"])
 @pytest.mark.parametrize("digits", [2, 3, 4])
 def test_a_level_cord_is_no_reason_to_refuse_few_digits(name, digits, tmp_path):
-    scene = reference.parse_scene(LEVEL_CORD) if name == "level_cord" else reference.load_scene(name)
+    scene = (
+        reference.parse_scene(LEVEL_CORD) if name == "level_cord" else reference.load_scene(name)
+    )
     written = write(reference.solve(scene, digits=digits, level="computed"), tmp_path / name)
     assert verify(written).problems == []

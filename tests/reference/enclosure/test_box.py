@@ -4,7 +4,9 @@ import pytest
 from boxes import BOXES, box_of, check_runs, proof_of
 
 IN_EVERY_RUN = ("release", "fast and damped", "effective", "late", "tiny box", "turning table")
-NAMES = [name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long) for name in BOXES]
+NAMES = [
+    name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long) for name in BOXES
+]
 
 
 # the others with derivatives, where what is proved for a box is held as well

@@ -46,7 +46,8 @@ def test_a_whole_run_gives_its_states_and_zeros():
 def test_a_run_that_ends_early_gives_nothing():
     with pytest.raises(ArithmeticError, match="do not end with the run"):
         course(steps(PARIS, Fraction(10))).finish()
-    with pytest.raises(ArithmeticError, match="do not end with the run"):  # beyond the end, where no zero is asked
+    # beyond the end, where no zero is asked
+    with pytest.raises(ArithmeticError, match="do not end with the run"):
         course(steps(PARIS, Fraction(30))).finish()
 
 

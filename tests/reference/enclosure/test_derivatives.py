@@ -5,7 +5,18 @@ from functools import cache
 from random import Random
 
 import pytest
-from boxes import BOXES, box_of, check_runs, drawn, inputs_of, outside, proof_of, truth, widened, wrong_derivatives
+from boxes import (
+    BOXES,
+    box_of,
+    check_runs,
+    drawn,
+    inputs_of,
+    outside,
+    proof_of,
+    truth,
+    widened,
+    wrong_derivatives,
+)
 from enclosure_oracle import scene
 from flint import fmpz_poly
 
@@ -17,7 +28,9 @@ from reference.solver.proof_steps import Feed
 # by position with drag, by angles with all inputs at once, above the horizontal, with effective gravity,
 # with a rest position of each pendulum's own
 IN_EVERY_RUN = ("only drag", "fast", "very wide", "effective, fast", "turning table, all inputs")
-NAMES = [name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long) for name in BOXES]
+NAMES = [
+    name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long) for name in BOXES
+]
 
 
 def narrow_box_of(name):
@@ -80,11 +93,22 @@ def test_a_source_whose_steps_change_when_they_are_read_again_proves_nothing_fal
 
     def steps(bits, end):
         for step in Feed(inputs, (end,), "limbs", 1)(bits):
-            readings = [step.coefficients, turned_inside(step, Fraction(1, 10**9)), step.coefficients]
-            yield step._replace(rows=lambda readings=readings: readings.pop(0) if len(readings) > 1 else readings[0])
+            readings = [
+                step.coefficients,
+                turned_inside(step, Fraction(1, 10**9)),
+                step.coefficients,
+            ]
+            yield step._replace(
+                rows=lambda readings=readings: readings.pop(0) if len(readings) > 1 else readings[0]
+            )
 
     found = enclose_box(
-        box, times, steps, halves={"pendulum.length": Fraction(1, 10**12)}, derivatives=True, zeros=("xdot", "highest")
+        box,
+        times,
+        steps,
+        halves={"pendulum.length": Fraction(1, 10**12)},
+        derivatives=True,
+        zeros=("xdot", "highest"),
     )
     assert outside(found.proved, truth(inputs, times)) == []
 

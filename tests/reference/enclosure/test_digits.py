@@ -33,7 +33,11 @@ def table(rng: Random) -> np.ndarray:
             for k in range(orders if kind else min(orders, 3 * q + 2)):
                 largest = rng.choice((-MOST, MOST))
                 rows[i, q, k] = (
-                    largest if kind == 1 else rng.randint(-MOST, MOST) if kind != 2 else rng.choice((0, largest))
+                    largest
+                    if kind == 1
+                    else rng.randint(-MOST, MOST)
+                    if kind != 2
+                    else rng.choice((0, largest))
                 )
     if kind == 3:
         rows[3, 0] *= 3

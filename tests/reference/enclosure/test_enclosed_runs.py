@@ -51,7 +51,10 @@ def test_the_hard_scenes_lie_inside(name, size):
     inputs, end = HARD[name], Fraction(size(6, 60))
     proof = enclose(inputs, [end], radius=WANTED, approximant=recurrence(inputs))
     assert proof.method == {6: "radius", 60: "columns"}[end]
-    assert len(proof.proved.zeros["xdot"]) == {"steep": {60: 134}, "near inverted": {6: 5, 60: 53}}[name][end]
+    assert (
+        len(proof.proved.zeros["xdot"])
+        == {"steep": {60: 134}, "near inverted": {6: 5, 60: 53}}[name][end]
+    )
     assert {t.kind for t in proof.proved.zeros["xdot"]} == {"one"}
     exact = steep_truth(inputs, end, 400)
     assert all(contains(i, x) for i, x in zip(proof.proved.states[0], exact, strict=True))
@@ -60,7 +63,10 @@ def test_the_hard_scenes_lie_inside(name, size):
 def test_what_cannot_be_had_is_refused_with_the_width_reached():
     with pytest.raises(UnreachableError, match="bits"):
         enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**900), approximant=recurrence(PARIS))
-    too_coarse = lambda _bits: pair(Recurrence(SceneBalls(PARIS, 160), 96, 48).chain(Fraction(1, 2)))  # noqa: E731
+
+    def too_coarse(_bits):
+        return pair(Recurrence(SceneBalls(PARIS, 160), 96, 48).chain(Fraction(1, 2)))
+
     with pytest.raises(UnreachableError, match=r"96 bits gave .*e-\d+ m"):
         enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=too_coarse)
 
@@ -68,7 +74,9 @@ def test_what_cannot_be_had_is_refused_with_the_width_reached():
 def test_an_approximant_that_ends_too_early_is_refused():
     chain = Recurrence(SceneBalls(PARIS, 256), 192, 96).chain(Fraction(1, 2))
     with pytest.raises(UnreachableError, match="ends before"):
-        enclose(PARIS, [Fraction(600)], radius=WANTED, approximant=lambda _bits: pair(islice(chain, 6)))
+        enclose(
+            PARIS, [Fraction(600)], radius=WANTED, approximant=lambda _bits: pair(islice(chain, 6))
+        )
     with pytest.raises(UnreachableError, match="empty"):
         enclose(PARIS, [Fraction(600)], radius=WANTED, approximant=lambda _bits: [])
 
@@ -79,7 +87,11 @@ def test_an_approximant_too_coarse_is_requested_again_with_more_bits():
     def source(bits):
         requested.append(bits)
         delivered = max(bits - 60 if len(requested) == 1 else bits, 96)
-        return pair(Recurrence(SceneBalls(PARIS, delivered + 64), delivered, delivered // 2).chain(Fraction(1, 2)))
+        return pair(
+            Recurrence(SceneBalls(PARIS, delivered + 64), delivered, delivered // 2).chain(
+                Fraction(1, 2)
+            )
+        )
 
     proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=source)
     assert len(requested) == 2
@@ -98,7 +110,9 @@ def test_coefficients_of_an_integrator_are_an_approximant():
         rows.append(TaylorStep(e.centre, e.h, e.low, e.high, bits, (x, y, z), LOCAL))
         if e.centre > 60:
             break
-    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=lambda _bits: pair(turned(PARIS, rows)))
+    proof = enclose(
+        PARIS, [Fraction(60)], radius=WANTED, approximant=lambda _bits: pair(turned(PARIS, rows))
+    )
     (exact,) = truth(PARIS, [Fraction(60)])
     assert all(contains(i, x) for i, x in zip(proof.proved.states[0], exact, strict=True))
 
@@ -107,7 +121,9 @@ def test_uneven_chains_are_covered_without_gap():
     lengths = [Fraction(n, 32) for n in (32, 33, 40, 39, 20, 21, 60, 1, 2, 30)]
     t, chain = Fraction(0), []
     for h in lengths:
-        chain.append(TaylorStep(t, h, Fraction(0), Fraction(1), 64, tuple([1, 2, 3] for _ in range(4))))
+        chain.append(
+            TaylorStep(t, h, Fraction(0), Fraction(1), 64, tuple([1, 2, 3] for _ in range(4)))
+        )
         t += h
     got = list(pair(chain))
     ends = [(s.centre + s.h * s.low, s.centre + s.h * s.high) for s in got]
@@ -132,7 +148,9 @@ def test_times_must_increase_from_zero(times):
 
 def test_progress_ends_at_one():
     parts = []
-    enclose(PARIS, [Fraction(100)], radius=WANTED, approximant=recurrence(PARIS), progress=parts.append)
+    enclose(
+        PARIS, [Fraction(100)], radius=WANTED, approximant=recurrence(PARIS), progress=parts.append
+    )
     assert parts == sorted(parts)
     assert parts[-1] == 1
 

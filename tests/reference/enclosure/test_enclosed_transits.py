@@ -42,7 +42,9 @@ def events(inputs, end):
     """Zeros of xdot after t = 0, by scipy."""
     rates, first = doubles(inputs)
     zero = lambda _t, s: s[3]  # noqa: E731
-    run = solve_ivp(rates, (0, float(end)), first, method="DOP853", rtol=1e-12, atol=1e-13, events=zero)
+    run = solve_ivp(
+        rates, (0, float(end)), first, method="DOP853", rtol=1e-12, atol=1e-13, events=zero
+    )
     return [t for t in run.t_events[0] if t > 1e-6]
 
 
@@ -63,12 +65,21 @@ CASES = {
 
 
 # in every run: rest and motion, drag, two swings that are far from small
-IN_EVERY_RUN = ("paris", "moving, a transit in the first leaf", "drag, from rest in the meridian", "steep")
+IN_EVERY_RUN = (
+    "paris",
+    "moving, a transit in the first leaf",
+    "drag, from rest in the meridian",
+    "steep",
+)
 IN_EVERY_RUN += ("near inverted",)
 
 
 @pytest.mark.parametrize(
-    "name", [name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long) for name in CASES]
+    "name",
+    [
+        name if name in IN_EVERY_RUN else pytest.param(name, marks=pytest.mark.long)
+        for name in CASES
+    ],
 )
 def test_transits_are_those_of_an_event_finder(name):
     inputs = CASES[name]
@@ -76,7 +87,9 @@ def test_transits_are_those_of_an_event_finder(name):
     proof = prove(inputs, [end], Fraction(1, 10**20))
     expected = events(inputs, end)
     assert [t.kind for t in proof.proved.zeros["xdot"]] == ["one"] * len(expected)
-    assert np.allclose([float(middle(t.t)) for t in proof.proved.zeros["xdot"]], expected, rtol=0, atol=1e-6)
+    assert np.allclose(
+        [float(middle(t.t)) for t in proof.proved.zeros["xdot"]], expected, rtol=0, atol=1e-6
+    )
     for before, after in pairwise(proof.proved.zeros["xdot"]):
         assert before.direction == -after.direction
         assert before.t.high < after.t.low
@@ -107,7 +120,9 @@ def test_a_transit_on_a_step_boundary_is_found_once(parts):
         at = (cut - s.centre) / s.h
         if s.low < at < s.high:
             inner = [s.low + (at - s.low) * Fraction(i, parts) for i in range(parts + 1)]
-            out += [s._replace(low=a, high=b) for a, b in zip(inner, [*inner[1:], s.high], strict=True)]
+            out += [
+                s._replace(low=a, high=b) for a, b in zip(inner, [*inner[1:], s.high], strict=True)
+            ]
         else:
             out.append(s)
     found = scanned(PARIS, out)
@@ -146,7 +161,9 @@ def released_in_the_meridian(rng):
     drag = rng.choice(("0", f"{10 ** rng.uniform(-3, 1):.9f}"))
     angles = (f"{rng.uniform(1, 179):.6f}", rng.choice(("90", "-90")), "0", "0")
     place = {"latitude": f"{rng.uniform(-90, 90):.6f}", "length": f"{10 ** rng.uniform(-1, 2):.6f}"}
-    return scene(**place, angles=angles, rotation_rate=f"{rate:.9f}", drag=drag, equatorial_radius="100")
+    return scene(
+        **place, angles=angles, rotation_rate=f"{rate:.9f}", drag=drag, equatorial_radius="100"
+    )
 
 
 @pytest.mark.parametrize("seed", one_in(10, range(20)))
@@ -177,7 +194,9 @@ def test_the_tension_follows_from_the_angular_momentum():
     v -= along(v, r)[:, None] * r
     force = c - np.cross(turn, np.cross(turn, r)) - 2 * np.cross(turn, v) - 0.3 * v
     momentum = np.cross(r, v + np.cross(turn, r))
-    assert along(v, v) + along(r, force) == pytest.approx(along(momentum, momentum) + along(r, c), abs=1e-12)
+    assert along(v, v) + along(r, force) == pytest.approx(
+        along(momentum, momentum) + along(r, c), abs=1e-12
+    )
 
 
 def parabola(delta, u):
@@ -204,14 +223,18 @@ def test_two_zeros_that_are_close_are_told_apart():
     found = parabola(-Fraction(1, 10**6), "1e-40")
     assert [t.kind for t in found] == ["one", "one"]
     assert [t.direction for t in found] == [-1, 1]
-    for t, root in zip(found, (Fraction(4, 3) - Fraction(1, 1000), Fraction(4, 3) + Fraction(1, 1000)), strict=True):
+    for t, root in zip(
+        found, (Fraction(4, 3) - Fraction(1, 1000), Fraction(4, 3) + Fraction(1, 1000)), strict=True
+    ):
         assert abs(middle(t.t) - root) < Fraction(1, 10**35)
 
 
 def test_a_step_shorter_than_the_precision_is_refused():
     balls, third = SceneBalls(scene(), 128), Fraction(1, 3)
     row = [0, 1 << 128]
-    step = TaylorStep(-third, Fraction(1), third, third + Fraction(1, 2**200), 128, (row, *[[0]] * 3))
+    step = TaylorStep(
+        -third, Fraction(1), third, third + Fraction(1, 2**200), 128, (row, *[[0]] * 3)
+    )
     with pytest.raises(ArithmeticError, match="too short"):
         Scan(balls).advance(Covered(Piece(balls, step), Tube(arb(0), arb(0), arb(0))))
 
@@ -229,7 +252,10 @@ def test_ends_move_only_to_signs_that_are_those_of_the_sides(low, high, sides, f
     with ctx.workprec(balls.prec):
         row = [0, 0, 1 << 127]  # xdot = s
         piece = Piece(balls, unit_step(128, (row, *[[0]] * 3)))
-        slope, (low, high) = Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3))), (ball(Fraction(q)) for q in (low, high))
+        slope, (low, high) = (
+            Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3))),
+            (ball(Fraction(q)) for q in (low, high)),
+        )
         found = narrowed([Leaf(1, low, high, slope)], 1 + low, 1 + high, sides)
         for end, old, moved in zip((found.lower(), found.upper()), (low, high), far, strict=True):
             assert abs(end - 1 - (0 if moved else old)) < ROUNDED

@@ -48,7 +48,10 @@ def anything(rng):
     )  # fmt: skip
     bits = rng.choice([4, 10, 64])
     scale = [10 ** rng.uniform(-4, 2) for _ in range(4)]
-    rows = [[round(2**bits * rng.choice((0, 1, -1)) * x) for x in scale[: rng.randint(1, 4)]] for _ in range(3)]
+    rows = [
+        [round(2**bits * rng.choice((0, 1, -1)) * x) for x in scale[: rng.randint(1, 4)]]
+        for _ in range(3)
+    ]
     if rng.random() < 0.7:  # on the sphere at s = 0
         for i, row in enumerate(rows):
             row[0] = 2**bits if i == rng.randrange(3) else 0
@@ -60,7 +63,9 @@ def of_digits(rng):
     """The same, the polynomials as digits: few orders, often no more than one, some of them all zero."""
     balls, count, orders = anything(rng).balls, rng.randint(2, 4), rng.randint(1, 3)
     size = (4, count, orders)
-    table = np.reshape([rng.choice((0, 1)) * rng.randint(-(2**21), 2**21) for _ in range(np.prod(size))], size)
+    table = np.reshape(
+        [rng.choice((0, 1)) * rng.randint(-(2**21), 2**21) for _ in range(np.prod(size))], size
+    )
     if rng.random() < 0.3:
         table[:3, :, rng.randrange(orders) :] = 0
     bits = DIGIT_BITS * count - 1
@@ -69,7 +74,9 @@ def of_digits(rng):
 
 def defects(piece, s):
     """d1, d2, p, K, τ, d1' from their definitions in (1), not from Lemma 0."""
-    rows = [[Fraction(int(c), 1 << piece.step.bits) for c in row] for row in piece.step.coefficients]
+    rows = [
+        [Fraction(int(c), 1 << piece.step.bits) for c in row] for row in piece.step.coefficients
+    ]
     k = piece.k
     W, c, g = [exact(x) for x in k.omega], [exact(x) for x in k.c], exact(k.drag)
     p, p1, p2 = ([poly(row, s, n) for row in rows[:3]] for n in range(3))
@@ -134,7 +141,10 @@ def moving(rng):
 
 def in_doubles(piece):
     """The constants and sizes of a step, as they stand in THEOREM.md."""
-    k = {name: float(getattr(piece.k, name)) for name in ("c_size", "omega_size", "drag_size", "w", "speed")}
+    k = {
+        name: float(getattr(piece.k, name))
+        for name in ("c_size", "omega_size", "drag_size", "w", "speed")
+    }
     k |= {name: float(getattr(piece.k, name)) for name in ("h", "below", "above")}
     return Row(k), Row({name: float(x) for name, x in piece.sizes._asdict().items()})
 
@@ -182,7 +192,11 @@ def test_one_radius_is_carried_as_theorem_c_says():
         eta = before + np.linalg.norm(jump[:3]) + np.linalg.norm(jump[3:]) / (K.w / K.h)
         source, ck = D.d2 / K.w + D.d1, K.c_size + D.k**2
         far = np.exp(span * section_3(K, D.p)) * (eta * (1 + D.k / K.w) + span * source)
-        rate = max(K.below, K.above + (K.speed + K.w * far) ** 2) + ck * far + K.drag_size * K.omega_size * D.p
+        rate = (
+            max(K.below, K.above + (K.speed + K.w * far) ** 2)
+            + ck * far
+            + K.drag_size * K.omega_size * D.p
+        )
         end = (eta + span * (ck * D.tau / (2 * K.w) + source)) * np.exp(span * rate / (2 * K.w))
         if end >= 2:
             too_wide += 1
@@ -201,14 +215,24 @@ def test_six_columns_are_carried_as_theorem_e_says():
     while bounded < 50:
         piece = moving(rng)
         K, D = in_doubles(piece)
-        bound, step, span = Columns(piece.balls), piece.step, float(piece.step.high - piece.step.low)
+        bound, step, span = (
+            Columns(piece.balls),
+            piece.step,
+            float(piece.step.high - piece.step.low),
+        )
         rest, z, before = ([10 ** rng.uniform(-3, -2) for _ in range(n)] for n in (6, 6, 36))
         bound.rest, bound.z = [arb(x) for x in rest], [arb(x) for x in z]
         before, jump = np.array(before).reshape(6, 6), jumped(rng, piece, bound)
         bound.carried = arb_mat(6, 6, [arb(x) for x in before.flat])
-        whole = [[[rng.randint(-(2**FINE), 2**FINE) for _ in range(3)] for _ in range(6)] for _ in range(6)]
+        whole = [
+            [[rng.randint(-(2**FINE), 2**FINE) for _ in range(3)] for _ in range(6)]
+            for _ in range(6)
+        ]
         rows = np.array(
-            [[float(x) for x in row] for row in residuals(piece, [[fmpz_poly(f) for f in c] for c in whole])]
+            [
+                [float(x) for x in row]
+                for row in residuals(piece, [[fmpz_poly(f) for f in c] for c in whole])
+            ]
         )
         unit = np.repeat([1, 1 / K.h], 3)[:, None] / 2.0**FINE
         start, end = (
@@ -228,8 +252,12 @@ def test_six_columns_are_carried_as_theorem_e_says():
         bounded += 1
         got = bound.advance(piece, whole).tube
         assert np.allclose([float(x) for x in bound.z], box, rtol=1e-6)
-        assert np.allclose([float(x) for x in bound.rest], [left] * 3 + [left * K.w / K.h] * 3, rtol=1e-6)
-        assert np.allclose(np.array([[float(bound.carried[i, j]) for j in range(6)] for i in range(6)]), end)
+        assert np.allclose(
+            [float(x) for x in bound.rest], [left] * 3 + [left * K.w / K.h] * 3, rtol=1e-6
+        )
+        assert np.allclose(
+            np.array([[float(bound.carried[i, j]) for j in range(6)] for i in range(6)]), end
+        )
         assert same(got, expected)
 
 
@@ -244,10 +272,14 @@ def test_what_holds_for_the_whole_run_follows_from_the_energy():
         S = turn + np.sqrt(turn**2 + 2 * (J + pull))
         scale = w0**2 + turn**2 + S**2
         got = [float(x) for x in (balls.speed**2, balls.below, balls.above)]
-        assert np.allclose(got, [S**2, w0**2 + turn**2 / 2 + J, pull - w0**2], rtol=0, atol=1e-9 * scale)
+        assert np.allclose(
+            got, [S**2, w0**2 + turn**2 / 2 + J, pull - w0**2], rtol=0, atol=1e-9 * scale
+        )
         got = [float(x) for x in (k.w, k.speed, k.below, k.above, k.drag, k.omega[2], *k.c)]
         full = [w0, balls.speed, balls.below, balls.above, balls.drag, balls.omega[2], *balls.c]
-        assert np.allclose(got, [float(x) / 4**n for x, n in zip(full, (1, 1, 2, 2, 1, 1, 2, 2, 2), strict=True)])
+        assert np.allclose(
+            got, [float(x) / 4**n for x, n in zip(full, (1, 1, 2, 2, 1, 1, 2, 2, 2), strict=True)]
+        )
 
 
 def test_residuals_bound_what_their_names_say_and_nearly_reach_it(size):
@@ -255,15 +287,31 @@ def test_residuals_bound_what_their_names_say_and_nearly_reach_it(size):
     for _ in range(size(120, 300)):
         piece = anything(rng)
         scale = [10 ** rng.uniform(-5, 2) for _ in range(6)]
-        column = [[round(2**FINE * x * rng.choice((0, 1, -1))) for _ in range(rng.randint(1, 2))] for x in scale]
+        column = [
+            [round(2**FINE * x * rng.choice((0, 1, -1))) for _ in range(rng.randint(1, 2))]
+            for x in scale
+        ]
         (bounds,) = residuals(piece, [[fmpz_poly(f) for f in column]])
-        W, c, g = [exact(x) for x in piece.k.omega], [exact(x) for x in piece.k.c], exact(piece.k.drag)
+        W, c, g = (
+            [exact(x) for x in piece.k.omega],
+            [exact(x) for x in piece.k.c],
+            exact(piece.k.drag),
+        )
         for s in (Fraction(-1), Fraction(0), Fraction(1)):
             _, _, p, K, _, _ = defects(piece, s)
             whole = [[Fraction(x, 1 << FINE) for x in f] for f in column]
-            (P, Q), (P1, Q1) = ([[poly(f, s, n) for f in part] for part in (whole[:3], whole[3:])] for n in (0, 1))
+            (P, Q), (P1, Q1) = (
+                [[poly(f, s, n) for f in part] for part in (whole[:3], whole[3:])] for n in (0, 1)
+            )
             R1 = lin((1, P1), (-1, cross(Q, p)), (-1, cross(lin((1, K), (-1, W)), P)))
-            R2 = lin((1, Q1), (-1, cross(P, c)), (-1, cross(Q, W)), (g, Q), (g * dot(W, P), p), (g * dot(W, p), P))
+            R2 = lin(
+                (1, Q1),
+                (-1, cross(P, c)),
+                (-1, cross(Q, W)),
+                (g, Q),
+                (g * dot(W, P), p),
+                (g * dot(W, p), P),
+            )
             for i, (a, bound) in enumerate(zip((P, Q, R1, R2), bounds, strict=True)):
                 x = length(a)
                 assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9), i
@@ -279,4 +327,6 @@ def test_a_cut_polynomial_contains_the_whole():
             for s in (Fraction(-1), Fraction(-7, 8), Fraction(1)):
                 value = sum(c * s**k for k, c in enumerate(row))
                 with ctx.workprec(400):
-                    assert short(arb(s.numerator) / s.denominator).contains(arb(value.numerator) / value.denominator)
+                    assert short(arb(s.numerator) / s.denominator).contains(
+                        arb(value.numerator) / value.denominator
+                    )

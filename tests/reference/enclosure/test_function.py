@@ -23,7 +23,14 @@ from flint import arb, arb_mat, ctx
 from reference.dataset.golden import load
 from reference.enclosure.fit import FunctionFit, on_doubles
 from reference.enclosure.trusted.course import Course
-from reference.enclosure.trusted.function import CUT, Following, basis, check_function, on_sphere, weights
+from reference.enclosure.trusted.function import (
+    CUT,
+    Following,
+    basis,
+    check_function,
+    on_sphere,
+    weights,
+)
 from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.columns import STATE
 from reference.numbers.function import GoldenFunction
@@ -56,14 +63,18 @@ def short(name, end):
 
 
 @pytest.mark.parametrize(
-    ("name", "end", "engine"), SCENES + [pytest.param(*case, marks=pytest.mark.long) for case in MORE_SCENES]
+    ("name", "end", "engine"),
+    SCENES + [pytest.param(*case, marks=pytest.mark.long) for case in MORE_SCENES],
 )
 def test_no_time_is_outside_of_the_bound(name, end, engine, size):
     scene = short(name, end)
     function = evaluator(proved_function(scene, engine=engine))
     assert function.times[0] == 0
     assert function.times[-1] == float(end)
-    off, truth = errors(scene, function, random_times(function, size(1000, 100_000))), TRUTH * float(scene.exact.length)
+    off, truth = (
+        errors(scene, function, random_times(function, size(1000, 100_000))),
+        TRUTH * float(scene.exact.length),
+    )
     for component in STATE:
         assert off[component].max() <= function.bound[component] + truth, component
     at = function.at(random_times(function, 1000))
@@ -78,15 +89,23 @@ def test_no_time_is_outside_of_the_bound_of_a_function_that_ships(name, size, ta
     golden = load(name)
     function, length = golden.function, float(golden.scene.exact.length)
     times = random_times(function, size(500, 1_000_000 // len(SHIPPED) + 1))
-    bits = max(TRUTH_BITS, *(int(text) for text in re.findall(r"\((\d+)\)", golden.manifest.run.number)))
+    bits = max(
+        TRUTH_BITS, *(int(text) for text in re.findall(r"\((\d+)\)", golden.manifest.run.number))
+    )
     off = errors(golden.scene, function, times, bits)
     for component in STATE:
         assert off[component].max() <= function.bound[component] + TRUTH * length, component
     at = function.at(times)
     swing, fastest = float(np.hypot(at.x, at.y).max()) or length, float(np.abs(at.vx).max()) or 1.0
-    x, z, vx = function.bound["x"] / swing, function.bound["z"] / np.spacing(length), function.bound["vx"] / fastest
+    x, z, vx = (
+        function.bound["x"] / swing,
+        function.bound["z"] / np.spacing(length),
+        function.bound["vx"] / fastest,
+    )
     megabytes = function.coefficients.nbytes / 1e6
-    tally(f"{name}: {len(times)} times, x {x:.1e} of the swing, z {z:.2g} ulp, vx {vx:.1e}, {megabytes:.3f} MB")
+    tally(
+        f"{name}: {len(times)} times, x {x:.1e} of the swing, z {z:.2g} ulp, vx {vx:.1e}, {megabytes:.3f} MB"
+    )
 
 
 @pytest.mark.parametrize("name", one_in(10, SHIPPED))
@@ -122,7 +141,9 @@ class Driver:
 
     def __init__(self, scene, bits=BITS, order=64):
         self.inputs = scene.exact
-        self.course = Course(SceneBalls(self.inputs, bits + 64), self.inputs.grid, columns=False, words=())
+        self.course = Course(
+            SceneBalls(self.inputs, bits + 64), self.inputs.grid, columns=False, words=()
+        )
         self.fit = FunctionFit(self.course)
         self.proposed = list(on_doubles(steps(self.inputs, self.inputs.grid[-1], bits, order)))
 
@@ -307,7 +328,14 @@ def clenshaw(c, begin, end, t, multiply):
 def exactly(c, begin, end, t):
     begin, end, t = map(Fraction, (begin, end, t))
     u = (2 * t - begin - end) / (end - begin)
-    value, rate, before, now, b, n = Fraction(c[0]), Fraction(0), Fraction(1), u, Fraction(0), Fraction(1)
+    value, rate, before, now, b, n = (
+        Fraction(c[0]),
+        Fraction(0),
+        Fraction(1),
+        u,
+        Fraction(0),
+        Fraction(1),
+    )
     for k in range(1, len(c)):
         value, rate = value + Fraction(c[k]) * now, rate + k * Fraction(c[k]) * n
         before, now, b, n = now, 2 * u * now - before, n, 2 * u * n - b
@@ -333,7 +361,10 @@ def test_what_is_evaluated_in_doubles_is_within_the_bound_of_its_rounding(multip
         limits = float(cost[0, 0]), float(cost[0, 2] * float(2 / width))
         for t in (begin, end, np.nextafter(end, 0), *rng.uniform(begin, end, 5)):
             both = zip(
-                clenshaw(c, begin, end, float(t), multiply), exactly(c, begin, end, float(t)), limits, strict=True
+                clenshaw(c, begin, end, float(t), multiply),
+                exactly(c, begin, end, float(t)),
+                limits,
+                strict=True,
             )
             ratios = [abs(float(Fraction(value) - truth)) / limit for value, truth, limit in both]
             assert max(ratios) <= 1
@@ -359,7 +390,9 @@ def test_z_from_the_sphere_is_within_its_bound():
     balls = SceneBalls(inputs_of(length="1.3"), 64)
     square = rounded(length**2)
     for _ in range(400):
-        d, e, wide, fast = (float(x) for x in rng.uniform(0, 1, 4) * [10.0 ** -rng.integers(2, 17), 1e-3, 0.8, 2])
+        d, e, wide, fast = (
+            float(x) for x in rng.uniform(0, 1, 4) * [10.0 ** -rng.integers(2, 17), 1e-3, 0.8, 2]
+        )
         turn, way = rng.uniform(0, 2 * np.pi, 2)
         x, y = (Fraction(float(wide * f(turn))) for f in (np.cos, np.sin))
         vx, vy = (Fraction(float(fast * f(way))) for f in (np.cos, np.sin))
@@ -374,7 +407,10 @@ def test_z_from_the_sphere_is_within_its_bound():
             arb(abs(float(vy))),
         ]
         z_bound, _, vz_bound = on_sphere(balls, arb(square), *most)
-        X, Y, VX, VY = (float(q) + s * rng.choice([-1, 1, 0.3]) * 0.999 for q, s in ((x, d), (y, d), (vx, e), (vy, e)))
+        X, Y, VX, VY = (
+            float(q) + s * rng.choice([-1, 1, 0.3]) * 0.999
+            for q, s in ((x, d), (y, d), (vx, e), (vy, e))
+        )
         z = -np.sqrt(square - (X * X + Y * Y))
         vz = -(X * VX + Y * VY) / z
         with ctx.workprec(200):
@@ -389,7 +425,12 @@ def test_z_from_the_sphere_is_within_its_bound():
 
 def test_z_has_a_series_unless_the_bob_stays_deep():
     assert proved_function(short("paris", "60")).function.facts["components"] == ["x", "y"]
-    steep = make_scene("steep", pendulum={"length": "1"}, release={"angle": "40", "azimuth": "10"}, run={"t_end": "10"})
+    steep = make_scene(
+        "steep",
+        pendulum={"length": "1"},
+        release={"angle": "40", "azimuth": "10"},
+        run={"t_end": "10"},
+    )
     assert proved_function(steep).function.facts["components"] == ["x", "y", "z"]
 
 
@@ -403,7 +444,10 @@ def test_without_a_series_of_z_a_high_bob_is_refused():
 def test_files_that_state_something_else_are_refused():
     proof = proved_function(short("paris", "60"))
     made, proved = proof.function, proof.proved
-    said = {**made.facts, "bounds": {name: str(float(bound) * 1.01) for name, bound in made.bounds.items()}}
+    said = {
+        **made.facts,
+        "bounds": {name: str(float(bound) * 1.01) for name, bound in made.bounds.items()},
+    }
     check_function(json.dumps(said), made.data, made, proved)
 
     def refused(said, data=made.data, function=made, proved=proved):

@@ -26,13 +26,21 @@ def at(request):
     H = cross(r, any_vector(rng))
     names = {n: any_vector(rng) for n in ("c", "W", "p", "p1", "p2", "d1", "d2")}
     names["K"] = cross(names["p"], any_vector(rng))
-    return {"r": r, "H": H, "g": Fraction(rng.randint(0, 20), 7), "w": Fraction(rng.randint(1, 30), 7), **names}
+    return {
+        "r": r,
+        "H": H,
+        "g": Fraction(rng.randint(0, 20), 7),
+        "w": Fraction(rng.randint(1, 30), 7),
+        **names,
+    }
 
 
 def rates(at, r, H):
     turn = lin((1, H), (-1, at["W"]))
     along = dot(at["W"], r)
-    H1 = lin((1, cross(r, at["c"])), (1, cross(H, at["W"])), (-at["g"], turn), (-at["g"] * along, r))
+    H1 = lin(
+        (1, cross(r, at["c"])), (1, cross(H, at["W"])), (-at["g"], turn), (-at["g"] * along, r)
+    )
     return cross(turn, r), H1
 
 
@@ -147,5 +155,10 @@ def test_acceleration_error_is_the_sum_that_is_bounded(at):
     v, H1 = rates(at, r, H)
     true = lin((1, cross(H1, r)), (1, cross(lin((1, H), (-1, W)), v)))
     near = lin((1, cross(K1, at["p"])), (1, cross(lin((1, K), (-1, W)), p1)))  # p'' without d1'
-    terms = ((1, cross(g1, r)), (1, cross(K1, e)), (1, cross(g, v)), (1, cross(lin((1, K), (-1, W)), e1)))
+    terms = (
+        (1, cross(g1, r)),
+        (1, cross(K1, e)),
+        (1, cross(g, v)),
+        (1, cross(lin((1, K), (-1, W)), e1)),
+    )
     assert lin((1, true), (-1, near)) == lin(*terms)

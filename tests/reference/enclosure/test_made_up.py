@@ -34,10 +34,14 @@ def made_up(edges, xdot, u, rng):
         local = xdot(fmpq_poly([rational(c), rational(h)])) * rational(h)
         off = rational(u * Fraction(rng.randint(-8, 8), 9))  # half of it shift, half of it slope
         moved = (local + fmpq_poly([off / 2, off / 2])).integral()
-        row = [int(q * (1 << BITS)) for q in ([Fraction(int(q.p), int(q.q)) for q in moved.coeffs()])]
+        row = [
+            int(q * (1 << BITS)) for q in ([Fraction(int(q.p), int(q.q)) for q in moved.coeffs()])
+        ]
         step = TaylorStep(c, h, (a - c) / h, (b - c) / h, BITS, (row, *[[0]] * 3))
         with ctx.workprec(64):
-            tube = Tube(arb(0), (ball(u) + arb(2) ** -180).upper(), (ball(u) + arb(2) ** -180).upper())
+            tube = Tube(
+                arb(0), (ball(u) + arb(2) ** -180).upper(), (ball(u) + arb(2) ** -180).upper()
+            )
         scan.advance(Covered(Piece(balls, step), tube))
     return scan.finish()
 
@@ -45,7 +49,11 @@ def made_up(edges, xdot, u, rng):
 @pytest.mark.parametrize("seed", range(60))
 def test_known_zeros_are_found_once_wherever_steps_end(seed):
     rng = Random(seed)
-    edges = [Fraction(0), *sorted({Fraction(rng.randint(1, 30), 7) for _ in range(rng.randint(0, 3))}), Fraction(31, 7)]
+    edges = [
+        Fraction(0),
+        *sorted({Fraction(rng.randint(1, 30), 7) for _ in range(rng.randint(0, 3))}),
+        Fraction(31, 7),
+    ]
     u = Fraction(1, 10 ** rng.randint(2, 40))
     zeros = []
     for _ in range(rng.randint(1, 4)):
@@ -69,9 +77,9 @@ def test_known_zeros_are_found_once_wherever_steps_end(seed):
         if f.parity in ("one", "odd"):
             after = xdot(rational(f.t.high) + fmpq(1, 10**60))
             assert f.direction == (1 if after > 0 else -1)
-    if u < Fraction(1, 10**30) and min(abs(a - b) for a in zeros for b in [*edges, *zeros] if a is not b) > Fraction(
-        1, 10**6
-    ):
+    if u < Fraction(1, 10**30) and min(
+        abs(a - b) for a in zeros for b in [*edges, *zeros] if a is not b
+    ) > Fraction(1, 10**6):
         assert [f.parity for f in found] == ["one"] * sum(0 < z <= edges[-1] for z in zeros)
 
 
@@ -127,7 +135,8 @@ def test_at_a_boundary_both_steps_are_asked():
     (found,) = two_steps(third, *((x, [y << 120], [0], [0]) for y in (0, 1)))
     assert found.parity == "one"
     assert found.t.low <= third <= found.t.high
-    assert found.z.high - found.z.low > Fraction(67, 2**9)  # m of both steps (cos of the latitude is 0.66)
+    # m of both steps (cos of the latitude is 0.66)
+    assert found.z.high - found.z.low > Fraction(67, 2**9)
 
 
 @pytest.mark.parametrize("changes, rows, least", [

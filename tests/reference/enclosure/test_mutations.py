@@ -19,7 +19,11 @@ def telling(name):
     """Return the mutations of a module that its checks should notice."""
     left_out = {*equivalents(), *unnoticed()}
     every = mutations_of(f"reference/enclosure/trusted/{name}.py")
-    return [mutation for mutation in every if mutation.operator not in WIDER and str(mutation) not in left_out]
+    return [
+        mutation
+        for mutation in every
+        if mutation.operator not in WIDER and str(mutation) not in left_out
+    ]
 
 
 def sample():

@@ -29,7 +29,13 @@ def test_a_size_is_that_of_the_farthest_point():
 
 def test_the_pull_at_the_pivot_is_gravity_and_the_centrifugal_force_of_a_sphere():
     """On the equator of a sphere that turns at 0.01/s, at 6.4e6 m: 9.8 - 0.01² 6.4e6 = -630.2 m/s², for 2 m of cord."""
-    fields = {"latitude": "0", "altitude": "0", "gravity": "9.8", "rotation_rate": "0.01", "equatorial_radius": "6.4e6"}
+    fields = {
+        "latitude": "0",
+        "altitude": "0",
+        "gravity": "9.8",
+        "rotation_rate": "0.01",
+        "equatorial_radius": "6.4e6",
+    }
     scene_there = make_scene(pendulum={"length": "2"}, site={**fields, "inverse_flattening": "inf"})
     balls = SceneBalls(scene_there.exact, 128)
     east, north, up = balls.turned(balls.c, -1)
@@ -61,7 +67,9 @@ def test_ends_of_what_is_useless_are_refused(useless):
 def piece_at(balls, x, low=0, high=1):
     row = [int(Fraction(q) * 2**64) for q in x]
     rows = (*([c] for c in row), [0])
-    return Piece(balls, TaylorStep(Fraction(0), Fraction(1), Fraction(low), Fraction(high), 64, rows))
+    return Piece(
+        balls, TaylorStep(Fraction(0), Fraction(1), Fraction(low), Fraction(high), 64, rows)
+    )
 
 
 def test_a_join_counts_the_gap_and_the_radius_of_what_is_joined():

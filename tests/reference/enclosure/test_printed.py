@@ -41,10 +41,16 @@ REFUSED = (ArithmeticError, ValueError, LookupError)
 
 def refuse(solution, texts, **spoilt):
     """Demand that these texts are refused."""
-    names = {"grid": "grid.csv", "transits": "transits.csv", "page": "certified.txt", "manifest": "manifest.json"}
+    names = {
+        "grid": "grid.csv",
+        "transits": "transits.csv",
+        "page": "certified.txt",
+        "manifest": "manifest.json",
+    }
     with pytest.raises(REFUSED):
         check_dataset(
-            {**texts, **{names[name]: text for name, text in spoilt.items()}}, solution.proof.enclosure.proved
+            {**texts, **{names[name]: text for name, text in spoilt.items()}},
+            solution.proof.enclosure.proved,
         )
 
 
@@ -74,9 +80,13 @@ def test_a_release_between_two_decimals_may_be_either_of_them_and_no_other():
     for number in ("0.3000000000", "0.3000000001"):
         page = texts["certified.txt"].replace(" 0.3000000000\n", f" {number}\n")
         grid = texts["grid.csv"].replace("\n0,0.3000000000,", f"\n0,{number},")
-        check_dataset({**texts, "certified.txt": page, "grid.csv": grid}, solution.proof.enclosure.proved)
+        check_dataset(
+            {**texts, "certified.txt": page, "grid.csv": grid}, solution.proof.enclosure.proved
+        )
     for number in ("0.2999999999", "0.3000000002"):
-        refuse(solution, texts, grid=texts["grid.csv"].replace("\n0,0.3000000000,", f"\n0,{number},"))
+        refuse(
+            solution, texts, grid=texts["grid.csv"].replace("\n0,0.3000000000,", f"\n0,{number},")
+        )
 
 
 def swapped(lines):
@@ -91,11 +101,16 @@ def swapped(lines):
         lambda lines: [*lines, lines[-1]],
         lambda lines: [lines[0].replace("x,y", "y,x"), *lines[1:]],
         lambda lines: [line.replace(",+1,", ",-1,") for line in lines],
-        lambda lines: [",".join([*line.split(",")[:-1], "1e-40"]) if k else line for k, line in enumerate(lines)],
+        lambda lines: [
+            ",".join([*line.split(",")[:-1], "1e-40"]) if k else line
+            for k, line in enumerate(lines)
+        ],
         lambda lines: [line.replace(",-0.", ",-0_0.") for line in lines],
     ],
 )
-def test_rows_columns_directions_bounds_and_spellings_that_are_wrong_are_found(spoil, solution, texts):
+def test_rows_columns_directions_bounds_and_spellings_that_are_wrong_are_found(
+    spoil, solution, texts
+):
     refuse(solution, texts, transits="\n".join([*spoil(texts["transits.csv"].splitlines()), ""]))
 
 
@@ -113,15 +128,27 @@ WRONG = [
     *((("bounds", "transits", name), "1e-30") for name in ("t", "ax")),
     *((("bounds", name), "1e-30") for name in ("position_m", "velocity_m_s", "transit_s")),
     *((("counts", name), 77) for name in ("grid", "transits", "possible")),
-    *((("transits",), word) for word in ("undecided intervals", "xdot is identically zero", "not asked for")),
+    *(
+        (("transits",), word)
+        for word in ("undecided intervals", "xdot is identically zero", "not asked for")
+    ),
     *((("bounds", kind), {}) for kind in ("grid", "transits")),
-    *((("decimals", kind, name), 7) for kind, name in (("grid", "x"), ("grid", "t"), ("transits", "ax"))),
-    *((("enclosure", f"{name}_radius_{unit}"), "1e-60") for name, unit in (("position", "m"), ("velocity", "m_s"))),
+    *(
+        (("decimals", kind, name), 7)
+        for kind, name in (("grid", "x"), ("grid", "t"), ("transits", "ax"))
+    ),
+    *(
+        (("enclosure", f"{name}_radius_{unit}"), "1e-60")
+        for name, unit in (("position", "m"), ("velocity", "m_s"))
+    ),
     (("enclosure", "transit_radius_s"), "1e-60"),
     (("enclosure", "transit_radius_s"), None),
     (("level",), "confirmed"),
     (("units", "x, y, z"), "km"),
-    (("frame",), "topocentric, axes x west, y north, z up, origin at the suspension, z < 0 below it"),
+    (
+        ("frame",),
+        "topocentric, axes x west, y north, z up, origin at the suspension, z < 0 below it",
+    ),
     (("possible",), [{"from_s": "1", "to_s": "2", "parity": "odd"}]),
     (("inputs",), "binary64"),
     (("scene", "pendulum", "length"), "67.000000000000000001"),
@@ -137,7 +164,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("path", "value"), WRONG, ids=lambda x: ".".join(x) if isinstance(x, tuple) else "")
+@pytest.mark.parametrize(
+    ("path", "value"), WRONG, ids=lambda x: ".".join(x) if isinstance(x, tuple) else ""
+)
 def test_a_manifest_of_other_inputs_bounds_counts_or_words_is_found(path, value, solution, texts):
     refuse(solution, texts, manifest=spoilt_manifest(texts["manifest.json"], *path, value=value))
 
@@ -157,7 +186,9 @@ def test_every_number_of_the_page_that_is_changed_is_found(solution, texts):
 def test_an_input_that_stands_twice_in_the_manifest_is_found(solution, texts):
     """A reader may take either of them."""
     text = texts["manifest.json"]
-    refuse(solution, texts, manifest=text.replace('"length": "67"', '"length": "66", "length": "67"'))
+    refuse(
+        solution, texts, manifest=text.replace('"length": "67"', '"length": "66", "length": "67"')
+    )
     said = json.loads(text)
     said["scene"]["pendulum"]["length"] = "66"
     said["scene"]["run"]["length"] = "67"
@@ -188,7 +219,8 @@ def test_a_double_that_is_not_the_nearest_is_found(kind, solution, texts):
             line = ",".join((cells | spoilt).values())
             with pytest.raises(REFUSED, match="double"):
                 check_dataset(
-                    {**texts, name: "\n".join([header, *lines[:-1], line, ""])}, solution.proof.enclosure.proved
+                    {**texts, name: "\n".join([header, *lines[:-1], line, ""])},
+                    solution.proof.enclosure.proved,
                 )
 
 
@@ -196,7 +228,10 @@ def test_a_double_that_is_not_the_nearest_is_found(kind, solution, texts):
     ("old", "new"),
     [
         ("Level: enclosed. A proof", "Level: confirmed. A proof"),
-        ("Level: enclosed. A proof encloses every printed", "Level: enclosed. Two runs agree to every printed"),
+        (
+            "Level: enclosed. A proof encloses every printed",
+            "Level: enclosed. Two runs agree to every printed",
+        ),
         (" m, on every velocity", " km, on every velocity"),
         (" s, direction", " min, direction"),
         ("axes x east", "axes x west"),
@@ -208,7 +243,9 @@ def test_a_sentence_of_the_page_with_another_level_unit_or_axis_is_found(old, ne
     refuse(solution, texts, page=texts["certified.txt"].replace(old, new))
 
 
-@pytest.mark.parametrize("title", ["A Model pendulum (angles in degrees)", "State at rest", "How to score"])
+@pytest.mark.parametrize(
+    "title", ["A Model pendulum (angles in degrees)", "State at rest", "How to score"]
+)
 def test_a_title_with_a_word_of_the_page_is_no_misprint(title, solution, tmp_path):
     titled = replace(solution, scene=solution.scene.with_values([f"title={title}"]))
     reference.write(titled, tmp_path / "titled")  # which reads the page back
@@ -218,10 +255,15 @@ def test_a_title_with_a_word_of_the_page_is_no_misprint(title, solution, tmp_pat
 def test_what_is_not_the_very_result_of_a_proof_is_not_written(solution, texts, tmp_path):
     """F5 of the audit: transits shifted between the proof and the tables were written."""
     proved, by = solution.proof.enclosure.proved, Fraction(1, 10**18)
-    moved = [replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by)) for z in proved.zeros["xdot"]]
+    moved = [
+        replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by))
+        for z in proved.zeros["xdot"]
+    ]
     for forged in (replace(proved), replace(proved, zeros={"xdot": tuple(moved)}), None):
         with pytest.raises(DatasetError, match="not what was proved"):
-            proof = replace(solution.proof, enclosure=replace(solution.proof.enclosure, proved=forged))
+            proof = replace(
+                solution.proof, enclosure=replace(solution.proof.enclosure, proved=forged)
+            )
             reference.write(replace(solution, proof=proof), tmp_path / "forged")
     assert [*tmp_path.iterdir()] == []
 
@@ -233,7 +275,9 @@ def with_sections():
     scene = {"id": "own_plane", "release": release, "run": run}
     words = ["highest", "gate 30@0"]
     solution = reference.solve(scene, level="enclosed", digits=12, sections=words)
-    return solution, {name: text for name, text in render(solution).items() if isinstance(text, str)}
+    return solution, {
+        name: text for name, text in render(solution).items() if isinstance(text, str)
+    }
 
 
 def forged_sections(texts):
@@ -249,20 +293,38 @@ def forged_sections(texts):
     cells = row.split(",")
     for i, cell in enumerate(cells[1:-1], 1):
         other = cell[:-1] + str((int(cell[-1]) + 5) % 10) if i != 3 else cell.replace("-", "+")
-        yield f"cell {i}", texts | {"sections.csv": table.replace(row, ",".join([*cells[:i], other, *cells[i + 1 :]]))}
+        yield (
+            f"cell {i}",
+            texts
+            | {"sections.csv": table.replace(row, ",".join([*cells[:i], other, *cells[i + 1 :]]))},
+        )
     other = table.replace(row, row.replace("highest", "gate 30@0"))
     yield "a word of a row", texts | {"sections.csv": other}
     yield "a row lost", texts | {"sections.csv": table.replace(row + "\n", "")}
     yield "the header", texts | {"sections.csv": table.replace("section,k", "sections,k")}
-    yield "a bound of a row", texts | {"sections.csv": table.replace(row, ",".join([*cells[:-1], "1e-30"]))}
+    yield (
+        "a bound of a row",
+        texts | {"sections.csv": table.replace(row, ",".join([*cells[:-1], "1e-30"]))},
+    )
     yield "a possible zero lost", said(lambda s: s["possible"]["gate 30@0"].pop())
     for key, value in (("parity", "odd"), ("from_s", "0.001"), ("to_s", "0")):
-        yield key, said(lambda s, key=key, value=value: s["possible"]["gate 30@0"][0].update({key: value}))
+        yield (
+            key,
+            said(
+                lambda s, key=key, value=value: s["possible"]["gate 30@0"][0].update({key: value})
+            ),
+        )
     yield "a bound", said(lambda s: s["bounds"].update({"x": "1e-30"}))
     yield "decimals", said(lambda s: s["decimals"].update({"x": s["decimals"]["x"] + 1}))
     yield "a count", said(lambda s: s["counts"].update({"highest": s["counts"]["highest"] + 1}))
-    yield "the order of counts", said(lambda s: s.update(counts=dict(reversed(s["counts"].items()))))
-    yield "the order of possible zeros", said(lambda s: s.update(possible=dict(reversed(s["possible"].items()))))
+    yield (
+        "the order of counts",
+        said(lambda s: s.update(counts=dict(reversed(s["counts"].items())))),
+    )
+    yield (
+        "the order of possible zeros",
+        said(lambda s: s.update(possible=dict(reversed(s["possible"].items())))),
+    )
     manifest["scene"]["run"]["sections"] = "highest"
     yield "the scene's sections", texts | {"manifest.json": json.dumps(manifest)}
     document = json.loads(texts["manifest.json"])
@@ -291,7 +353,9 @@ def test_sections_that_were_not_proved_are_found(with_sections, solution, texts)
     _, others = with_sections
     document = json.loads(texts["manifest.json"])
     document["sections"] = json.loads(others["manifest.json"])["sections"]
-    refuse(solution, texts | {"sections.csv": others["sections.csv"]}, manifest=json.dumps(document))
+    refuse(
+        solution, texts | {"sections.csv": others["sections.csv"]}, manifest=json.dumps(document)
+    )
 
 
 @pytest.mark.parametrize("sought", [True, False])
@@ -299,7 +363,8 @@ def test_no_transits_are_said_to_be_complete_only_where_a_proof_looked_for_them(
     """A proof that was not asked for transits has none, as one that found none."""
     scene = reference.load_scene("paris")
     made = {
-        word: reference.solve(scene, t_end="1", digits=12, level="enclosed", transits=word) for word in (True, False)
+        word: reference.solve(scene, t_end="1", digits=12, level="enclosed", transits=word)
+        for word in (True, False)
     }
     proved = made[sought].proof.enclosure.proved
     check_dataset(render(made[sought]), proved)
@@ -321,9 +386,14 @@ def test_a_table_that_is_not_the_proof_is_a_misprint_and_not_written(solution, t
 @pytest.mark.parametrize("reading", ["decimal", "binary64"])
 def test_trusted_code_reads_the_same_inputs_and_times_as_the_solver(reading, size):
     scenes = [reference.load_scene(name, [f"inputs={reading}"]) for name in scene_ids()]
-    scenes += [parse_scene({**random_scene(seed), "inputs": reading}) for seed in range(size(25, 100))]
+    scenes += [
+        parse_scene({**random_scene(seed), "inputs": reading}) for seed in range(size(25, 100))
+    ]
     for scene in scenes:
-        assert asked({"scene": scene_inputs(scene), "inputs": reading}) == (scene.exact, tuple(scene.exact.grid))
+        assert asked({"scene": scene_inputs(scene), "inputs": reading}) == (
+            scene.exact,
+            tuple(scene.exact.grid),
+        )
 
 
 SHIPPING = """
@@ -356,7 +426,9 @@ def test_a_proof_ships_only_when_it_was_audited(tmp_path):
     (tmp_path / "data/golden").mkdir()
     words = [sys.executable, "-c", SHIPPING]
     environment = os.environ | {"PYTHONPATH": str(tmp_path), "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)
+    done = subprocess.run(
+        words, capture_output=True, text=True, check=False, cwd=tmp_path, env=environment
+    )
     refused, passed, found = done.stdout.splitlines() or [done.stderr] * 3
     assert (refused, passed) == ("audit False", "[]")
     assert "audited" in found
@@ -364,6 +436,8 @@ def test_a_proof_ships_only_when_it_was_audited(tmp_path):
 
 def test_a_source_with_the_words_before_the_inputs_is_no_misprint():
     """`below_horizontal` could not be made again: its source ends in "degrees)", as the line above the inputs does."""
-    solution = reference.solve(reference.load_scene("below_horizontal"), t_end="1", digits=12, level="enclosed")
+    solution = reference.solve(
+        reference.load_scene("below_horizontal"), t_end="1", digits=12, level="enclosed"
+    )
     assert "degrees)" in solution.scene.source
     check_dataset(render(solution), solution.proof.enclosure.proved)

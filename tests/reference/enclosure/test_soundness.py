@@ -49,13 +49,18 @@ def exact_errors(inputs, piece, balls, ratios):
     """|e|, |v - p'|, |r'' - p''| at a few times of a piece, each over its bound's name."""
     rates, first = doubles(inputs)
     length = float(inputs.length)
-    axes = np.array([[float(x) for x in balls.turned([arb(i == k) for i in range(3)], 1)] for k in range(3)])
+    axes = np.array(
+        [[float(x) for x in balls.turned([arb(i == k) for i in range(3)], 1)] for k in range(3)]
+    )
     h, centre = float(piece.step.h), float(piece.step.centre)
     grid = np.linspace(float(piece.step.low), float(piece.step.high), 5)
     span = (0, centre + h * grid[-1])
     run = solve_ivp(rates, span, first, method="DOP853", rtol=1e-13, atol=1e-14, dense_output=True)
     unit = 2.0**-piece.step.bits
-    polys = [np.polynomial.Polynomial([float(int(c)) * unit for c in row]) for row in piece.step.coefficients]
+    polys = [
+        np.polynomial.Polynomial([float(int(c)) * unit for c in row])
+        for row in piece.step.coefficients
+    ]
     for s in grid:
         state = run.sol(centre + h * s)
         r, v, a = (x / length @ axes for x in (state[:3], state[3:], rates(0, state)[3:]))
@@ -67,7 +72,12 @@ def exact_errors(inputs, piece, balls, ratios):
 def wide_pair(rng):
     """A scene, and the same with a start that is off by 1e-6 … 1.6."""
     size = 10 ** rng.uniform(-6, 0.2)
-    angles = [rng.uniform(5, 170), rng.uniform(-180, 180), rng.uniform(-60, 60), rng.uniform(-60, 60)]
+    angles = [
+        rng.uniform(5, 170),
+        rng.uniform(-180, 180),
+        rng.uniform(-60, 60),
+        rng.uniform(-60, 60),
+    ]
     text = [f"{a:.12f}" for a in angles]
     drag = rng.choice(["0", "0.4"])
     base = scene(length="3", angles=text, latitude=f"{rng.uniform(-90, 90):.3f}", drag=drag, **FAST)
@@ -88,10 +98,16 @@ def first_piece(true, other, method):
         bound.last = here
         if method is Columns:
             bound.rest = [x.abs_upper() for x in gap]
-            return balls, piece, bound.advance(piece, ColumnSource(balls).propose(step, [0.0] * 6)).tube
+            return (
+                balls,
+                piece,
+                bound.advance(piece, ColumnSource(balls).propose(step, [0.0] * 6)).tube,
+            )
         radial = sum((a * b for a, b in zip(balls.r, gap[3:], strict=True)), arb(0))
         flat = [g - radial * r for g, r in zip(gap[3:], balls.r, strict=True)]
-        square = sum((x**2 for x in gap[:3]), arb(0)) + sum((x**2 for x in flat), arb(0)) / balls.w0**2
+        square = (
+            sum((x**2 for x in gap[:3]), arb(0)) + sum((x**2 for x in flat), arb(0)) / balls.w0**2
+        )
         bound.eta = square.sqrt().upper()
     return balls, piece, bound.advance(piece).tube
 
@@ -119,7 +135,11 @@ SABOTAGED = {
     "paris": (scene(), Fraction(20), False),
     "steep": (scene(length="1", angles=("120", "30", "0", "0")), Fraction(2), True),
     "fast": (scene(length="3", angles=("70", "30", "20", "10"), **FAST), Fraction(3), True),
-    "drag": (scene(length="3", angles=("20", "30", "20", "10"), drag="0.3", **FAST), Fraction(3), False),
+    "drag": (
+        scene(length="3", angles=("20", "30", "20", "10"), drag="0.3", **FAST),
+        Fraction(3),
+        False,
+    ),
 }
 
 
@@ -127,7 +147,9 @@ def sabotage(rng, inputs, end):
     """Steps with one thing wrong in them."""
     size, kind = Fraction(10) ** -rng.randint(3, 14), rng.randrange(7)
     if kind == 0:
-        name = rng.choice(["gravity", "length", "equatorial_radius", "latitude", "drag", "rotation_rate"])
+        name = rng.choice(
+            ["gravity", "length", "equatorial_radius", "latitude", "drag", "rotation_rate"]
+        )
         value = getattr(inputs, name)
         return steps(replace(inputs, **{name: value * (1 + size) if value else size}), end)
     if kind == 1:
@@ -168,7 +190,9 @@ def made_wrong(seed, digits, enough, judge):
         inputs, end, columns = SABOTAGED[name]
         try:
             proposed = sabotage(rng, inputs, end)
-            accepted.append((name, judge(inputs, map(in_digits, proposed) if digits else proposed, columns)))
+            accepted.append(
+                (name, judge(inputs, map(in_digits, proposed) if digits else proposed, columns))
+            )
         except (ArithmeticError, ValueError):
             refused += 1
     assert refused < enough
@@ -208,7 +232,9 @@ def false_claims(claims, zeros, directions):
             (i,) = hits
             found += [name for name in zeros if not contains(getattr(claim, name), zeros[name][i])]
             found += [f"zero {i} has another direction"] * (claim.direction != directions[i])
-        elif {"one": True, "odd": len(hits) % 2 == 0, "even": len(hits) % 2 == 1, "unknown": False}[claim.parity]:
+        elif {"one": True, "odd": len(hits) % 2 == 0, "even": len(hits) % 2 == 1, "unknown": False}[
+            claim.parity
+        ]:
             found.append(f"{len(hits)} zeros are {claim.parity}")
     return found
 
@@ -224,18 +250,24 @@ def end_and_transits(inputs, proposed, columns):
 
 @BY
 def test_states_and_transits_of_sabotaged_approximants_are_all_true_or_refused(digits, size, tally):
-    accepted, refused = made_wrong(21, digits, size(5, 320), end_and_transits)  # whose first have few steps
+    # whose first have few steps
+    accepted, refused = made_wrong(21, digits, size(5, 320), end_and_transits)
     for name, (got, claims) in accepted:
         assert all(contains(i, x) for i, x in zip(got, true_end(name), strict=True)), name
         assert not false_claims(claims, *true_transits(name)), name
     tiny = Fraction(1, 10**20)
     harmed = sum(max(i.high - i.low for i in got) > tiny for _, (got, _) in accepted)
-    late = sum(any(claim.t.high - claim.t.low > tiny for claim in claims) for _, (_, claims) in accepted)
-    assert min(harmed, late) > len(accepted) / 2  # most of them did move the solution, and its transits
+    late = sum(
+        any(claim.t.high - claim.t.low > tiny for claim in claims) for _, (_, claims) in accepted
+    )
+    # most of them did move the solution, and its transits
+    assert min(harmed, late) > len(accepted) / 2
     kinds = Counter(claim.kind for _, (_, claims) in accepted for claim in claims)
     way, tried = "digits" if digits else "FLINT", len(accepted) + refused
     tally(f"approximants by {way}: {tried} sabotaged, {len(accepted)} covered, {refused} refused")
-    said = f"{kinds['one']} single zeros and {kinds['possible']} possible ones, none claimed wrongly"
+    said = (
+        f"{kinds['one']} single zeros and {kinds['possible']} possible ones, none claimed wrongly"
+    )
     tally(f"transits of approximants by {way}: {said}")
 
 
@@ -260,7 +292,10 @@ def other_list(rng, inputs, proposed):
         "twice": [*before, step, step, *after],
         "backwards": proposed[::-1],
         "ends early": before or after,
-        "another scene": [*before, *list(steps(start_moved(inputs, by), proposed[-1].centre + 1))[i:]],
+        "another scene": [
+            *before,
+            *list(steps(start_moved(inputs, by), proposed[-1].centre + 1))[i:],
+        ],
         "late": [s._replace(centre=s.centre + by) for s in proposed],
     }
     kind = rng.choice([*one, *every])
@@ -287,7 +322,13 @@ def other_digits(rng, proposed):
         def table(self, _):
             """Forget it."""
 
-    others = [table[rng.sample(range(4), 4)], table[:, 1:], table[:, ::-1], table[..., ::-1], table.astype(float)]
+    others = [
+        table[rng.sample(range(4), 4)],
+        table[:, 1:],
+        table[:, ::-1],
+        table[..., ::-1],
+        table.astype(float),
+    ]
     others += [spoilt, spoilt, table.astype(np.int64) << rng.randrange(20)]
     rows = rng.choice([Changing(spoilt), *map(Digits, others)])
     return [*proposed[:i], proposed[i]._replace(rows=rows), *proposed[i + 1 :]]
@@ -300,9 +341,13 @@ def driven(rng, inputs, proposed, columns):
     source, faulty = ColumnSource(balls) if columns else None, rng.choice((0, 0, 0, 0, 0.1))
 
     for step in proposed:
-        with suppress(ArithmeticError, RuntimeError, RuntimeWarning, ValueError, TypeError, IndexError):
+        with suppress(
+            ArithmeticError, RuntimeError, RuntimeWarning, ValueError, TypeError, IndexError
+        ):
             columns = (source.propose(step, [0.0] * 6),) if source else ()
-            course.advance(FailingStep(step, rng.randrange(30)) if rng.random() < faulty else step, *columns)
+            course.advance(
+                FailingStep(step, rng.randrange(30)) if rng.random() < faulty else step, *columns
+            )
     return course.finish()
 
 
@@ -323,7 +368,9 @@ def test_whole_runs_of_sabotaged_steps_and_drivers_claim_nothing_false(digits, s
         except (ArithmeticError, IndexError):
             refused += 1
             continue
-        assert all(contains(i, x) for i, x in zip(proved.states[-1], true_end(name), strict=True)), name
+        assert all(
+            contains(i, x) for i, x in zip(proved.states[-1], true_end(name), strict=True)
+        ), name
         assert not false_claims(proved.zeros["xdot"], *true_transits(name)), name
     assert 0 < refused < tried
     way = "digits" if digits else "lists of steps"
@@ -351,7 +398,9 @@ def test_false_claims_are_seen():
 @pytest.mark.parametrize("columns", [False, True])
 @pytest.mark.parametrize("drag", [pytest.param("0", marks=pytest.mark.long), "0.2"])
 def test_exaggerated_rotation_and_speed_show_every_sign(columns, drag):
-    inputs = scene(length="2", latitude="37", x="0.5", y="-0.7", vx="1.1", vy="0.6", drag=drag, **FAST)
+    inputs = scene(
+        length="2", latitude="37", x="0.5", y="-0.7", vx="1.1", vy="0.6", drag=drag, **FAST
+    )
     got = last_state(inputs, steps(inputs, Fraction(4), 288, 150), columns)
     assert max(i.high - i.low for i in got) < Fraction(1, 10**70)
     assert all(contains(i, x) for i, x in zip(got, truth(inputs, [Fraction(4)])[0], strict=True))

@@ -9,7 +9,17 @@ from places import ROOT
 
 TRUSTED = ROOT / "reference/enclosure/trusted"
 FILES = sorted(path.stem for path in TRUSTED.glob("*.py") if path.stem != "__init__")
-LIBRARY = {"array", "bisect", "collections.abc", "copy", "dataclasses", "flint", "fractions", "functools", "itertools"}
+LIBRARY = {
+    "array",
+    "bisect",
+    "collections.abc",
+    "copy",
+    "dataclasses",
+    "flint",
+    "fractions",
+    "functools",
+    "itertools",
+}
 LIBRARY |= {"json", "typing", "weakref"}
 LIBRARY |= {"json", "typing", "weakref"}
 # declarations; the compiler of the sums of digits, which an audit checks; proposals of where a zero may be
@@ -39,8 +49,12 @@ def test_a_trusted_file_says_so(name):
 @pytest.mark.parametrize("name", FILES)
 def test_a_trusted_file_holds_no_floating_point(name):
     for node in ast.walk(tree_of(name)):
-        assert not (isinstance(node, ast.Constant) and isinstance(node.value, float | complex)), node.lineno
-        assert not (isinstance(node, ast.Name) and node.id == "float" and name not in FLOATS), node.lineno
+        assert not (isinstance(node, ast.Constant) and isinstance(node.value, float | complex)), (
+            node.lineno
+        )
+        assert not (isinstance(node, ast.Name) and node.id == "float" and name not in FLOATS), (
+            node.lineno
+        )
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -67,6 +81,8 @@ for function in (False, True):
     names = "trusted.function", "fit", "trusted.box", "prove_box", "trusted.derivatives", "trusted.sections"
     print(*(f"reference.enclosure.{name}" in sys.modules for name in names))
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     assert done.stdout.splitlines()[0] == ""
     assert done.stdout.split() == 6 * ["False"] + 2 * ["True"] + 4 * ["False"]

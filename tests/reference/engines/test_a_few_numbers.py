@@ -17,7 +17,9 @@ def azimuth(x, y):
 
 
 def test_an_hour_of_paris():
-    plan = engines()["heyoka"].plan(load_scene("paris").exact, 64, (Fraction(0), Fraction(3600)), ("xdot",))
+    plan = engines()["heyoka"].plan(
+        load_scene("paris").exact, 64, (Fraction(0), Fraction(3600)), ("xdot",)
+    )
     hour = run(plan)
     t, x, y = (hour.transits[name] for name in ("t", "x", "y"))
 

@@ -44,13 +44,17 @@ def place():
 
 
 # space is held in test_trajectory; the equations of each are those of all others in test_formulations
-@pytest.mark.parametrize("name", ["spin", "plane", "angles", *(pytest.param(n, marks=pytest.mark.long) for n in LATER)])
+@pytest.mark.parametrize(
+    "name", ["spin", "plane", "angles", *(pytest.param(n, marks=pytest.mark.long) for n in LATER)]
+)
 def test_every_formulation_runs_to_the_same_place(paris, place, name):
     got = end_of(paris, real(180), name, t_end=20)
     assert max(abs(a - b) for a, b in zip(got, place[0], strict=True)) < Fraction(1, 10**47)
 
 
-@pytest.mark.parametrize(("number", "error"), [(DOUBLE, 1e-13), (LONG_DOUBLE, 1e-16), (real(113), 1e-31)], ids=str)
+@pytest.mark.parametrize(
+    ("number", "error"), [(DOUBLE, 1e-13), (LONG_DOUBLE, 1e-16), (real(113), 1e-31)], ids=str
+)
 def test_the_error_shrinks_with_the_precision_of_the_type(paris, place, number, error):
     got = end_of(paris, number)
     assert max(abs(a - b) for a, b in zip(got, place[1], strict=True)) < error
@@ -69,13 +73,17 @@ def test_code_that_scenes_share_rounds_as_their_own(paris, name, number):
     for scene in (paris, other):
         stepper = stepper_of(scene, number, name)
         equations, _ = system_of(FORMULATIONS[name], stepper.model.k)
-        own = hy.taylor_adaptive(equations, stepper.state, fp_type=stepper.numbers.type, **stepper.numbers.keywords)
+        own = hy.taylor_adaptive(
+            equations, stepper.state, fp_type=stepper.numbers.type, **stepper.numbers.keywords
+        )
         for _ in range(9):
             own.step()
             stepper.advance(stepper.numbers.of(60))
             if not number.hardware:
                 assert stepper.state.tolist() == own.state.tolist()
-            assert stepper.state.astype(float) == pytest.approx(own.state.astype(float), rel=1e-12, abs=1e-14)
+            assert stepper.state.astype(float) == pytest.approx(
+                own.state.astype(float), rel=1e-12, abs=1e-14
+            )
 
 
 @pytest.mark.parametrize("number", [DOUBLE, real(90)], ids=str)
@@ -92,7 +100,10 @@ def test_steppers_that_share_their_code_find_their_own_zeros_in_turn(paris, numb
 
     both = zeros(*(stepper_of(scene, number, events=True) for scene in (paris, other)))
     assert min(map(len, both)) > 1
-    assert both == [*zeros(stepper_of(paris, number, events=True)), *zeros(stepper_of(other, number, events=True))]
+    assert both == [
+        *zeros(stepper_of(paris, number, events=True)),
+        *zeros(stepper_of(other, number, events=True)),
+    ]
 
 
 @pytest.mark.parametrize("number", [DOUBLE, real(48), real(90)], ids=str)
@@ -111,7 +122,9 @@ def test_runs_in_turn_have_their_own_terms_bits_and_tolerance(paris):
     numbers = (DOUBLE, LONG_DOUBLE, real(90), real(91))
     ends = [end_of(scene, number, t_end=5) for scene in (damped, paris) for number in numbers]
     assert len({*map(tuple, ends)}) == 8
-    one, other, again = (trajectory(paris, [0, 60], tolerance=tolerance) for tolerance in (1e-9, 1e-8, 1e-9))
+    one, other, again = (
+        trajectory(paris, [0, 60], tolerance=tolerance) for tolerance in (1e-9, 1e-8, 1e-9)
+    )
     assert (one == again).all()
     assert (one != other).any()
 
@@ -143,7 +156,10 @@ def test_what_is_constant_is_not_shown_and_the_motion_is_the_same():
     shown = [line.partition("'")[0] for line in equations_text(FORMULATIONS["momentum"], k)]
     assert shown == ["nx", "ny", "nz", "Hx", "Hy"]
     times = (Fraction(0), Fraction(7), Fraction(60))
-    less, whole = (run(Plan(scene.exact, name, real(120), times, ("xdot",))) for name in ("momentum", "inertial"))
+    less, whole = (
+        run(Plan(scene.exact, name, real(120), times, ("xdot",)))
+        for name in ("momentum", "inertial")
+    )
     gaps = less.grid.distance(whole.grid).largest()
     assert all(0 <= gap < Fraction(1, 2**100) for gap in gaps.values())
     assert less.directions == whole.directions and len(less.directions) > 0
@@ -165,14 +181,18 @@ def test_no_python_float_stands_in_a_real_system(paris):
 
 
 def test_a_run_that_blows_up_is_an_error_and_gives_no_numbers():
-    pushed = make_scene("bad", pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
+    pushed = make_scene(
+        "bad", pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"}
+    )
     stepper = stepper_of(pushed, DOUBLE, "space")
     with pytest.raises(IntegrationError):
         stepper.propagate([0.0, 1e6])
 
 
 def test_a_step_that_blows_up_is_an_error_too():
-    pushed = make_scene("bad", pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
+    pushed = make_scene(
+        "bad", pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"}
+    )
     stepper = stepper_of(pushed, DOUBLE, "space", events=True)
     with pytest.raises(IntegrationError):
         for _ in range(100_000):
@@ -211,11 +231,15 @@ def in_a_home(home, folder):
     environment = {name: value for name, value in os.environ.items() if name != "XDG_CACHE_HOME"}
     environment |= {"HOME": str(home), "PYTHONPATH": str(ROOT)}
     words = [sys.executable, "-c", CACHED]
-    done = subprocess.run(words, capture_output=True, text=True, check=True, cwd=folder, env=environment)
+    done = subprocess.run(
+        words, capture_output=True, text=True, check=True, cwd=folder, env=environment
+    )
     return done.stdout.splitlines()
 
 
-def test_the_disk_cache_is_the_projects_own_and_bounded_and_off_for_real_where_it_never_hits(paris, tmp_path):
+def test_the_disk_cache_is_the_projects_own_and_bounded_and_off_for_real_where_it_never_hits(
+    paris, tmp_path
+):
     states, cache, kept_in_real = in_a_home(tmp_path, tmp_path)
     place, _, limit = cache.rpartition(" ")
     assert Path(place).name == "foucault"
@@ -234,7 +258,15 @@ def test_where_no_cache_can_be_heyoka_does_without(paris, tmp_path, home):
 def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris):
     """As it is for a short run; that of a long one, whose steps are the same at first, is compiled thoroughly."""
     quick, thorough = (
-        run(Plan(paris.exact, "space", real(200), (Fraction(0), Fraction(50), Fraction(end)), ("xdot",)))
+        run(
+            Plan(
+                paris.exact,
+                "space",
+                real(200),
+                (Fraction(0), Fraction(50), Fraction(end)),
+                ("xdot",),
+            )
+        )
         for end in (100, 2000)
     )
     assert quick.grid.values[:2] == thorough.grid.values[:2]

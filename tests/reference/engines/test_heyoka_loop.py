@@ -19,7 +19,10 @@ SITE = {
     "site": {"latitude": "0", "rotation_rate": "0.05", "equatorial_radius": "1"},
     "run": {"t_end": "60"},
 }
-RELEASES = {"a close pair": {"y": "0.5", "vx": "-0.00775"}, "three together": {"y": "0.5235", "vx": "-0.02275"}}
+RELEASES = {
+    "a close pair": {"y": "0.5", "vx": "-0.00775"},
+    "three together": {"y": "0.5235", "vx": "-0.02275"},
+}
 TOLERANCE = 2.0**-52
 
 
@@ -36,7 +39,9 @@ class Losing:
                 if sought != kind or not len(found.times):
                     return found
                 lost = losing.lost(found)
-                return RowZeros(*(np.delete(part, lost) for part in (found.times, found.directions)))
+                return RowZeros(
+                    *(np.delete(part, lost) for part in (found.times, found.directions))
+                )
 
         self.module = with_names("reference/engines/heyoka/loop.py", Integrator=Loses)
 
@@ -70,14 +75,18 @@ def test_any_two_that_are_lost_together_leave_a_doubt(name, kind):
         assert losing.fate(rows, RunOptions(times=True)) == [DOUBTFUL], first
 
 
-@pytest.mark.parametrize("options", [RunOptions(times=True), RunOptions(False, False, moved=1)], ids=["run", "moved"])
+@pytest.mark.parametrize(
+    "options", [RunOptions(times=True), RunOptions(False, False, moved=1)], ids=["run", "moved"]
+)
 def test_a_row_is_the_same_alone_and_after_others(options):
     rows = rows_of(list(random_kinds(20261124, 10)))
     together = BATCH.solve(rows, options)
     for row in range(len(rows)):
         alone = BATCH.solve(rows[row : row + 1], options)
         for name in ("state", "t_first", "t_last", "turn", "largest_angle", "least_ax", "steps"):
-            assert np.array_equal(getattr(alone, name)[0], getattr(together, name)[row], equal_nan=True), name
+            assert np.array_equal(
+                getattr(alone, name)[0], getattr(together, name)[row], equal_nan=True
+            ), name
         own = together.transit_row == row
         assert np.array_equal(alone.transit_t, together.transit_t[own])
 
@@ -93,18 +102,45 @@ def test_a_plane_that_passes_north_south_leaves_no_doubt(paris):
 def test_steps_without_end_stop_a_row_alone(paris):
     """A bob whirls round a hundred thousand times while a swing would take: more steps than a row may have."""
     whirling = {"angle": "90", "azimuth": "0", "azimuth_rate": "1e6"}
-    row = make_scene(pendulum={"length": "1"}, release=whirling, run={"t_end": "10", "grid_step": "10"}).exact
+    row = make_scene(
+        pendulum={"length": "1"}, release=whirling, run={"t_end": "10", "grid_step": "10"}
+    ).exact
     usual = paris.with_values(["run.t_end=60"]).exact
-    assert BATCH.solve(rows_of([usual, row, usual]), RunOptions()).fate.tolist() == [OK, STOPPED, OK]
+    assert BATCH.solve(rows_of([usual, row, usual]), RunOptions()).fate.tolist() == [
+        OK,
+        STOPPED,
+        OK,
+    ]
 
 
 def test_octet_says_the_same_of_every_row():
     rows = rows_of(list(random_kinds(20261124, 20)))
     options = RunOptions(times=True)
     own, other = BATCH.solve(rows, options), OCTET.solve(rows, options)
-    for name in ("fate", "transits", "close_pairs", "apsides", "same_side", "transit_row", "transit_direction"):
+    for name in (
+        "fate",
+        "transits",
+        "close_pairs",
+        "apsides",
+        "same_side",
+        "transit_row",
+        "transit_direction",
+    ):
         assert np.array_equal(getattr(own, name), getattr(other, name)), name
-    for name in ("state", "t_first", "t_last", "apsis_first", "apsis_last", "turn", "largest_angle", "transit_t"):
-        assert np.allclose(getattr(own, name), getattr(other, name), rtol=1e-8, atol=1e-8, equal_nan=True), name
+    for name in (
+        "state",
+        "t_first",
+        "t_last",
+        "apsis_first",
+        "apsis_last",
+        "turn",
+        "largest_angle",
+        "transit_t",
+    ):
+        assert np.allclose(
+            getattr(own, name), getattr(other, name), rtol=1e-8, atol=1e-8, equal_nan=True
+        ), name
     for name in ("least_ax", "least_bend"):
-        assert np.allclose(getattr(own, name), getattr(other, name), rtol=1e-5, atol=0, equal_nan=True), name
+        assert np.allclose(
+            getattr(own, name), getattr(other, name), rtol=1e-5, atol=0, equal_nan=True
+        ), name

@@ -37,7 +37,12 @@ def test_all_zeros_of_a_long_step_are_found_in_order(decay, turns):
 
 def parabola(depth, bits, least=0):
     """(s - 1/3)**2 - depth."""
-    return Places([int(c * 2**bits) for c in (THIRD**2 - depth, -2 * THIRD, Fraction(1))], least, bits, "gate 0")
+    return Places(
+        [int(c * 2**bits) for c in (THIRD**2 - depth, -2 * THIRD, Fraction(1))],
+        least,
+        bits,
+        "gate 0",
+    )
 
 
 @pytest.mark.parametrize("bits", [117, 711])
@@ -48,7 +53,9 @@ def test_two_zeros_that_almost_meet_are_told_from_none(power, bits):
     pieces = list(dip.isolated(1, 1))
     assert [before for _, _, before in pieces] == [1, -1]
     roots = [Fraction(dip.root(*piece), 1 << bits) for piece in pieces]
-    assert [abs(root - THIRD) for root in roots] == pytest.approx([Fraction(1, 1 << power // 2)] * 2, rel=1e-6)
+    assert [abs(root - THIRD) for root in roots] == pytest.approx(
+        [Fraction(1, 1 << power // 2)] * 2, rel=1e-6
+    )
     assert list(parabola(-Fraction(1, 1 << power), bits).isolated(1, 1)) == []
 
 
@@ -56,6 +63,9 @@ def test_two_zeros_that_almost_meet_are_told_from_none(power, bits):
 @pytest.mark.parametrize("side", [-1, 0, 1])
 def test_what_touches_zero_as_far_as_the_integers_tell_is_refused(side, bits):
     """Or as far as the digits tell, of which 2**-11 is left."""
-    for depth, least in ((Fraction(side, 1 << bits - 1), 0), (Fraction(side, 1 << 20), 1 << bits - 11)):
+    for depth, least in (
+        (Fraction(side, 1 << bits - 1), 0),
+        (Fraction(side, 1 << 20), 1 << bits - 11),
+    ):
         with pytest.raises(IntegrationError, match="gate 0: the motion touches this section"):
             list(parabola(depth, bits, least).isolated(1, 1))

@@ -72,9 +72,11 @@ def test_the_cheapest_engine_that_serves_is_taken():
     assert fastest(5000, "limbs").name == "heyoka"  # limbs have not so many bits
     limbs = engines()["limbs"]
     assert fastest(160).name == (limbs.name if limbs.installed else "heyoka")
-    assert fastest(160, steps=100).name == "heyoka"  # limbs take longer to start than heyoka to arrive
+    # limbs take longer to start than heyoka to arrive
+    assert fastest(160, steps=100).name == "heyoka"
     assert fastest(108, steps=800).name == fastest(108, steps=100, proof=True).name == "heyoka"
-    assert fastest(108, steps=800, proof=True).name == fastest(160).name  # a proof has fewer and cheaper steps of limbs
+    # a proof has fewer and cheaper steps of limbs
+    assert fastest(108, steps=800, proof=True).name == fastest(160).name
     assert fastest(160, "limbs", steps=100).name == fastest(160).name
     assert limbs.expected_s(1000, 160) < engines()["heyoka"].expected_s(1000, 160)
 

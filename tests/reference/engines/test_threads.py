@@ -42,7 +42,9 @@ print("the end", same, flush=True)
 
 
 def test_threads_lose_nothing_that_is_printed():
-    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True, cwd=ROOT)
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True, cwd=ROOT
+    )
     *lines, last = done.stdout.splitlines()
     assert last == "the end [True, True, True, True]"
     assert set(lines) == {"meanwhile"}
@@ -96,10 +98,17 @@ if __name__ == "__main__":
 def test_threads_pools_forks_tasks_and_interrupted_cells_give_the_same_numbers(tmp_path, size):
     program = tmp_path / "many_ways.py"
     program.write_text(MANY_WAYS)
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error,ignore::DeprecationWarning"}
+    environment = os.environ | {
+        "PYTHONPATH": str(ROOT),
+        "PYTHONWARNINGS": "error,ignore::DeprecationWarning",
+    }
     words = [sys.executable, program, *size(["2"], ["8", *["10", "17", "24"] * 17])]
     done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
-    assert (done.returncode, done.stdout.split("\n"), done.stderr) == (0, ["interrupted", "the end", ""], "")
+    assert (done.returncode, done.stdout.split("\n"), done.stderr) == (
+        0,
+        ["interrupted", "the end", ""],
+        "",
+    )
 
 
 CLOCK = """
@@ -125,5 +134,7 @@ print("the end")
 def test_a_clock_that_jumps_breaks_nothing(tmp_path):
     environment = os.environ | {"PYTHONPATH": str(ROOT), "FOUCAULT_CACHE": str(tmp_path / "cache")}
     words = [sys.executable, "-c", CLOCK]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=tmp_path, env=environment)
+    done = subprocess.run(
+        words, capture_output=True, text=True, check=False, cwd=tmp_path, env=environment
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, "the end\n", "")

@@ -33,19 +33,25 @@ def test_a_harmonic_oscillator_comes_out_as_sine_and_cosine():
 @pytest.mark.parametrize("number", [LONG_DOUBLE, real(120)])
 def test_a_finer_type_leaves_only_the_rounding_to_doubles(number):
     times = [0.0, 1.0, 2.5]
-    states = integrate(("q", "p"), lambda state, _: (state[1], -state[0]), (Fraction(1), 0), times, number=number)
+    states = integrate(
+        ("q", "p"), lambda state, _: (state[1], -state[0]), (Fraction(1), 0), times, number=number
+    )
     assert np.array_equal(states, np.column_stack([np.cos(times), -np.sin(times)]))
 
 
 def test_the_functions_are_those_of_the_number_type():
-    states = integrate(("q",), lambda state, functions: (functions.cos(state[0]),), (0.0,), [0.0, 2.0])
+    states = integrate(
+        ("q",), lambda state, functions: (functions.cos(state[0]),), (0.0,), [0.0, 2.0]
+    )
     assert states[1, 0] == pytest.approx(2 * np.arctan(np.tanh(1.0)), abs=1e-15)  # the gudermannian
 
 
 def test_a_loose_tolerance_is_loose():
     system = ("q", "p"), lambda state, _: (state[1], -state[0]), (1.0, 0.0), TIMES
     exact = np.cos(TIMES)
-    loose, tight = (np.abs(integrate(*system, tolerance=tol)[:, 0] - exact).max() for tol in (1e-5, 1e-12))
+    loose, tight = (
+        np.abs(integrate(*system, tolerance=tol)[:, 0] - exact).max() for tol in (1e-5, 1e-12)
+    )
     assert 1e-9 < loose < 1e-2
     assert tight < 1e-10
 
@@ -69,7 +75,9 @@ def motion():
 
 
 # that the others run to the same place is held in test_heyoka
-@pytest.mark.parametrize("formulation", one_in(5, ["space", "spin", "plane", "angles", "lagrangian"]))
+@pytest.mark.parametrize(
+    "formulation", one_in(5, ["space", "spin", "plane", "angles", "lagrangian"])
+)
 def test_every_formulation_gives_the_same_motion(paris, motion, formulation):
     found = trajectory(paris, TIMES, formulation=formulation, number=LONG_DOUBLE)
     assert np.abs(found - motion).max() < 1e-14
@@ -77,15 +85,21 @@ def test_every_formulation_gives_the_same_motion(paris, motion, formulation):
 
 @pytest.mark.parametrize("number", [DOUBLE, real(120)])
 def test_a_run_into_the_singularity_of_its_formulation_says_so(number):
-    rising = make_scene(pendulum={"length": "1"}, release={"angle": "80", "azimuth": "20", "angle_rate": "500"})
-    with pytest.raises(IntegrationError, match=r"plane is singular at the horizontal: take momentum"):
+    rising = make_scene(
+        pendulum={"length": "1"}, release={"angle": "80", "azimuth": "20", "angle_rate": "500"}
+    )
+    with pytest.raises(
+        IntegrationError, match=r"plane is singular at the horizontal: take momentum"
+    ):
         trajectory(rising, [0.0, 10.0], formulation="plane", number=number)
     assert trajectory(rising, [0.0, 10.0], number=number).shape == (2, 6)
 
 
 def test_a_run_that_needs_steps_without_end_comes_to_an_end(paris):
     """As next to a singularity; here the model is altered to turn a billion times as fast as the scene says."""
-    with pytest.raises(IntegrationError, match=r"stopped at t = .* s, after \d{1,5} steps, .*step_limit"):
+    with pytest.raises(
+        IntegrationError, match=r"stopped at t = .* s, after \d{1,5} steps, .*step_limit"
+    ):
         trajectory(paris, TIMES, alter=lambda k: replace(k, turn=(0, 10**5, 0)))
 
 
@@ -119,7 +133,9 @@ def test_times_that_do_not_increase_from_zero_are_a_mistake(times, paris):
             lambda number: trajectory(paris, times, number=number),
             lambda number: integrate(("q", "p"), oscillator, (1.0, 0.0), times, number=number),
         ):
-            with pytest.raises(InputError, match=r"times: got .* seconds that increase, the first of them 0"):
+            with pytest.raises(
+                InputError, match=r"times: got .* seconds that increase, the first of them 0"
+            ):
                 call(number)
 
 
@@ -148,7 +164,10 @@ def test_a_release_at_rest_is_at_rest_to_the_last_bit(formulation, paris):
         {"site": {"latitude": "90"}},
         {"site": {"rotation_rate": "0"}},
         {"pendulum": {"length": "1", "drag": "0.01"}},
-        {"pendulum": {"length": "1"}, "release": {"angle": "120", "azimuth": "20", "azimuth_rate": "5"}},
+        {
+            "pendulum": {"length": "1"},
+            "release": {"angle": "120", "azimuth": "20", "azimuth_rate": "5"},
+        },
     ],
 )
 def test_the_model_with_open_constants_is_the_model(variants, changes):
@@ -163,7 +182,12 @@ def test_a_release_beyond_the_cord_is_refused(variants, paris):
 
 @pytest.mark.parametrize(
     "times",
-    [np.arange(3), np.arange(3, dtype=np.float32), [0, Decimal(1), Fraction(2)], [mpmath.mpf(0), 1, np.longdouble(2)]],
+    [
+        np.arange(3),
+        np.arange(3, dtype=np.float32),
+        [0, Decimal(1), Fraction(2)],
+        [mpmath.mpf(0), 1, np.longdouble(2)],
+    ],
 )
 def test_times_may_be_any_numbers(times):
     assert (trajectory("paris", times) == trajectory("paris", [0.0, 1.0, 2.0])).all()

@@ -30,9 +30,13 @@ def bare_heyoka(scene, number, t_end, first_step=None):
     numbers, model = Numbers(number), FORMULATIONS["momentum"]
     equations, xdot = system_of(model, release.k.converted(numbers.of))
     times: list[float] = []
-    event = hy.nt_event(xdot, callback=lambda _, t, __: times.append(float(t)), fp_type=numbers.type)
+    event = hy.nt_event(
+        xdot, callback=lambda _, t, __: times.append(float(t)), fp_type=numbers.type
+    )
     start = np.array([numbers.of(part) for part in release.state(model)], dtype=numbers.dtype)
-    alone = hy.taylor_adaptive(equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
+    alone = hy.taylor_adaptive(
+        equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords
+    )
     if first_step is not None:
         alone.step(first_step)
     alone.propagate_until(numbers.of(t_end))
@@ -90,7 +94,9 @@ class EdgeOnTransit(Stepper):
 def test_a_step_edge_on_a_transit_neither_loses_nor_doubles_it(paris, number, offset):
     stepper = stepper_of(paris, number, kind=EdgeOnTransit, events=True)
     first = exact_first_transit(paris, number)
-    stepper.edge = first + first * stepper.numbers.power_of_two(-number.prec) * stepper.numbers.of(offset)
+    stepper.edge = first + first * stepper.numbers.power_of_two(-number.prec) * stepper.numbers.of(
+        offset
+    )
     zeros = guarded(paris, number, stepper=stepper)
     assert len(zeros) == 7
     assert abs(zeros[0].t - first) < first * stepper.numbers.power_of_two(8 - number.prec)
@@ -212,7 +218,9 @@ def bunched_scene():
 @pytest.mark.parametrize(
     "forget",
     [
-        lost if lost in {(0,), (1, 2), (0, 2, 3), (0, 1, 2, 3)} else pytest.param(lost, marks=pytest.mark.long)
+        lost
+        if lost in {(0,), (1, 2), (0, 2, 3), (0, 1, 2, 3)}
+        else pytest.param(lost, marks=pytest.mark.long)
         for count in range(1, 5)
         for lost in combinations(range(4), count)
     ],
@@ -282,7 +290,9 @@ def test_guard_the_zeros_of_any_polynomial_are_counted(number, size):
         rest = np.polynomial.polynomial.polymul(rest, far)
         first = -np.sign(np.polynomial.polynomial.polyval(0, rest) * (-1) ** many)
         directions = [int(first) * (-1) ** k for k in range(many)]
-        every = [Zero(numbers.of(s), d, None) for s, d in zip(zeros.tolist(), directions, strict=True)]
+        every = [
+            Zero(numbers.of(s), d, None) for s, d in zip(zeros.tolist(), directions, strict=True)
+        ]
         stepper = MadeUp(number, zeros, rest)
         assert stepper.marched(every) == every, (case, zeros)
         for lost in range(1, 1 << many):
@@ -303,10 +313,16 @@ def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
 def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris, size):
     hours = size(1, 24)
     times, pairs = (Fraction(0), Fraction(3600 * hours)), {1: 219, 24: 5257}[hours]
-    runs = [run(Plan(paris.exact, name, LONG_DOUBLE, times, ("xdot",))) for name in ("momentum", "space")]
+    runs = [
+        run(Plan(paris.exact, name, LONG_DOUBLE, times, ("xdot",)))
+        for name in ("momentum", "space")
+    ]
     assert [len(one.transits) for one in runs] == [2 * pairs, 2 * pairs]
     assert runs[0].directions == runs[1].directions == [1, -1] * pairs
-    late, slopes = runs[0].transits.distance(runs[1].transits).exact("t"), runs[0].transits.exact("ax")
+    late, slopes = (
+        runs[0].transits.distance(runs[1].transits).exact("t"),
+        runs[0].transits.exact("ax"),
+    )
     worst = max(gap * abs(slope) for gap, slope in zip(late, slopes, strict=True))
     # of a day: 64 bits, a phase of 3.3e4 rad and 0.2 m/s leave 4e-16 m/s, times the roundings met
     assert worst < 1e-13 * hours / 24
@@ -336,7 +352,9 @@ def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_ot
         ({"angle": "40.1", "azimuth": "90", "angle_rate": "5"}, "40.1", 2),
     ],
 )
-def test_the_order_of_the_zero_at_the_release_is_that_of_its_polynomial(release, latitude, multiplicity):
+def test_the_order_of_the_zero_at_the_release_is_that_of_its_polynomial(
+    release, latitude, multiplicity
+):
     scene = make_scene(release=release, site={"latitude": latitude})
     assert zero_at_release(start_for(scene, DOUBLE)) == multiplicity
     coefficients = [float(a) for a in stepper_of(scene, real(200)).coefficients()[0][0][1:]]
@@ -357,8 +375,12 @@ def test_a_zero_of_higher_order_at_the_release_is_left_out_and_no_other(release,
     release = release if "angle" in release else {"x": "0", "y": "0", **release}
     run = {"t_end": "60", "grid_step": "20", "digits": 15}
     # with drag, so that it does not come back to the horizontal
-    scene = make_scene(release=release, site={"latitude": latitude}, run=run, pendulum={"drag": "0.01"})
-    proved, computed = (solve(scene.with_values([f"run.level={level}"])) for level in ("enclosed", "computed"))
+    scene = make_scene(
+        release=release, site={"latitude": latitude}, run=run, pendulum={"drag": "0.01"}
+    )
+    proved, computed = (
+        solve(scene.with_values([f"run.level={level}"])) for level in ("enclosed", "computed")
+    )
     assert proved.directions == computed.directions != []
     for engine in ("octet", "heyoka"):
         row = sweep(scene, ["pendulum.length=67"], engine=engine, want=("transit-times",))
@@ -372,7 +394,9 @@ def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof
     """y0 = 0.5 m: the first transit is proved to be at 8.2266590196580988 s; there must be no spurious one at 0."""
     scene = make_scene(release={"x": "0", "y": "0.5"})
     done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), ("xdot",)))
-    assert abs(done.transits.exact("t")[0] - Fraction("8.2266590196580988")) < (1e-9 if number is DOUBLE else 1e-15)
+    assert abs(done.transits.exact("t")[0] - Fraction("8.2266590196580988")) < (
+        1e-9 if number is DOUBLE else 1e-15
+    )
 
 
 def test_a_moving_release_may_have_a_transit_in_its_first_step():

@@ -57,7 +57,8 @@ def acceleration_of(name: str, ctx, k, n, v):
     rates = lagrangian_rates(state, k) if name == "lagrangian" else model.derivatives(state, k, ctx)
     step = ctx.mpf(2) ** (-PREC // 3)
     ahead, behind = (
-        model.cartesian([s + sign * step * r for s, r in zip(state, rates, strict=True)], k, ctx)[1] for sign in (1, -1)
+        model.cartesian([s + sign * step * r for s, r in zip(state, rates, strict=True)], k, ctx)[1]
+        for sign in (1, -1)
     )
     return [(a - b) / (2 * step) for a, b in zip(ahead, behind, strict=True)]
 
@@ -80,7 +81,9 @@ def test_all_formulations_agree_to_sixty_digits_where_all_terms_are_large(seed):
     expected = acceleration(n, v, k)
     for name in FORMULATIONS:
         got = acceleration_of(name, ctx, k, n, v)
-        assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < ctx.mpf(10) ** -60, name
+        assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < ctx.mpf(10) ** -60, (
+            name
+        )
 
 
 def test_effective_gravity_leaves_the_centrifugal_force_of_the_swing_alone():
@@ -89,9 +92,16 @@ def test_effective_gravity_leaves_the_centrifugal_force_of_the_swing_alone():
     ctx, k, n, v = model_at(scene, PREC)
     rate, gravity, length, drag = (
         ctx.mpf(value.numerator) / value.denominator
-        for value in (scene.exact.rotation_rate, scene.exact.gravity, scene.exact.length, scene.exact.drag)
+        for value in (
+            scene.exact.rotation_rate,
+            scene.exact.gravity,
+            scene.exact.length,
+            scene.exact.drag,
+        )
     )
-    latitude = ctx.mpf(scene.exact.latitude.numerator) / scene.exact.latitude.denominator * ctx.pi / 180
+    latitude = (
+        ctx.mpf(scene.exact.latitude.numerator) / scene.exact.latitude.denominator * ctx.pi / 180
+    )
     turn = (0, rate * ctx.cos(latitude), rate * ctx.sin(latitude))
     away, sideways = cross(turn, cross(turn, n)), cross(turn, v)
     for i, got in enumerate(force(n, v, k)):
@@ -106,7 +116,9 @@ def test_above_the_horizontal_all_but_the_plane_form_agree(seed):
     expected = acceleration(n, v, k)
     for name in FORMULATIONS.keys() - {"plane"}:
         got = acceleration_of(name, ctx, k, n, v)
-        assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < ctx.mpf(10) ** -60, name
+        assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < ctx.mpf(10) ** -60, (
+            name
+        )
 
 
 @pytest.mark.parametrize("name", one_in(4, ["momentum", "space", "spin", "plane", "angles"]))
@@ -133,9 +145,16 @@ def test_the_force_is_newtons_law_in_axes_fixed_in_space(seed):
         n_t = [p + q * t + r * t * t / 2 for p, q, r in zip(n, v, a, strict=True)]
         sin_t, cos_t = ctx.sin(k.rate * t), ctx.cos(k.rate * t)
         out = k.axis_distance - k.sin * n_t[1] + k.cos * n_t[2]
-        return (-sin_t * n_t[0] + cos_t * out, cos_t * n_t[0] + sin_t * out, k.cos * n_t[1] + k.sin * n_t[2])
+        return (
+            -sin_t * n_t[0] + cos_t * out,
+            cos_t * n_t[0] + sin_t * out,
+            k.cos * n_t[1] + k.sin * n_t[2],
+        )
 
-    second = [(p - 2 * q + r) / step**2 for p, q, r in zip(inertial(step), inertial(0), inertial(-step), strict=True)]
+    second = [
+        (p - 2 * q + r) / step**2
+        for p, q, r in zip(inertial(step), inertial(0), inertial(-step), strict=True)
+    ]
     up, north, east = (k.cos, 0, k.sin), (-k.sin, 0, k.cos), (0, 1, 0)
     rest = [s + k.gravity * u for s, u in zip(second, up, strict=True)]
     local = [dot(rest, axis) for axis in (east, north, up)]
@@ -170,7 +189,11 @@ def test_with_drag_the_invariant_falls_by_the_work_of_the_drag():
     a = acceleration(n, v, k)
     step = ctx.mpf(2) ** (-PREC // 3)
     ahead, behind = (
-        invariant([p + s * q for p, q in zip(n, v, strict=True)], [p + s * q for p, q in zip(v, a, strict=True)], k)
+        invariant(
+            [p + s * q for p, q in zip(n, v, strict=True)],
+            [p + s * q for p, q in zip(v, a, strict=True)],
+            k,
+        )
         for s in (step, -step)
     )
     work = -k.drag * dot(v, v) * k.length**2
@@ -215,7 +238,10 @@ def test_a_rotation_so_fast_that_the_bob_would_leave_singles_out_no_rest_positio
         return
     rest = rest_position(k, ctx)
     angle = ctx.atan2(rest[1], -rest[2])
-    here, *beside = (energy((0, ctx.sin(angle + off), -ctx.cos(angle + off)), (0, 0, 0), k) for off in (0, -1e-3, 1e-3))
+    here, *beside = (
+        energy((0, ctx.sin(angle + off), -ctx.cos(angle + off)), (0, 0, 0), k)
+        for off in (0, -1e-3, 1e-3)
+    )
     assert here < min(beside)
 
 
@@ -246,7 +272,16 @@ def test_a_vanishing_constant_is_exactly_zero(sections, zeros):
 def test_constants_are_their_entries_and_exact_zeros():
     _, k, _, _ = model_at(make_scene(site={"latitude": "90"}), 100)
     assert k.entries("turn", "pull", "drag") == {"turn_2": k.turn[2], "pull_2": k.pull[2]}
-    names = {"length", "turn_2", "pull_2", "centrifugal_0", "centrifugal_1", "gravity", "rate", "sin"}
+    names = {
+        "length",
+        "turn_2",
+        "pull_2",
+        "centrifugal_0",
+        "centrifugal_1",
+        "gravity",
+        "rate",
+        "sin",
+    }
     assert set(k.entries()) == names
     assert Constants.of(k.entries()) == k
     assert Constants.of({"turn_1": 3, "drag": 2}) == Constants(turn=(0, 3, 0), drag=2)
@@ -256,12 +291,16 @@ def test_the_distance_from_the_axis_is_wgs84s_prime_vertical_radius():
     """N at 45 degrees on WGS84 is 6388838.290 m (geodesy tables)."""
     ctx = context(100)
     half = ctx.sqrt(ctx.mpf(1) / 2)
-    distance = axis_distance(ctx.mpf(6378137), 1 / ctx.mpf("298.257223563"), 0, half, half, ctx.sqrt)
+    distance = axis_distance(
+        ctx.mpf(6378137), 1 / ctx.mpf("298.257223563"), 0, half, half, ctx.sqrt
+    )
     assert abs(distance / half - ctx.mpf("6388838.290")) < 5e-4
 
 
 def test_a_release_by_angles_is_the_release_by_coordinates():
-    scene = make_scene(release={"angle": "30", "azimuth": "90", "angle_rate": "10", "azimuth_rate": "20"})
+    scene = make_scene(
+        release={"angle": "30", "azimuth": "90", "angle_rate": "10", "azimuth_rate": "20"}
+    )
     ctx = context(200)
     (x, y, z), (vx, vy, vz) = release(scene.exact, ctx)
     assert x == 0
@@ -304,14 +343,17 @@ def test_a_variable_whose_rate_is_exactly_zero_is_not_carried(site, name, expect
     assert len(state) == len(less.variables)
     assert less.cartesian(state, start.k, start.ctx) == whole.cartesian(full, start.k, start.ctx)
     rates = dict(zip(whole.variables, whole.derivatives(full, start.k, start.ctx), strict=True))
-    assert list(less.derivatives(state, start.k, start.ctx)) == [rates[one] for one in less.variables]
+    assert list(less.derivatives(state, start.k, start.ctx)) == [
+        rates[one] for one in less.variables
+    ]
     assert [rates[one] for one in expected] == [0] * len(expected)
 
 
 def test_with_drag_nothing_is_constant():
     assert (
         constant_variables(
-            FORMULATIONS["momentum"], start_of(make_scene(pendulum={"drag": "1e-9"}, site={"latitude": "90"})).k
+            FORMULATIONS["momentum"],
+            start_of(make_scene(pendulum={"drag": "1e-9"}, site={"latitude": "90"})).k,
         )
         == []
     )

@@ -2,7 +2,14 @@
 
 from fractions import Fraction
 
-from reference.numbers.precision import bits_of, decimals_for, double_below, fixed_decimal, magnitude, rounded_up
+from reference.numbers.precision import (
+    bits_of,
+    decimals_for,
+    double_below,
+    fixed_decimal,
+    magnitude,
+    rounded_up,
+)
 from reference.numbers.table import Table
 
 

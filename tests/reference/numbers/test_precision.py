@@ -133,7 +133,8 @@ def test_the_ends_of_an_interval_are_rounded_outwards():
 
 def test_a_column_of_zeros_and_one_of_large_numbers_have_their_decimals():
     assert decimals_for(Fraction(0), 12) == 12
-    assert decimals_for(Fraction(12345), 3) == 0  # a number has no fewer digits than it takes to write
+    # a number has no fewer digits than it takes to write
+    assert decimals_for(Fraction(12345), 3) == 0
 
 
 @pytest.mark.parametrize("value", [0, 1, -3, 2**80, -(2**80), 0.1, -0.375, 3 * 2**70])
@@ -142,7 +143,8 @@ def test_any_number_is_its_own_fraction(value):
 
 
 @pytest.mark.parametrize(
-    ("prec", "name"), [(40, "double"), (53, "double"), (54, "long_double"), (64, "long_double"), (65, "real")]
+    ("prec", "name"),
+    [(40, "double"), (53, "double"), (54, "long_double"), (64, "long_double"), (65, "real")],
 )
 def test_the_cheapest_type_that_serves_is_taken(prec, name):
     assert cheapest_type(prec).name == name

@@ -34,7 +34,11 @@ def test_a_printed_number_is_the_decimal_nearest_to_it(value, bits, places):
     assert text.strip("-0.") or not text.startswith("-")
 
 
-@given(st.lists(st.tuples(numbers, numbers), min_size=1, max_size=5), st.integers(0, 20), st.integers(0, 20))
+@given(
+    st.lists(st.tuples(numbers, numbers), min_size=1, max_size=5),
+    st.integers(0, 20),
+    st.integers(0, 20),
+)
 def test_the_distance_of_two_tables_is_that_of_their_fractions(rows, bits, other_bits):
     one, other = table(rows, bits), table([(y, x) for x, y in rows], other_bits)
     gaps = one.distance(other)
@@ -67,13 +71,22 @@ def test_a_table_without_rows_has_zeros_for_its_largest_numbers():
 
 
 @given(numbers, st.integers(min_value=0, max_value=2**40), st.integers(min_value=0, max_value=12))
-def test_a_digit_is_decided_just_where_both_ends_of_the_interval_are_printed_alike(value, error, places):
+def test_a_digit_is_decided_just_where_both_ends_of_the_interval_are_printed_alike(
+    value, error, places
+):
     one = table([(value,)], 30, [(error,)], columns=("x",))
-    ends = [table([(value + side * error,)], 30, columns=("x",)).printed({"x": places}) for side in (-1, 1)]
+    ends = [
+        table([(value + side * error,)], 30, columns=("x",)).printed({"x": places})
+        for side in (-1, 1)
+    ]
     undecided = one.undecided({"x": places})
     assert (undecided is None) == (ends[0] == ends[1])
     if undecided:
-        assert undecided == (Fraction(error * 10**places, 2**30), "x", one.printed({"x": places})[0][0])
+        assert undecided == (
+            Fraction(error * 10**places, 2**30),
+            "x",
+            one.printed({"x": places})[0][0],
+        )
 
 
 @given(st.fractions(), st.fractions(min_value=0))
@@ -93,7 +106,8 @@ def test_errors_are_rounded_up_for_all_rows():
 
 def test_a_column_of_rounding_noise_takes_the_digits_of_its_kind():
     sizes = resolved(
-        {"x": Fraction(1), "y": Fraction(1, 10**9), "z": Fraction(60)}, dict.fromkeys("xyz", Fraction(1, 10**9))
+        {"x": Fraction(1), "y": Fraction(1, 10**9), "z": Fraction(60)},
+        dict.fromkeys("xyz", Fraction(1, 10**9)),
     )
     assert sizes == {"x": 1, "y": 60, "z": 60}
     assert decimals_of(sizes, 10) == {"x": 9, "y": 8, "z": 8}
@@ -136,7 +150,9 @@ def test_the_root_of_what_is_below_zero_is_zero():
 
 def test_columns_come_from_any_unit_and_rows_can_be_chosen():
     whole = FixedPoint.column(integers([1, -2, 3 * 10**50]), 10**50, BITS)
-    for exact, found in zip((Fraction(1, 10**50), Fraction(-2, 10**50), Fraction(3)), whole.fractions(), strict=True):
+    for exact, found in zip(
+        (Fraction(1, 10**50), Fraction(-2, 10**50), Fraction(3)), whole.fractions(), strict=True
+    ):
         assert 0 <= exact - found < UNIT
     assert whole[np.array([False, True, True])].fractions() == whole.fractions()[1:]
 

@@ -75,7 +75,9 @@ def test_an_unquoted_whole_number_is_exact_and_allowed(tmp_path):
 
 def test_a_byte_order_mark_does_no_harm(tmp_path):
     path = tmp_path / "s.toml"
-    path.write_bytes(b'\xef\xbb\xbfid = "s"\n[pendulum]\nlength = "67"\n[release]\nx = "0.3"\ny = "0"\n')
+    path.write_bytes(
+        b'\xef\xbb\xbfid = "s"\n[pendulum]\nlength = "67"\n[release]\nx = "0.3"\ny = "0"\n'
+    )
     assert load_scene(path).exact.length == 67
 
 
@@ -89,17 +91,32 @@ REFUSED = [
     ("an absurd exponent", {"site": {"gravity": "1e999999999"}}, "site.gravity", "between"),
     ("latitude beyond 90", {"site": {"latitude": "90.0001"}}, "site.latitude", "at most 90"),
     ("latitude below -90", {"site": {"latitude": "-91"}}, "site.latitude", "at least -90"),
-    ("a prolate Earth", {"site": {"inverse_flattening": "0.5"}}, "site.inverse_flattening", "above 1"),
+    (
+        "a prolate Earth",
+        {"site": {"inverse_flattening": "0.5"}},
+        "site.inverse_flattening",
+        "above 1",
+    ),
     ("negative drag", {"pendulum": {"drag": "-1"}}, "pendulum.drag", "at least 0"),
     ("unknown key", {"site": {"lattitude": "1"}}, "site.lattitude", "a field that scenes have"),
     ("unknown table", {"planet": {}}, "planet", "a field that scenes have"),
     ("a number for a table", {"site": 3}, "site", "[site]"),
     ("off the sphere", {"release": {"x": "60", "y": "40"}}, "release", "x² + y² less than"),
-    ("on the equator of the sphere", {"release": {"x": "67", "y": "0"}}, "release", "x² + y² less than"),
+    (
+        "on the equator of the sphere",
+        {"release": {"x": "67", "y": "0"}},
+        "release",
+        "x² + y² less than",
+    ),
     ("no release", {"release": {}}, "release", "x and y"),
     ("half a release", {"release": {"x": "1"}}, "release.y", "a value"),
     ("two kinds of release", {"release": {"x": "1", "y": "1", "angle": "3"}}, "release", "either"),
-    ("angle beyond the top", {"release": {"angle": "181", "azimuth": "0"}}, "release.angle", "at most 180"),
+    (
+        "angle beyond the top",
+        {"release": {"angle": "181", "azimuth": "0"}},
+        "release.angle",
+        "at most 180",
+    ),
     ("digits 0", {"run": {"digits": 0}}, "run.digits", "from 1 to 1000"),
     ("digits absurd", {"run": {"digits": 10**9}}, "run.digits", "from 1 to 1000"),
     ("digits as a truth value", {"run": {"digits": True}}, "run.digits", "from 1 to 1000"),
@@ -110,8 +127,18 @@ REFUSED = [
     ("no time", {"run": {"t_end": "0"}}, "run.t_end", "above 0"),
     ("grid too fine", {"run": {"grid_step": "1e-9"}}, "run.grid_step", "grid times"),
     ("digits huge", {"run": {"digits": 16**5000}}, "run.digits", "whole number"),
-    ("an exponent no Decimal has", {"release": {"x": "1e99999999999999999999", "y": "0"}}, "release.x", "between"),
-    ("a zero that costs a power of ten", {"site": {"gravity": "0e999999999"}}, "site.gravity", "between"),
+    (
+        "an exponent no Decimal has",
+        {"release": {"x": "1e99999999999999999999", "y": "0"}},
+        "release.x",
+        "between",
+    ),
+    (
+        "a zero that costs a power of ten",
+        {"site": {"gravity": "0e999999999"}},
+        "site.gravity",
+        "between",
+    ),
     ("Arabic digits", {"site": {"gravity": "٩"}}, "site.gravity", "decimal number"),
     ("an Arabic exponent", {"site": {"gravity": "1e٣"}}, "site.gravity", "decimal number"),
     ("Arabic digits of digits", {"run": {"digits": "٤٠"}}, "run.digits", "whole number"),
@@ -130,7 +157,9 @@ REFUSED = [
 )
 def test_bad_input_names_the_field_and_what_was_expected(sections, field, expected):
     with pytest.raises(InputError) as caught:
-        make_scene(**{"scene_id": sections.pop("id", "test")} if "id" in sections else {}, **sections)
+        make_scene(
+            **{"scene_id": sections.pop("id", "test")} if "id" in sections else {}, **sections
+        )
     assert caught.value.field == field
     assert expected in str(caught.value)
     assert caught.value.exit_status == 2
@@ -201,7 +230,15 @@ EVERY_TYPE = [
 ]  # fmt: skip
 
 
-FIELDS = [*field_names(), "pendulum", "site", "release", "run", "uncertain", "uncertain.pendulum.length"]
+FIELDS = [
+    *field_names(),
+    "pendulum",
+    "site",
+    "release",
+    "run",
+    "uncertain",
+    "uncertain.pendulum.length",
+]
 
 
 @pytest.mark.parametrize("name", FIELDS)
@@ -217,14 +254,28 @@ def test_a_value_of_any_type_is_taken_or_refused_by_the_name_of_its_field(tmp_pa
             assert error.field.partition(".")[0] == table
 
 
-NO_SECTIONS = ["true", "false", "0", "5", "1.5", "1979-05-27", "[5]", "[[]]", "[{}]", '["highest", true]', "{ a = 1 }"]
+NO_SECTIONS = [
+    "true",
+    "false",
+    "0",
+    "5",
+    "1.5",
+    "1979-05-27",
+    "[5]",
+    "[[]]",
+    "[{}]",
+    '["highest", true]',
+    "{ a = 1 }",
+]
 
 
 @pytest.mark.parametrize("value", NO_SECTIONS)
 def test_sections_are_a_list_of_words(tmp_path, value):
     path = tmp_path / "mine.toml"
     path.write_text(f'[release]\nx = "1"\ny = "0"\n[run]\nsections = {value}\n')
-    with pytest.raises(InputError, match=r"a list of words: highest, .* Write each in quotes: sections = ") as caught:
+    with pytest.raises(
+        InputError, match=r"a list of words: highest, .* Write each in quotes: sections = "
+    ) as caught:
         load_scene(path)
     assert caught.value.field == "run.sections"
 
@@ -240,7 +291,9 @@ def test_only_plain_words_are_ids(text):
 def test_a_release_at_rest_is_known_as_such(paris):
     assert paris.exact.at_rest
     assert not paris.with_values(["release.vy=1e-30"]).exact.at_rest
-    assert not make_scene(release={"angle": "10", "azimuth": "0", "azimuth_rate": "1"}).exact.at_rest
+    assert not make_scene(
+        release={"angle": "10", "azimuth": "0", "azimuth_rate": "1"}
+    ).exact.at_rest
     assert isinstance(paris.exact, Inputs)
 
 
@@ -254,7 +307,10 @@ def test_a_grid_read_as_binary64_does_not_come_to_its_end_twice():
 
 def test_all_mistakes_of_a_file_are_told_at_once(tmp_path):
     path = tmp_path / "s.toml"
-    path.write_text('titel = "a"\n[pendulum]\nlenght = 3\ndrag = "-1"\n[site]\nlatitude = 95\n', encoding="utf-8")
+    path.write_text(
+        'titel = "a"\n[pendulum]\nlenght = 3\ndrag = "-1"\n[site]\nlatitude = 95\n',
+        encoding="utf-8",
+    )
     with pytest.raises(InputError) as caught:
         load_scene(path)
     first, *lines = str(caught.value).splitlines()
@@ -266,7 +322,8 @@ def test_all_mistakes_of_a_file_are_told_at_once(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "own"), [("church.toml", "church"), ("My hall-2.toml", "my_hall_2"), ("2nd.toml", None)]
+    ("name", "own"),
+    [("church.toml", "church"), ("My hall-2.toml", "my_hall_2"), ("2nd.toml", None)],
 )
 def test_a_file_without_an_id_is_named_after_itself(tmp_path, name, own):
     path = tmp_path / name
@@ -315,14 +372,20 @@ def test_an_option_may_say_what_set_says() -> None:
 
 
 def test_floats_in_python_stand_for_the_decimals_that_python_prints() -> None:
-    nested = {"id": "a", "pendulum": {"length": 12.3}, "release": {"x": np.float64(0.1), "y": np.float32(0.5)}}
+    nested = {
+        "id": "a",
+        "pendulum": {"length": 12.3},
+        "release": {"x": np.float64(0.1), "y": np.float32(0.5)},
+    }
     scene = as_scene(nested)
     assert (scene.pendulum.length, scene.release.x, scene.release.y) == ("12.3", "0.1", "0.5")
     with pytest.raises(InputError, match="NaN and inf"):
         as_scene({**nested, "release": {"x": float("nan"), "y": 0}})
 
 
-def test_widths_of_inputs_have_their_names_in_quotes_or_not_and_their_sign_or_not(tmp_path: Path) -> None:
+def test_widths_of_inputs_have_their_names_in_quotes_or_not_and_their_sign_or_not(
+    tmp_path: Path,
+) -> None:
     path = tmp_path / "hall.toml"
     path.write_text(
         '[release]\nx = "1"\ny = "0"\n'
@@ -336,5 +399,7 @@ def test_widths_of_inputs_have_their_names_in_quotes_or_not_and_their_sign_or_no
     assert load_scene(path) == scene
     jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), schema_of("scene.json"))
     path.write_text('[release]\nx = "1"\ny = "0"\n[uncertain]\n"pendulum.length" = "0"\n')
-    with pytest.raises(InputError, match=r"uncertain\.pendulum\.length: got '0', expected a number above 0"):
+    with pytest.raises(
+        InputError, match=r"uncertain\.pendulum\.length: got '0', expected a number above 0"
+    ):
         load_scene(path)

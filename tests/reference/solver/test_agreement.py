@@ -28,7 +28,12 @@ from reference.solver.pilot import MARGIN_BITS
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
 ONE_RUN_TWICE = make_scene(
     pendulum={"length": "0.230728425241"},
-    site={"latitude": "-19.109114989775", "gravity": "1.75", "rotation_rate": "0", "inverse_flattening": "inf"},
+    site={
+        "latitude": "-19.109114989775",
+        "gravity": "1.75",
+        "rotation_rate": "0",
+        "inverse_flattening": "inf",
+    },
     release={"x": "0", "y": "-3e-06", "vx": "-1.2623088e-05", "vy": "2.47212963009768e-06"},
     run={"t_end": "27.38", "grid_step": "0.684484", "digits": 25, "level": "self_consistent"},
 )
@@ -64,7 +69,9 @@ def test_a_tiny_swing_has_bounds_that_hold(scene):
         for name in columns:
             bounds = table.bound(name)
             assert min(bounds) > 0
-            assert all(gap <= bound for gap, bound in zip(gaps.exact(name), bounds, strict=True)), name
+            assert all(gap <= bound for gap, bound in zip(gaps.exact(name), bounds, strict=True)), (
+                name
+            )
 
 
 def test_where_steps_are_at_their_longest_the_second_run_has_others():
@@ -105,7 +112,10 @@ def test_what_never_changes_may_be_equal_in_both_runs(level, sections):
 ZERO_SCENES = {
     "short cord": {"pendulum": {"length": "0.01"}, "release": {"x": "0.003", "y": "0.004"}},
     "near the meridian": {"release": {"x": "1e-3", "y": "0.5"}, "site": {"rotation_rate": "1e-4"}},
-    "conical": {"pendulum": {"length": "2"}, "release": {"angle": "70", "azimuth": "20", "azimuth_rate": "200"}},
+    "conical": {
+        "pendulum": {"length": "2"},
+        "release": {"angle": "70", "azimuth": "20", "azimuth_rate": "200"},
+    },
     "drag": {"pendulum": {"length": "1", "drag": "0.05"}, "release": {"x": "0.003", "y": "0.004"}},
     "fast Earth": {
         "pendulum": {"length": "1"},
@@ -181,7 +191,10 @@ class TermsOfErrors:
         start = Start.of(TURNING.exact, 200)
         form = form_of(word, start)
         k = start.k
-        n, v = ([to_mpf(value, start.ctx) / k.length for value in part] for part in (state[:3], state[3:]))
+        n, v = (
+            [to_mpf(value, start.ctx) / k.length for value in part]
+            for part in (state[:3], state[3:])
+        )
         of_r, of_v = errors[:3], errors[3:]
 
         acc = acceleration(n, v, k)
@@ -193,8 +206,12 @@ class TermsOfErrors:
 
         self.slope = abs(inner(form.a, v) + inner(form.b, acc)) * k.length
         self.bend = abs(inner(form.a, acc) + inner(form.b, jerk)) * k.length
-        self.rates = {name: abs(rate) * k.length for name, rate in zip(GRID, (*v, *acc), strict=True)}
-        self.second_rates = {name: abs(rate) * k.length for name, rate in zip(GRID, (*acc, *jerk), strict=True)}
+        self.rates = {
+            name: abs(rate) * k.length for name, rate in zip(GRID, (*v, *acc), strict=True)
+        }
+        self.second_rates = {
+            name: abs(rate) * k.length for name, rate in zip(GRID, (*acc, *jerk), strict=True)
+        }
         self.form = total(form.a, of_r) + total(form.b, of_v)
 
         # a·|Δv| + λ b·|Δr| + (|b| Ω² + |b·n| (|F| + Ω²)) |Δr| + (|b| w + |b·n| (2 |v| + w)) |Δv|
@@ -245,9 +262,15 @@ def test_the_errors_of_zeros_are_the_sums_that_the_module_states(word):
             late = terms.late()
             expected = {"t": late, "ax": terms.rate + terms.bend * late}
             for name in GRID:
-                expected[name] = ratios[name] * unit + terms.rates[name] * late + terms.second_rates[name] * late**2
+                expected[name] = (
+                    ratios[name] * unit
+                    + terms.rates[name] * late
+                    + terms.second_rates[name] * late**2
+                )
             for name in columns_of(word):
-                assert float(found.bound(name)[row]) == pytest.approx(float(expected[name]), rel=NEAR), name
+                assert float(found.bound(name)[row]) == pytest.approx(
+                    float(expected[name]), rel=NEAR
+                ), name
 
 
 @pytest.mark.parametrize("word", WORDS)
@@ -269,7 +292,10 @@ def test_zeros_lack_bits_where_directions_differ_or_a_number_has_not_its_digits(
     missing, apart = zeros_lacking(Zeros(table, [1]), Zeros(table, [1]), places, witness)
     assert (missing, apart.largest()["t"]) == (0, 0)
     missing, apart = zeros_lacking(Zeros(table, [1]), Zeros(later, [1]), places, witness)
-    assert (missing, apart.largest()["t"]) == (bits_lacking({"t": Fraction(1, 256)}, {"t": 2}), Fraction(1, 256))
+    assert (missing, apart.largest()["t"]) == (
+        bits_lacking({"t": Fraction(1, 256)}, {"t": 2}),
+        Fraction(1, 256),
+    )
     # half of the 90 bits
     assert zeros_lacking(Zeros(table, [1]), Zeros(later, [-1]), places, witness) == (45, None)
 
@@ -283,7 +309,9 @@ def test_the_times_of_passages_have_the_decimals_of_the_latest_of_all_sections(p
     early = Zeros(replace(highest.table, values=highest.table.values[:3]), highest.directions[:3])
     table, directions = other.zeros["highest"].table, other.zeros["highest"].directions
     late = table.values[0][0] + (1 << table.bits - 9)
-    moved = Zeros(replace(table, values=[(late, *table.values[0][1:]), *table.values[1:3]]), directions[:3])
+    moved = Zeros(
+        replace(table, values=[(late, *table.values[0][1:]), *table.values[1:3]]), directions[:3]
+    )
     witness = replace(other, zeros=other.zeros | {"highest": moved})
     alone = Agreement.between(replace(one, zeros={"highest": early}), witness, 5)
     both = Agreement.between(replace(one, zeros={"highest": early, "lowest": lowest}), witness, 5)
@@ -298,7 +326,11 @@ def test_no_error_of_a_zero_is_below_twice_the_difference_of_two_runs(word, erro
     rows = range(1, len(rough.zeros[word].table) + 1)
     columns = range(1, len(columns_of(word)) + 1)
     # of more bits than a double has, so that half of them are rounded down there
-    apart = Table(columns_of(word), bits, [[2**bits * row * column // 10**12 for column in columns] for row in rows])
+    apart = Table(
+        columns_of(word),
+        bits,
+        [[2**bits * row * column // 10**12 for column in columns] for row in rows],
+    )
     table = with_zero_errors(rough, dict.fromkeys(GRID, error), word, apart)
     for name in columns_of(word):
         for bound, gap in zip(table.bound(name), apart.exact(name), strict=True):
@@ -324,8 +356,12 @@ def test_a_run_that_ends_before_the_first_zero_has_no_errors_of_zeros(paris, wor
     assert (len(table), table.columns) == (0, columns_of(word))
 
 
-@pytest.mark.parametrize(("units", "lacking"), [("1/4", 0), ("0.26", -1), ("1", 0), ("1.9", 1), ("1000", 10)])
-def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the_rest(units, lacking):
+@pytest.mark.parametrize(
+    ("units", "lacking"), [("1/4", 0), ("0.26", -1), ("1", 0), ("1.9", 1), ("1000", 10)]
+)
+def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the_rest(
+    units, lacking
+):
     gap = Fraction(units) / 10**5
     found = bits_lacking({"x": Fraction(0), "y": gap}, {"x": 9, "y": 5})
     assert found == (lacking + MARGIN_BITS if gap > Fraction(1, 4) / 10**5 else 0)
@@ -333,7 +369,9 @@ def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the
 
 def test_the_error_of_a_column_is_twice_the_difference_of_two_runs(paris):
     times = (Fraction(0), Fraction(30), Fraction(60))
-    one, other = (run(Plan(paris.exact, "spin", number, times, ("xdot",))) for number in (DOUBLE, real(120)))
+    one, other = (
+        run(Plan(paris.exact, "spin", number, times, ("xdot",))) for number in (DOUBLE, real(120))
+    )
     found = Agreement.between(one, other, 12)
     gaps = one.grid.only(GRID).distance(other.grid).largest()
     assert found.errors == {name: 2 * gap for name, gap in gaps.items()}
@@ -342,7 +380,9 @@ def test_the_error_of_a_column_is_twice_the_difference_of_two_runs(paris):
 @pytest.mark.parametrize("y", ["0.5", "0"])
 def test_the_error_of_a_column_that_never_changes_is_the_last_bit_of_the_second_run(y):
     """Of the cord's length, and of the largest speed; where nothing moves, of the speed of a swing as wide as that."""
-    scene = make_scene(pendulum={"length": "2"}, site={"rotation_rate": "0"}, release={"x": "0", "y": y})
+    scene = make_scene(
+        pendulum={"length": "2"}, site={"rotation_rate": "0"}, release={"x": "0", "y": y}
+    )
     times = (Fraction(0), Fraction(1), Fraction(2))
     one, other = (run(Plan(scene.exact, "spin", number, times)) for number in (DOUBLE, real(120)))
     found = Agreement.between(one, other, 12).errors
@@ -352,12 +392,17 @@ def test_the_error_of_a_column_that_never_changes_is_the_last_bit_of_the_second_
 
 
 @pytest.mark.parametrize("word", ["xdot", "lowest"])
-def test_runs_that_find_other_zeros_lack_half_their_bits_and_are_not_asked_for_more_than_the_first_has(paris, word):
+def test_runs_that_find_other_zeros_lack_half_their_bits_and_are_not_asked_for_more_than_the_first_has(
+    paris, word
+):
     times = (Fraction(0), Fraction(60))
-    one, other = (run(Plan(paris.exact, "spin", number, times, (word,))) for number in (DOUBLE, real(120)))
+    one, other = (
+        run(Plan(paris.exact, "spin", number, times, (word,))) for number in (DOUBLE, real(120))
+    )
     zeros = other.zeros[word]
     fewer = replace(other, zeros={word: zeros._replace(directions=zeros.directions[:-1])})
     found = Agreement.between(one, fewer, 12)
     assert (found.missing_bits, found.zeros, found.transit_s) == (60, {word: None}, None)
     found = Agreement.between(replace(one, zeros={}), fewer, 12)
-    assert (found.missing_bits != 60, found.zeros, found.transit_s) == (True, {}, None)  # the grid alone tells
+    # the grid alone tells
+    assert (found.missing_bits != 60, found.zeros, found.transit_s) == (True, {}, None)

@@ -35,7 +35,12 @@ def number(value: str | Fraction) -> Any:
 
 def scene(release: dict[str, str], t_end: str, grid_step: str, **site: str) -> Scene:
     return parse_scene(
-        {"id": "closed_form", "site": site, "release": release, "run": {"t_end": t_end, "grid_step": grid_step}}
+        {
+            "id": "closed_form",
+            "site": site,
+            "release": release,
+            "run": {"t_end": t_end, "grid_step": grid_step},
+        }
     )
 
 
@@ -64,7 +69,12 @@ def start_in_cylinder_coordinates(release: dict[str, str]) -> tuple[Any, Any, An
         degree = MP.pi / 180
         angle = value["angle"] * degree
         climb = length * value.get("angle_rate", 0) * degree * MP.sin(angle)
-        return -length * MP.cos(angle), climb, value["azimuth"] * degree, value.get("azimuth_rate", 0) * degree
+        return (
+            -length * MP.cos(angle),
+            climb,
+            value["azimuth"] * degree,
+            value.get("azimuth_rate", 0) * degree,
+        )
     x, y, vx, vy = (value.get(key, MP.zero) for key in ("x", "y", "vx", "vy"))
     height = -MP.sqrt(length**2 - x**2 - y**2)
     return height, -(x * vx + y * vy) / height, MP.atan2(y, x), (x * vy - y * vx) / (x**2 + y**2)
@@ -92,12 +102,16 @@ class SphericalPendulum:
         momentum = aside * azimuth_rate
         square_speed = aside * azimuth_rate**2 + climb**2 * length**2 / aside
         energy = square_speed / 2 + gravity * height
-        low, high, outer = real_roots(-energy / gravity, -(length**2), (energy * length**2 - momentum**2 / 2) / gravity)
+        low, high, outer = real_roots(
+            -energy / gravity, -(length**2), (energy * length**2 - momentum**2 / 2) / gravity
+        )
         self.low, self.span = low, high - low
         self.m = self.span / (outer - low)
         self.w = MP.sqrt(gravity * (outer - low) / 2) / length
         self.quarter = MP.ellipk(self.m)
-        self.start = MP.ellipf(MP.asin(MP.sqrt(min(MP.one, max(MP.zero, (height - low) / self.span)))), self.m)
+        self.start = MP.ellipf(
+            MP.asin(MP.sqrt(min(MP.one, max(MP.zero, (height - low) / self.span)))), self.m
+        )
         self.start *= -1 if climb < 0 else 1
         self.length, self.azimuth, self.pull = length, azimuth, momentum / (2 * length * self.w)
 
@@ -143,11 +157,14 @@ def assert_path(solution: Solution, path: Path) -> None:
         4,
         [
             pytest.param(
-                {"angle": "140", "azimuth": "-70", "angle_rate": "-12", "azimuth_rate": "9"}, id="above_and_falling"
+                {"angle": "140", "azimuth": "-70", "angle_rate": "-12", "azimuth_rate": "9"},
+                id="above_and_falling",
             ),
             pytest.param({"x": "5", "y": "-3", "vx": "0.8", "vy": "1.1"}, id="moderate"),
             pytest.param({"x": "40", "y": "20", "vx": "-3", "vy": "14"}, id="wide"),
-            pytest.param({"angle": "115", "azimuth": "40", "azimuth_rate": "25"}, id="above_the_horizontal"),
+            pytest.param(
+                {"angle": "115", "azimuth": "40", "azimuth_rate": "25"}, id="above_the_horizontal"
+            ),
         ],
     ),
 )
@@ -165,10 +182,16 @@ def test_at_a_pole_the_bob_is_a_spherical_pendulum_seen_from_a_turntable(
     # The suspension stands on the axis (R = 0), so in axes that do not turn only gravity and the cord act: exact at
     # any amplitude and any rate, here one turn in two minutes.
     release = {"x": "20", "y": "11", "vx": "1", "vy": "-2.5"}
-    solution = solve(scene(release, "100", size("36.5", "7.3"), latitude=latitude, rotation_rate="0.05"), digits=DIGITS)
+    solution = solve(
+        scene(release, "100", size("36.5", "7.3"), latitude=latitude, rotation_rate="0.05"),
+        digits=DIGITS,
+    )
     height, climb, azimuth, azimuth_rate = start_in_cylinder_coordinates(release)
     rate = upward * number("0.05")
-    assert_path(solution, seen_from_turntable(SphericalPendulum(height, climb, azimuth, azimuth_rate + rate), rate))
+    assert_path(
+        solution,
+        seen_from_turntable(SphericalPendulum(height, climb, azimuth, azimuth_rate + rate), rate),
+    )
 
 
 @AT_BOTH_LEVELS
@@ -204,13 +227,22 @@ class PlanarPendulum:
             aside = MP.ellipf(MP.asin(1 / (MP.sqrt(2) * self.k)), self.k**2)
             in_half = [(self.quarter - aside) / self.w, (self.quarter + aside) / self.w, *in_half]
         halves = int(2 * t_end / self.period) + 1
-        return [t for n in range(halves) for t in (n * self.period / 2 + part for part in in_half) if t <= t_end]
+        return [
+            t
+            for n in range(halves)
+            for t in (n * self.period / 2 + part for part in in_half)
+            if t <= t_end
+        ]
 
 
 # 0.0075 rad, …, 3.1 rad
 @pytest.mark.parametrize("angle", one_in(2, ["0.42971834634811742", "80", "177.61691649055"]))
-def test_a_planar_pendulum_swings_as_sn_with_the_period_of_the_complete_integral(angle: str) -> None:
-    solution = solve(scene({"angle": angle, "azimuth": "0"}, "150", "7.3", rotation_rate="0"), digits=DIGITS)
+def test_a_planar_pendulum_swings_as_sn_with_the_period_of_the_complete_integral(
+    angle: str,
+) -> None:
+    solution = solve(
+        scene({"angle": angle, "azimuth": "0"}, "150", "7.3", rotation_rate="0"), digits=DIGITS
+    )
     planar = PlanarPendulum(number(angle) * MP.pi / 180)
     x, z = zip(*(planar(number(t)) for t in solution.times), strict=True)
     assert_column(solution.grid, "x", x)
@@ -220,7 +252,9 @@ def test_a_planar_pendulum_swings_as_sn_with_the_period_of_the_complete_integral
 
 
 def test_a_tiny_planar_swing_is_within_the_bound_that_a_single_run_states() -> None:
-    solution = solve(scene({"x": "1e-12", "y": "0"}, "20", "2.3", rotation_rate="0"), digits=20, level="computed")
+    solution = solve(
+        scene({"x": "1e-12", "y": "0"}, "20", "2.3", rotation_rate="0"), digits=20, level="computed"
+    )
     planar = PlanarPendulum(MP.asin(number("1e-12") / 67))
     assert_column(solution.grid, "z", [planar(number(t))[1] for t in solution.times], digits=20)
 
@@ -228,7 +262,9 @@ def test_a_tiny_planar_swing_is_within_the_bound_that_a_single_run_states() -> N
 def test_without_rotation_the_paper_s_amplitude_has_the_paper_s_period() -> None:
     # Mathar VII: 4 sqrt(l/g) K(sin(φ0/2)) = 16.423225 s and 0.06088938 Hz, released 0.5 m aside.
     solution = solve(scene({"x": "0.5", "y": "0"}, "20", "20", rotation_rate="0"), digits=DIGITS)
-    assert_column(solution.transits, "t", PlanarPendulum(MP.asin(number("0.5") / 67)).transits(number("20")))
+    assert_column(
+        solution.transits, "t", PlanarPendulum(MP.asin(number("0.5") / 67)).transits(number("20"))
+    )
     period = solution.transits.exact("t")[1]
     assert round(period, 6) == Fraction("16.423225")
     assert round(1 / period, 8) == Fraction("0.06088938")
@@ -237,7 +273,9 @@ def test_without_rotation_the_paper_s_amplitude_has_the_paper_s_period() -> None
 @AT_BOTH_LEVELS
 def test_a_planar_swing_off_the_axes_has_the_same_period(level: str) -> None:
     # The paper's own release without rotation, x = 0.3 and y = 0.4; at its transits vy is exactly zero.
-    solution = solve(scene({"x": "0.3", "y": "0.4"}, "20", "20", rotation_rate="0"), digits=20, level=level)
+    solution = solve(
+        scene({"x": "0.3", "y": "0.4"}, "20", "20", rotation_rate="0"), digits=20, level=level
+    )
     expected = PlanarPendulum(MP.asin(number("0.5") / 67)).transits(number("20"))
     assert_column(solution.transits, "t", expected, digits=20)
 
@@ -258,7 +296,9 @@ def test_at_the_pole_a_tiny_swing_follows_the_linear_solution(
     vx: str, vy: str, size: Callable[[str, str], str]
 ) -> None:
     release = {"x": "1e-12", "y": "5e-13", "vx": vx, "vy": vy}
-    solution = solve(scene(release, size("150", "600"), "31.7", latitude="90"), digits=DIGITS, transits=False)
+    solution = solve(
+        scene(release, size("150", "600"), "31.7", latitude="90"), digits=DIGITS, transits=False
+    )
     start = [number(release[key]) for key in ("x", "y", "vx", "vy")]
     w = MP.sqrt(number(GRAVITY) / number(LENGTH))
     reach = MP.hypot(*start[:2]) + MP.hypot(*start[2:]) / w
@@ -319,8 +359,12 @@ def decimals(value: Any, places: int) -> str:
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
-@pytest.mark.parametrize(("amplitude", "digits"), [("1e-12", 40), pytest.param("1e-30", 75, marks=pytest.mark.long)])
-def test_beside_the_rest_position_the_bob_follows_the_linearised_system(amplitude: str, digits: int) -> None:
+@pytest.mark.parametrize(
+    ("amplitude", "digits"), [("1e-12", 40), pytest.param("1e-30", 75, marks=pytest.mark.long)]
+)
+def test_beside_the_rest_position_the_bob_follows_the_linearised_system(
+    amplitude: str, digits: int
+) -> None:
     size, phi, length = number(amplitude), plumb_angle(), number(LENGTH)
     release = {"x": amplitude, "y": decimals(-length * MP.sin(phi) + size, 80)}
     solution = solve(scene(release, "200", "15.7"), digits=digits, transits=False)
@@ -371,7 +415,9 @@ def test_the_first_period_in_paris_is_the_paper_s_to_its_last_digit(paris_day: G
     assert round(1 / paris_day.transits.exact("t")[1], 9) == Fraction("0.060843633")
 
 
-def test_the_paper_s_frequency_needs_half_swings_counted_and_not_transits(paris_day: Golden) -> None:
+def test_the_paper_s_frequency_needs_half_swings_counted_and_not_transits(
+    paris_day: Golden,
+) -> None:
     # x = a cosθ cos(wt) + b sinθ sin(wt): while the swing plane passes north-south (θ = 90° near 13.2 h) the narrow
     # ellipse shifts the phase of x by half a swing, so xdot vanishes once more and n/(2 t_n) is one too many from then.
     times = paris_day.transits.exact("t")
@@ -380,8 +426,13 @@ def test_the_paper_s_frequency_needs_half_swings_counted_and_not_transits(paris_
     assert sorted(set(extra)) == [0, 1]
     assert extra == sorted(extra)
     assert 13 < times[extra.index(1)] / 3600 < Fraction("13.5")
-    frequency, printed, unit = (len(times) - 1) / (2 * times[-1]), Fraction("0.060843633"), Fraction(1, 10**9)
-    assert abs(frequency - printed) < unit  # 0.06084363370: the paper's digits cut off, one unit in the last if rounded
+    frequency, printed, unit = (
+        (len(times) - 1) / (2 * times[-1]),
+        Fraction("0.060843633"),
+        Fraction(1, 10**9),
+    )
+    # 0.06084363370: the paper's digits cut off, one unit in the last if rounded
+    assert abs(frequency - printed) < unit
     assert abs(len(times) / (2 * times[-1]) - printed) > 5000 * unit
 
 
@@ -406,7 +457,9 @@ def test_the_paper_s_estimate_from_apparent_gravity_is_within_its_claim(paris_da
 def test_let_go_at_rest_where_it_hangs_the_bob_stays(size: Callable[[str, str], str]) -> None:
     phi, length = plumb_angle(), number(LENGTH)
     y = decimals(-length * MP.sin(phi), 60)
-    solution = solve(scene({"x": "0", "y": y}, size("100", "600"), "31.7"), digits=DIGITS, transits=False)
+    solution = solve(
+        scene({"x": "0", "y": y}, size("100", "600"), "31.7"), digits=DIGITS, transits=False
+    )
     # From at rest, a swing never goes further than it began: the release's rounding, here less than 5e-61 m. The
     # two stiffnesses differ by Ω² l/g = 4e-8 of themselves, allowed for as a thousandth; along the sphere, y / cos φ.
     released = abs(number(y) + length * MP.sin(phi)) / MP.cos(phi)
@@ -427,13 +480,19 @@ DRAWN = pytest.mark.parametrize("seed", one_in(8, range(8)))
 def drawn_release(rng: Random) -> dict[str, str]:
     """A release to 3 m and 0.9 m/s; no component is zero."""
     highest = {"x": 30, "y": 30, "vx": 9, "vy": 9}
-    return {name: f"{rng.choice((-1, 1)) * rng.randint(1, most) / 10:.1f}" for name, most in highest.items()}
+    return {
+        name: f"{rng.choice((-1, 1)) * rng.randint(1, most) / 10:.1f}"
+        for name, most in highest.items()
+    }
 
 
 def last_row(solution: Solution) -> dict[str, tuple[Fraction, Any]]:
     """Value of every column at the end, and one unit of the last of the 20 digits asked for."""
     columns = {name: solution.grid.exact(name) for name in COLUMNS}
-    return {name: (column[-1], last_unit([number(v) for v in column], 20)) for name, column in columns.items()}
+    return {
+        name: (column[-1], last_unit([number(v) for v in column], 20))
+        for name, column in columns.items()
+    }
 
 
 def flipped(text: str) -> str:
@@ -465,13 +524,19 @@ def test_what_a_single_run_states_as_its_bound_is_one() -> None:
     asked = scene(release, "30", "30", latitude="-61", rotation_rate="0.001")
     single, truth = solve(asked, digits=20, level="computed").grid, solve(asked, digits=DIGITS).grid
     for name in COLUMNS:
-        assert abs(single.exact(name)[-1] - truth.exact(name)[-1]) <= single.bound(name)[-1] + truth.bound(name)[-1]
+        assert (
+            abs(single.exact(name)[-1] - truth.exact(name)[-1])
+            <= single.bound(name)[-1] + truth.bound(name)[-1]
+        )
 
 
 def exact_decimal(value: Fraction) -> str:
     """A fraction over a power of two as the decimal that equals it."""
     places = value.denominator.bit_length() - 1
-    sign, digits = "-" if value < 0 else "", str(abs(value.numerator) * 5**places).rjust(places + 1, "0")
+    sign, digits = (
+        "-" if value < 0 else "",
+        str(abs(value.numerator) * 5**places).rjust(places + 1, "0"),
+    )
     return f"{sign}{digits[:-places]}.{digits[-places:]}" if places else f"{sign}{digits}"
 
 
@@ -486,7 +551,9 @@ def test_a_run_split_at_any_time_ends_where_the_whole_one_ends(seed: int) -> Non
 
     whole = ended(release, 400)
     middle = ended(release, tenths)
-    rest = ended({name: exact_decimal(middle[name][0]) for name in ("x", "y", "vx", "vy")}, 400 - tenths)
+    rest = ended(
+        {name: exact_decimal(middle[name][0]) for name in ("x", "y", "vx", "vy")}, 400 - tenths
+    )
     # What the middle is off by swings on: a position by dr + dv/w, a velocity by dv + w dr, w = sqrt(g/l) = 0.38/s.
     # The amplitude, below 0.1 rad, changes w by too little in 40 s to matter; twice covers it and Coriolis.
     w = number("0.38")

@@ -49,21 +49,35 @@ def made(solved, tmp_path_factory):
 
 
 @pytest.mark.parametrize("word", CONFIRMATIONS)
-def test_each_choice_is_named_by_manifest_page_and_verify_and_made_again_byte_for_byte(made, word, foucault):
+def test_each_choice_is_named_by_manifest_page_and_verify_and_made_again_byte_for_byte(
+    made, word, foucault
+):
     manifest = read_files(made[word]).manifest
     assert manifest.enclosure is not None and f"--no-audit --confirm {word}" in manifest.command
-    others = [check for check in manifest.cross_checks if check.formulation != manifest.run.formulation]
+    others = [
+        check for check in manifest.cross_checks if check.formulation != manifest.run.formulation
+    ]
     assert [check.formulation for check in others] == ["space"] * (word != "none")
     for check in others:
         assert Fraction(check.position_m) < Fraction(manifest.bounds.position_m)
-        assert (check.transit_s is not None) == (word == "whole")  # the event run beside a sample is not recorded
-    assert f"It is not audited. {WORDS[word]}\n" in (made[word] / "certified.txt").read_text("utf-8")
-    assert foucault("verify", made[word])[1].endswith(f"the proof, the cross-checks (confirmation: {word})\n")
+        # the event run beside a sample is not recorded
+        assert (check.transit_s is not None) == (word == "whole")
+    assert f"It is not audited. {WORDS[word]}\n" in (made[word] / "certified.txt").read_text(
+        "utf-8"
+    )
+    assert foucault("verify", made[word])[1].endswith(
+        f"the proof, the cross-checks (confirmation: {word})\n"
+    )
     assert recompute(made[word]) == ([], [])
 
 
-def test_a_whole_confirmation_compares_transits_and_the_others_have_a_run_in_hardware_beside_them(solved, made):
-    check, bounds = read_files(made["whole"]).manifest.cross_checks[-1], read_files(made["whole"]).manifest.bounds
+def test_a_whole_confirmation_compares_transits_and_the_others_have_a_run_in_hardware_beside_them(
+    solved, made
+):
+    check, bounds = (
+        read_files(made["whole"]).manifest.cross_checks[-1],
+        read_files(made["whole"]).manifest.bounds,
+    )
     assert Fraction(check.transit_s) < Fraction(bounds.transit_s)
     guards = {word: solution.guard for word, solution in solved.items()}
     assert guards["whole"] is None
@@ -77,12 +91,20 @@ def test_all_three_have_the_same_digits(made):
 
 @pytest.mark.parametrize(
     ("word", "claimed"),
-    [(word, claimed) for word in CONFIRMATIONS for claimed in ("whole", "sampled") if word != claimed],
+    [
+        (word, claimed)
+        for word in CONFIRMATIONS
+        for claimed in ("whole", "sampled")
+        if word != claimed
+    ],
 )
 def test_a_manifest_that_claims_another_confirmation_has_to_show_it(made, tmp_path, word, claimed):
     forged = Path(shutil.copytree(made[word], tmp_path / "forged"))
     forge(
-        forged, manifest=lambda m: m.update(command=m["command"].replace(f"--confirm {word}", f"--confirm {claimed}"))
+        forged,
+        manifest=lambda m: m.update(
+            command=m["command"].replace(f"--confirm {word}", f"--confirm {claimed}")
+        ),
     )
     (problem,) = problems_of(forged)
     assert problem.endswith(f"do not show the confirmation that the command names: {claimed}")
@@ -105,10 +127,14 @@ def test_a_proof_of_other_zeros_is_not_confirmed(word):
     proof = reference.solve(PARIS, **SHORT, sections=["gate 30"])
     scene, times = proof.scene, proof.times
     problem = ProofTask(scene, AUTO, run_pilot(scene.exact, times))
-    witness = run(confirming_plan(scene, times, problem.pilot, first_prec(scene, problem.pilot, AUTO)))
+    witness = run(
+        confirming_plan(scene, times, problem.pilot, first_prec(scene, problem.pilot, AUTO))
+    )
     assert confirmed(problem, proof, "whole", witness).proof.confirmed == "whole"
     zeros = proof.zeros[word]
-    forged = replace(proof, zeros=proof.zeros | {word: zeros._replace(directions=zeros.directions[:-1])})
+    forged = replace(
+        proof, zeros=proof.zeros | {word: zeros._replace(directions=zeros.directions[:-1])}
+    )
     with pytest.raises(IntegrationError, match="does not confirm"):
         confirmed(problem, forged, "whole", witness)
 
@@ -124,7 +150,9 @@ def test_without_a_proof_there_is_nothing_to_confirm(foucault, tmp_path):
     with pytest.raises(InputError, match="confirm: got"):
         reference.solve(PARIS, level="confirmed", confirm="sampled")
     for words in (("--confirm", "none"), ("--no-confirm",), ("--audit",), ("--no-audit",)):
-        status, _, said = foucault("generate", "paris", "--level", "confirmed", *words, "--out", tmp_path / "paris")
+        status, _, said = foucault(
+            "generate", "paris", "--level", "confirmed", *words, "--out", tmp_path / "paris"
+        )
         assert status == 2 and "without --level enclosed" in said and words[0] in said
 
 
@@ -140,7 +168,10 @@ def test_a_word_that_is_none_of_the_three_is_refused(foucault, tmp_path):
 
 @pytest.mark.parametrize(
     ("words", "named"),
-    [((), "--audit --confirm sampled"), (("--no-audit", "--no-confirm"), "--no-audit --confirm none")],
+    [
+        ((), "--audit --confirm sampled"),
+        (("--no-audit", "--no-confirm"), "--no-audit --confirm none"),
+    ],
 )
 def test_a_user_gets_an_audit_and_a_sampled_confirmation_unasked(foucault, tmp_path, words, named):
     status, out, _ = foucault(

@@ -31,11 +31,17 @@ def test_its_g_is_the_measured_one_at_its_latitude(solved):
 
 def test_its_plane_turns_clockwise_as_its_title_says(solved):
     scene, turning = solved.scene, solved.transits
-    turned = math.atan2(turning["y"][-1], turning["x"][-1]) - math.atan2(float(scene.release.y), float(scene.release.x))
-    degrees = abs((math.degrees(turned) + 90) % 180 - 90)  # the last turning point may lie on either side
+    turned = math.atan2(turning["y"][-1], turning["x"][-1]) - math.atan2(
+        float(scene.release.y), float(scene.release.x)
+    )
+    # the last turning point may lie on either side
+    degrees = abs((math.degrees(turned) + 90) % 180 - 90)
     rate = 360 / DAY * math.sin(math.radians(float(scene.site.latitude)))
     # the narrow ellipse of a release from rest precesses by itself, by 3/8 of (amplitude/length)² of the turn at most
-    length, amplitude = float(scene.pendulum.length), math.hypot(float(scene.release.x), float(scene.release.y))
+    length, amplitude = (
+        float(scene.pendulum.length),
+        math.hypot(float(scene.release.x), float(scene.release.y)),
+    )
     width = rate / math.sqrt(float(scene.site.gravity) / length)
     own = 3 / 8 * (amplitude / length) ** 2 * degrees
     assert degrees == pytest.approx(rate * turning["t"][-1], abs=own + width)
@@ -44,7 +50,9 @@ def test_its_plane_turns_clockwise_as_its_title_says(solved):
 
 def test_drag_halves_the_swing_in_ten_minutes(solved):
     scene, turning = solved.scene, solved.transits
-    ends = math.hypot(turning["x"][-1], turning["y"][-1]) / math.hypot(float(scene.release.x), float(scene.release.y))
+    ends = math.hypot(turning["x"][-1], turning["y"][-1]) / math.hypot(
+        float(scene.release.x), float(scene.release.y)
+    )
     expected = math.exp(-float(scene.pendulum.drag) * turning["t"][-1] / 2)
     assert ends == pytest.approx(expected, rel=2e-3)
     assert scene.id == "museum" or expected == pytest.approx(0.5, rel=0.01)

@@ -38,7 +38,9 @@ SHORT = {"t_end": "120", "digits": 30, "level": "enclosed"}
 
 @pytest.fixture(scope="module")
 def enclosed():
-    return reference.solve(reference.load_scene("paris"), t_end="120", level="enclosed", engine="limbs")
+    return reference.solve(
+        reference.load_scene("paris"), t_end="120", level="enclosed", engine="limbs"
+    )
 
 
 def finer(scene, prec=300):
@@ -53,7 +55,8 @@ def test_an_enclosed_file_is_digit_for_digit_the_confirmed_one(enclosed):
     assert [row[:-1] for row in ours.rows] == [row[:-1] for row in theirs.rows]
 
 
-TIES = ["release.x=0.30000000005", "release.vy=-0.000123456785", "run.t_end=60", "run.digits=10"]  # of the last digit
+# of the last digit
+TIES = ["release.x=0.30000000005", "release.vy=-0.000123456785", "run.t_end=60", "run.digits=10"]
 
 
 @pytest.mark.parametrize("level", ["computed", "confirmed", "enclosed"])
@@ -85,7 +88,9 @@ def test_the_manifest_carries_the_proof(enclosed, tmp_path):
     assert Fraction(record.position_radius_m) < Fraction(1, 10**45)
     assert record.agreement_bits > 160
     assert [check.formulation for check in manifest.cross_checks] == ["inertial"]
-    assert enclosed.guard.formulation == "momentum" and enclosed.guard.transit_s < Fraction(1, 10**6)
+    assert enclosed.guard.formulation == "momentum" and enclosed.guard.transit_s < Fraction(
+        1, 10**6
+    )
 
 
 SCENES = {
@@ -97,8 +102,14 @@ SCENES = {
     "equator": {"site": {"latitude": "0"}},
     "meridian": {"release": {"x": "0", "y": "0.5"}},
     "moving": {"release": {"x": "0.3", "y": "0.4", "vx": "0.067", "vy": "-0.2"}},
-    "3.1 rad": {"pendulum": {"length": "1"}, "release": {"angle": "177.61691649055521", "azimuth": "53"}},
-    "2 rad": {"pendulum": {"length": "1"}, "release": {"angle": "114.59155902616464", "azimuth": "53"}},
+    "3.1 rad": {
+        "pendulum": {"length": "1"},
+        "release": {"angle": "177.61691649055521", "azimuth": "53"},
+    },
+    "2 rad": {
+        "pendulum": {"length": "1"},
+        "release": {"angle": "114.59155902616464", "azimuth": "53"},
+    },
     "binary64": {"inputs": "binary64"},
 }
 
@@ -109,7 +120,9 @@ def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections, size):
     solution = reference.solve(scene)
     sheet, truth = grid_sheet(solution), finer(scene, 256)
     for name, text in zip(sheet.header[1:], sheet.rows[-1][1:], strict=True):
-        assert abs(Fraction(text) - truth.grid.exact(name)[-1]) <= Fraction(1, 2 * 10 ** sheet.decimals[name])
+        assert abs(Fraction(text) - truth.grid.exact(name)[-1]) <= Fraction(
+            1, 2 * 10 ** sheet.decimals[name]
+        )
     assert solution.possible == ()
     times = truth.transits.exact("t")
     assert len(times) == len(solution.directions)
@@ -128,7 +141,9 @@ HARD = {
 @pytest.mark.parametrize(("name", "engine"), one_in(4, HARD.values()), ids=HARD.keys())
 def test_scenes_that_bounds_find_hard_are_proved(name, engine, size):
     scene = reference.load_scene(name)
-    solution = reference.solve(scene, t_end=size("20", scene.run.t_end), level="enclosed", engine=engine)
+    solution = reference.solve(
+        scene, t_end=size("20", scene.run.t_end), level="enclosed", engine=engine
+    )
     assert solution.level == "enclosed"
     assert solution.possible == ()
 
@@ -139,9 +154,12 @@ def cpu_s():
 
 
 @pytest.mark.parametrize(
-    ("name", "t_end", "digits"), [("paris", "60", 15), ("pantheon", "60", 40), ("damped", "600", 20)]
+    ("name", "t_end", "digits"),
+    [("paris", "60", 15), ("pantheon", "60", 40), ("damped", "600", 20)],
 )
-def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(name, t_end, digits):
+def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twice(
+    name, t_end, digits
+):
     before = cpu_s()
     solution = reference.solve(name, t_end=t_end, digits=digits, level="enclosed", engine="heyoka")
     assert solution.run.cpu_s > 0 and solution.proof.enclosure.cpu_s > 0
@@ -150,7 +168,10 @@ def test_a_proof_about_heyokas_run_succeeds_at_once_and_no_second_is_counted_twi
 
 
 def test_the_cpu_seconds_of_an_audit_are_told():
-    plain, audited = (reference.solve("paris", t_end="60", level="enclosed", audit=audit) for audit in (False, True))
+    plain, audited = (
+        reference.solve("paris", t_end="60", level="enclosed", audit=audit)
+        for audit in (False, True)
+    )
     assert (plain.proof.audit_s, plain.check_s) < (audited.proof.audit_s, audited.check_s)
     assert audited.check_s >= audited.proof.enclosure.cpu_s + audited.proof.audit_s
 
@@ -202,9 +223,13 @@ def test_what_cannot_be_decided_is_said_and_its_row_left_out(tmp_path):
 
 def at_a_transit(places=60):
     """A scene that ends less than 10^-places s after its second transit, of fewer digits than would show it."""
-    far = reference.solve(make_scene(run=SHORT | {"t_end": "20", "digits": places + 2}), engine="limbs")
+    far = reference.solve(
+        make_scene(run=SHORT | {"t_end": "20", "digits": places + 2}), engine="limbs"
+    )
     late = -(-far.transits.exact("t")[1] * 10**places // 1)
-    return make_scene(run=SHORT | {"t_end": fixed_decimal(Fraction(late, 10**places), places), "digits": 24})
+    return make_scene(
+        run=SHORT | {"t_end": fixed_decimal(Fraction(late, 10**places), places), "digits": 24}
+    )
 
 
 def test_a_run_that_ends_at_a_transit_is_written_with_what_is_possible_up_to_its_end(tmp_path):
@@ -220,14 +245,18 @@ def test_a_possible_transit_is_reported_within_the_run():
     def doubt(proved):
         first, *others, last = proved.zeros["xdot"]
         early = replace(first, parity="odd", t=replace(first.t, low=Fraction(-1, 10**14)))
-        late = replace(last, parity="odd", t=replace(last.t, high=proved.times[-1] + Fraction(1, 10**14)))
+        late = replace(
+            last, parity="odd", t=replace(last.t, high=proved.times[-1] + Fraction(1, 10**14))
+        )
         return with_transits(proved, [early, *others, late])
 
     early, late = solved_with(doubt, make_scene(run=SHORT)).possible
     assert (early[0], late[1]) == (0, 120)
 
 
-@pytest.mark.parametrize(("engine", "shift"), [("heyoka", Fraction(1, 10**35)), ("limbs", Fraction(1, 10**29))])
+@pytest.mark.parametrize(
+    ("engine", "shift"), [("heyoka", Fraction(1, 10**35)), ("limbs", Fraction(1, 10**29))]
+)
 def test_a_state_outside_its_ball_names_time_and_component(engine, shift):
     def move(proved):
         row = list(proved.states[1])
@@ -240,7 +269,9 @@ def test_a_state_outside_its_ball_names_time_and_component(engine, shift):
 
 def test_a_transit_that_heyoka_does_not_see_is_named():
     with pytest.raises(IntegrationError, match="heyoka finds 14 transits, the enclosure 13"):
-        solved_with(lambda proved: with_transits(proved, proved.zeros["xdot"][:-1]), make_scene(run=SHORT))
+        solved_with(
+            lambda proved: with_transits(proved, proved.zeros["xdot"][:-1]), make_scene(run=SHORT)
+        )
 
 
 def test_a_transit_that_heyoka_sees_elsewhere_is_named():
@@ -257,7 +288,9 @@ def test_a_transit_that_heyoka_sees_elsewhere_is_named():
 def test_a_number_exactly_between_two_decimals_is_refused_with_advice():
     """z = -0.35 m, which follows from the length, has no nearest number of one digit."""
     run = {"t_end": "1", "digits": 1, "level": "enclosed"}
-    scene = make_scene(pendulum={"length": "0.35"}, release={"x": "0", "y": "0", "vx": "0.01"}, run=run)
+    scene = make_scene(
+        pendulum={"length": "0.35"}, release={"x": "0", "y": "0", "vx": "0.01"}, run=run
+    )
     with pytest.raises(UnreachableError, match="ask for one digit more"):
         reference.solve(scene)
 
@@ -279,7 +312,9 @@ def test_without_flint_the_level_says_what_to_install(monkeypatch):
 
 
 def test_the_feed_joins_step_to_step_without_a_gap(paris):
-    steps = list(engines()["heyoka"].taylor_steps(paris.exact, (Fraction(0), Fraction(60)), 128, 148))
+    steps = list(
+        engines()["heyoka"].taylor_steps(paris.exact, (Fraction(0), Fraction(60)), 128, 148)
+    )
     assert steps[0].centre == 0
     assert all(a.centre + a.h == b.centre for a, b in pairwise(steps))
     assert steps[-1].centre + steps[-1].h > 60
@@ -310,7 +345,9 @@ def test_an_error_in_the_feeds_process_arrives(paris):
 
 def test_a_proof_that_another_engine_has_to_make_is_the_one_that_this_engine_makes():
     """At rest at the top, limbs have too few bits for the second try: heyoka begins again with the first."""
-    begun_by_limbs, by_heyoka = (reference.solve("inverted_rest", engine=engine) for engine in ("limbs", "heyoka"))
+    begun_by_limbs, by_heyoka = (
+        reference.solve("inverted_rest", engine=engine) for engine in ("limbs", "heyoka")
+    )
     assert begun_by_limbs.level == "enclosed"
     assert begun_by_limbs.possible == ()
     for name in ("engine", "number", "order", "steps"):
@@ -320,7 +357,10 @@ def test_a_proof_that_another_engine_has_to_make_is_the_one_that_this_engine_mak
     # what was tried is told, and counts
     assert begun_by_limbs.discarded_s > by_heyoka.discarded_s > 0
     for solution in (begun_by_limbs, by_heyoka):
-        assert solution.cpu_s == solution.pilot_s + solution.run.cpu_s + solution.check_s + solution.discarded_s
+        assert (
+            solution.cpu_s
+            == solution.pilot_s + solution.run.cpu_s + solution.check_s + solution.discarded_s
+        )
 
 
 def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):
@@ -330,7 +370,8 @@ def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(m
     assert grid_sheet(by_flint) == grid_sheet(reference.solve(scene, engine="limbs"))
     honest = digits.norms
     monkeypatch.setattr(digits, "norms", lambda *words: [x / 2 for x in honest(*words)])
-    reference.solve(scene, engine="limbs")  # half of the defect still bounds these few digits: only the audit can tell
+    # half of the defect still bounds these few digits: only the audit can tell
+    reference.solve(scene, engine="limbs")
     with pytest.raises(UnreachableError, match="audit: the sums of digits are not FLINT's"):
         reference.solve(scene, engine="limbs", audit=True)
 
@@ -338,7 +379,9 @@ def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(m
 @pytest.mark.parametrize("words", [("xdot",), ("gate 30",), ("xdot", "gate 30"), ()], ids=", ".join)
 def test_an_audit_that_proves_other_digits_is_refused(words):
     asked = {"transits": "xdot" in words, "sections": [word for word in words if word != "xdot"]}
-    solution = reference.solve(make_scene(run={**SHORT, "t_end": "30", "digits": 20, **asked}), engine="limbs")
+    solution = reference.solve(
+        make_scene(run={**SHORT, "t_end": "30", "digits": 20, **asked}), engine="limbs"
+    )
     digits = proved_digits(solution)
     assert audited(solution, digits, 1.0).proof.audited
     assert tuple(solution.zeros) == words
@@ -349,7 +392,9 @@ def test_an_audit_that_proves_other_digits_is_refused(words):
             {"directions": [*zeros.directions, 1]},
             {"possible": ((Fraction(1), Fraction(2), "odd"),)},
         ):
-            others.append(replace(solution, zeros=solution.zeros | {word: zeros._replace(**change)}))
+            others.append(
+                replace(solution, zeros=solution.zeros | {word: zeros._replace(**change)})
+            )
     for other in others:
         with pytest.raises(IntegrationError, match="FLINT alone proves other digits"):
             audited(other, digits, 1.0)

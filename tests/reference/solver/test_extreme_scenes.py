@@ -46,7 +46,10 @@ def changed(name: str, **run: object) -> Scene:
 
 def rows(solution: Solution) -> list[list[Any]]:
     """x, y, z, vx, vy, vz at every grid time, as many digits as were computed."""
-    return [list(map(number, row)) for row in zip(*(solution.grid.exact(name) for name in COLUMNS), strict=True)]
+    return [
+        list(map(number, row))
+        for row in zip(*(solution.grid.exact(name) for name in COLUMNS), strict=True)
+    ]
 
 
 def test_there_are_enough_of_them_and_they_cover_what_breaks_programs() -> None:
@@ -85,14 +88,23 @@ def test_it_keeps_to_the_sphere_and_keeps_its_energy(name: str) -> None:
     """h = v²/2 + g z - Ω²/2 (squared distance from the Earth's axis), to 17 digits of its terms."""
     k = load_scene(name).exact
     end = min(k.t_end, 5 * k.grid_step)
-    solution = solve(changed(name, t_end=str(float(end)), digits=20, level="computed", transits=False))
+    solution = solve(
+        changed(name, t_end=str(float(end)), digits=20, level="computed", transits=False)
+    )
     assert len(solution.t) >= 6 or end == k.t_end
-    length, g, rate, distance = number(k.length), number(k.gravity), number(k.rotation_rate), axis_distance(k)
+    length, g, rate, distance = (
+        number(k.length),
+        number(k.gravity),
+        number(k.rotation_rate),
+        axis_distance(k),
+    )
     sin, cos = (f(number(k.latitude) * MP.pi / 180) for f in (MP.sin, MP.cos))
     energies = []
     for x, y, z, vx, vy, vz in rows(solution):
         assert abs(x * x + y * y + z * z - length**2) < 1e-18 * length**2
-        assert abs(x * vx + y * vy + z * vz) < 1e-18 * length * MP.sqrt(vx**2 + vy**2 + vz**2 + g * length + 1)
+        assert abs(x * vx + y * vy + z * vz) < 1e-18 * length * MP.sqrt(
+            vx**2 + vy**2 + vz**2 + g * length + 1
+        )
         out = distance - y * sin + z * cos
         energies.append((vx**2 + vy**2 + vz**2) / 2 + g * z - rate**2 * (x * x + out * out) / 2)
     speed = max(abs(v) for name in COLUMNS[3:] for v in solution.grid.exact(name))
@@ -106,23 +118,34 @@ def by_newton(k: Inputs, start: list[Any], t: Any) -> list[Any]:
     mp = mpmath.mp.clone()
     mp.dps = 30
     phi = mp.mpf(k.latitude.numerator) / k.latitude.denominator * mp.pi / 180
-    rate, g, drag = (mp.mpf(v.numerator) / v.denominator for v in (k.rotation_rate, k.gravity, k.drag))
+    rate, g, drag = (
+        mp.mpf(v.numerator) / v.denominator for v in (k.rotation_rate, k.gravity, k.drag)
+    )
     omega = mp.matrix([0, rate * mp.cos(phi), rate * mp.sin(phi)])
     pivot = mp.mpf(axis_distance(k)) * mp.matrix([0, -mp.sin(phi), mp.cos(phi)])
 
     def cross(a: Any, b: Any) -> Any:
-        return mp.matrix([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+        return mp.matrix(
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        )
 
     def dot(a: Any, b: Any) -> Any:
         return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
     def rates(_: Any, state: Any) -> list[Any]:
         r, v = mp.matrix(state[:3]), mp.matrix(state[3:])
-        push = mp.matrix([0, 0, -g]) - cross(omega, cross(omega, pivot + r)) - 2 * cross(omega, v) - drag * v
+        push = (
+            mp.matrix([0, 0, -g])
+            - cross(omega, cross(omega, pivot + r))
+            - 2 * cross(omega, v)
+            - drag * v
+        )
         pull = -(dot(v, v) + dot(r, push)) / dot(r, r)
         return [*v, *(push + pull * r)]
 
-    return list(mp.odefun(rates, 0, [mp.mpf(value) for value in start], tol=mp.mpf(10) ** -24)(mp.mpf(t)))
+    return list(
+        mp.odefun(rates, 0, [mp.mpf(value) for value in start], tol=mp.mpf(10) ** -24)(mp.mpf(t))
+    )
 
 
 @pytest.mark.parametrize(
@@ -147,13 +170,17 @@ def by_newton(k: Inputs, start: list[Any], t: Any) -> list[Any]:
     ),
 )
 def test_it_follows_newtons_law_with_the_whole_earth(name: str, t: str) -> None:
-    solution = solve(changed(name, t_end=t, grid_step=t, digits=25, level="computed", transits=False))
+    solution = solve(
+        changed(name, t_end=t, grid_step=t, digits=25, level="computed", transits=False)
+    )
     first, last = rows(solution)
     expected = by_newton(solution.scene.exact, first, t)
     for kind in (slice(0, 3), slice(3, 6)):
         size = max(abs(value) for value in (*last[kind], *first[kind]))
         moved = max(abs(a - b) for a, b in zip(first[kind], last[kind], strict=True))
-        assert max(abs(a - b) for a, b in zip(last[kind], expected[kind], strict=True)) < 1e-19 * size
+        assert (
+            max(abs(a - b) for a, b in zip(last[kind], expected[kind], strict=True)) < 1e-19 * size
+        )
         assert moved > 1e-12 * size
 
 
@@ -162,7 +189,11 @@ Path = Callable[[Any], tuple[Any, ...]]
 
 
 def exactly_conical(rate: Any) -> Path:
-    return lambda t: (number("0.6") * MP.cos(rate * t), number("0.6") * MP.sin(rate * t), number("-0.8"))
+    return lambda t: (
+        number("0.6") * MP.cos(rate * t),
+        number("0.6") * MP.sin(rate * t),
+        number("-0.8"),
+    )
 
 
 def separatrix(t: Any) -> tuple[Any, ...]:
@@ -183,7 +214,9 @@ def on_a_great_circle(t: Any) -> tuple[Any, ...]:
     speed = [number("0.5"), number("-0.2")]
     speed.append(-(start[0] * speed[0] + start[1] * speed[1]) / start[2])
     w = MP.sqrt(sum(v * v for v in speed))
-    return tuple(a * MP.cos(w * t) + v / w * MP.sin(w * t) for a, v in zip(start, speed, strict=True))
+    return tuple(
+        a * MP.cos(w * t) + v / w * MP.sin(w * t) for a, v in zip(start, speed, strict=True)
+    )
 
 
 def weightless(t: Any) -> tuple[Any, ...]:
@@ -192,7 +225,9 @@ def weightless(t: Any) -> tuple[Any, ...]:
     x, y, z = number("0.3"), number("0.4"), -MP.sqrt(number("0.75"))
     dx, dz = w * z, -w * x  # the axes' own velocity, Ω × r
     speed = MP.sqrt(dx * dx + dz * dz)
-    along = [p * MP.cos(speed * t) + d / speed * MP.sin(speed * t) for p, d in ((x, dx), (y, 0), (z, dz))]
+    along = [
+        p * MP.cos(speed * t) + d / speed * MP.sin(speed * t) for p, d in ((x, dx), (y, 0), (z, dz))
+    ]
     cos, sin = MP.cos(w * t), MP.sin(w * t)
     return along[0] * cos - along[2] * sin, along[1], along[0] * sin + along[2] * cos
 
@@ -217,7 +252,8 @@ def nanometre(t: Any) -> tuple[Any, ...]:
             ("weightless", weightless, "3000", 1e-28),
             ("force_free", on_a_great_circle, "600", 1e-28),
             ("inverted_rest", lambda _: (MP.zero, MP.zero, MP.one), "60", 1e-60),
-            ("nanometre", nanometre, "600", 1e-27),  # the swing's own nonlinearity, (1e-9/67)² of 1e-9 m times w t
+            # the swing's own nonlinearity, (1e-9/67)² of 1e-9 m times w t
+            ("nanometre", nanometre, "600", 1e-27),
         ],
     ),
 )
@@ -236,13 +272,17 @@ def test_the_bob_at_rest_does_not_move(size: Callable[[str, str], str]) -> None:
 def test_creeping_follows_the_equation_without_inertia() -> None:
     """θ' = -(g/lγ) sin θ, so tan(θ/2) falls exponentially; inertia changes it by one part in γ²l/g = 1.6e6."""
     solution = solve(
-        load_scene("creeping", ["site.rotation_rate=0", "run.t_end=2", "run.digits=12", "run.level=computed"])
+        load_scene(
+            "creeping",
+            ["site.rotation_rate=0", "run.t_end=2", "run.digits=12", "run.level=computed"],
+        )
     )
     angle = MP.acos(-rows(solution)[-1][2])
     fallen = MP.tan(MP.pi / 6) * MP.exp(-number("9.80665") / 4000 * 2)
     fall = MP.pi / 3 - 2 * MP.atan(fallen)
     assert fall > 0.004
-    assert abs(angle - 2 * MP.atan(fallen)) < fall * 3e-4  # of 8000 drag times, the first is spent getting up to speed
+    # of 8000 drag times, the first is spent getting up to speed
+    assert abs(angle - 2 * MP.atan(fallen)) < fall * 3e-4
     assert abs(MP.pi / 3 - angle - fall * (1 - 1 / number("8000"))) < fall * 1e-5
 
 
@@ -255,16 +295,24 @@ def test_it_passes_the_vertical_as_close_as_it_says(name: str, least: float, mos
     moment, miss = Fraction("4.1"), MP.inf
     for _ in range(5):
         t = text(Fraction(round(moment * 10**15), 10**15))
-        x, y, _, vx, vy, _ = rows(solve(changed(name, t_end=t, grid_step=t, level="computed", transits=False)))[-1]
+        x, y, _, vx, vy, _ = rows(
+            solve(changed(name, t_end=t, grid_step=t, level="computed", transits=False))
+        )[-1]
         moment -= Fraction(str((x * vx + y * vy) / (vx * vx + vy * vy)))
         miss = MP.hypot(x, y)
     assert least < miss < most
 
 
-@pytest.mark.parametrize(("name", "turned"), [("stability_below", False), ("stability_above", True)])
-def test_the_rest_position_changes_its_stability_where_the_pivot_is_weightless(name: str, turned: bool) -> None:
+@pytest.mark.parametrize(
+    ("name", "turned"), [("stability_below", False), ("stability_above", True)]
+)
+def test_the_rest_position_changes_its_stability_where_the_pivot_is_weightless(
+    name: str, turned: bool
+) -> None:
     """East-west: x'' = -(g - Ω²R) x / l near the bottom, R at the pivot, whatever the cord's length."""
-    solution = solve(changed(name, t_end="100", grid_step="100", level="computed", digits=15, transits=False))
+    solution = solve(
+        changed(name, t_end="100", grid_step="100", level="computed", digits=15, transits=False)
+    )
     k = solution.scene.exact
     rate = number(k.gravity - k.rotation_rate**2 * k.equatorial_radius) / number(k.length)
     factor = MP.cos(MP.sqrt(rate) * 100)  # cosh where the rate is negative
@@ -276,9 +324,15 @@ def test_the_rest_position_changes_its_stability_where_the_pivot_is_weightless(n
 def four_times_larger(scene: Scene) -> Scene:
     """Lengths times 4, times times 2, gravity as it is: the same motion by Newton's law."""
     k = scene.exact
-    position = [k.position[0] * 4, k.position[1] * 4, k.position[2] * 2, k.position[3] * 2] if k.position else []
+    position = (
+        [k.position[0] * 4, k.position[1] * 4, k.position[2] * 2, k.position[3] * 2]
+        if k.position
+        else []
+    )
     angles = [k.angles[0], k.angles[1], k.angles[2] / 2, k.angles[3] / 2] if k.angles else []
-    names = ("x", "y", "vx", "vy") if position else ("angle", "azimuth", "angle_rate", "azimuth_rate")
+    names = (
+        ("x", "y", "vx", "vy") if position else ("angle", "azimuth", "angle_rate", "azimuth_rate")
+    )
     document = scene.model_dump(exclude_none=True)
     document["pendulum"] |= {"length": text(k.length * 4), "drag": text(k.drag / 2)}
     document["site"] |= {
@@ -300,24 +354,44 @@ def text(value: Fraction) -> str:
 
 
 @pytest.mark.parametrize(
-    "name", one_in(4, ["small_body", "microgravity", "creeping_rotation", "barely_over", "near_inverted"])
+    "name",
+    one_in(4, ["small_body", "microgravity", "creeping_rotation", "barely_over", "near_inverted"]),
 )
 def test_four_times_larger_and_twice_as_slow_is_the_same_motion(name: str) -> None:
     step = load_scene(name).run.grid_step
-    asked = {"t_end": text(Fraction(step) * 5), "digits": 20, "level": "computed", "transits": False}
+    asked = {
+        "t_end": text(Fraction(step) * 5),
+        "digits": 20,
+        "level": "computed",
+        "transits": False,
+    }
     scene = changed(name, **asked)
     one, other = rows(solve(scene)), rows(solve(four_times_larger(scene)))
     for a, b in zip(one, other, strict=True):
         for value, image, factor in zip(a, b, (4, 4, 4, 2, 2, 2), strict=True):
-            assert abs(factor * value - image) < 1e-18 * max(abs(number(scene.exact.length)), abs(value))
+            assert abs(factor * value - image) < 1e-18 * max(
+                abs(number(scene.exact.length)), abs(value)
+            )
 
 
 def test_retrograde_is_the_mirror_image_and_the_south_pole_turns_like_it() -> None:
     short = ("run.t_end=60", "run.digits=25", "run.level=computed", "run.transits=false")
-    mirrored = rows(solve(load_scene("retrograde", ["site.rotation_rate=7.292115e-5", "release.x=-0.3", *short])))
+    mirrored = rows(
+        solve(
+            load_scene("retrograde", ["site.rotation_rate=7.292115e-5", "release.x=-0.3", *short])
+        )
+    )
     for a, b in zip(rows(solve(load_scene("retrograde", short))), mirrored, strict=True):
-        assert max(abs(p - s * q) for p, q, s in zip(a, b, (-1, 1, 1, -1, 1, 1), strict=True)) < 1e-24
-    north = rows(solve(load_scene("south_pole", ["site.latitude=90", "site.rotation_rate=-7.292115e-5", *short])))
+        assert (
+            max(abs(p - s * q) for p, q, s in zip(a, b, (-1, 1, 1, -1, 1, 1), strict=True)) < 1e-24
+        )
+    north = rows(
+        solve(
+            load_scene(
+                "south_pole", ["site.latitude=90", "site.rotation_rate=-7.292115e-5", *short]
+            )
+        )
+    )
     for a, b in zip(rows(solve(load_scene("south_pole", short))), north, strict=True):
         assert max(abs(p - q) for p, q in zip(a, b, strict=True)) < 1e-24
 
@@ -341,12 +415,17 @@ def test_a_swing_in_the_meridian_plane_has_no_transits_and_the_separatrix_one() 
             "Rounding grows so fast",
             marks=pytest.mark.long,
         ),
-        (["paris_30d", "--t-end", "1e12", "--set", "run.grid_step=1e9"], "steps per simulated second"),
+        (
+            ["paris_30d", "--t-end", "1e12", "--set", "run.grid_step=1e9"],
+            "steps per simulated second",
+        ),
         (["hard", "--set", "pendulum.drag=1e300"], "beyond the range of binary64"),
     ],
     ids=["stiff", "sensitive", "long", "out of range"],
 )
-def test_what_cannot_be_reached_ends_with_exit_3_and_its_reason(words, reason, tmp_path, foucault) -> None:
+def test_what_cannot_be_reached_ends_with_exit_3_and_its_reason(
+    words, reason, tmp_path, foucault
+) -> None:
     status, _, err = foucault("generate", *words, "--out", tmp_path / "made")
     assert status == 3
     assert reason in err

@@ -48,7 +48,9 @@ def test_at_rest_at_the_top_the_digits_of_the_angle_are_lost_as_the_hyperbolic_c
 
 def test_a_small_swing_loses_digits_by_its_phase_alone():
     """With g and l off by ε in opposite directions the phase w t is off by w t ε, and vz ~ sin 2 w t by twice that."""
-    scene = make_scene(site=STILL, release={"x": "0.1", "y": "0"}, run={"t_end": "3600", "grid_step": "1"})
+    scene = make_scene(
+        site=STILL, release={"x": "0.1", "y": "0"}, run={"t_end": "3600", "grid_step": "1"}
+    )
     phase = math.sqrt(9.80665 / 67) * 3600
     assert lost(scene) == pytest.approx(math.log10(2 * phase), abs=0.05)
 
@@ -77,7 +79,8 @@ def test_a_velocity_that_shrinks_with_the_precision_is_zero_and_not_lost():
     )
     assert run_pilot(scene.exact, tuple(scene.exact.grid)).prec <= pilot_runs.ZERO_PREC
     assert max(map(abs, reference.solve(scene).vx)) < 1e-20
-    for end in ("60", "15"):  # over 15 s even heyoka's step was infinite, which ended in an OverflowError
+    # over 15 s even heyoka's step was infinite, which ended in an OverflowError
+    for end in ("60", "15"):
         with pytest.raises(IntegrationError, match=r"run\.transits = false"):
             reference.solve(scene, transits=True, t_end=end)
 
@@ -86,7 +89,10 @@ def test_exact_rest_is_no_growth_and_a_motion_slower_than_65_bits_show_is_seen()
     """At 512 bits, as once, a month of rest took too many steps and was refused as if rounding grew."""
     still = load_scene("pole", ["release.x=0", "release.y=0"])
     pilot = run_pilot(still.exact, tuple(still.exact.grid))
-    assert (pilot.prec, max(pilot.largest[name] for name in STATE[3:])) == (pilot_runs.STILL_PREC, 0)
+    assert (pilot.prec, max(pilot.largest[name] for name in STATE[3:])) == (
+        pilot_runs.STILL_PREC,
+        0,
+    )
     slow = load_scene("at_rest")
     assert 0 < run_pilot(slow.exact, tuple(slow.exact.grid)).largest["vx"] < Fraction(1, 10**40)
 
@@ -109,7 +115,10 @@ def test_a_stiff_scene_is_refused_with_its_rates_and_their_ratio():
     assert caught.value.exit_status == 3
     reason = caught.value.reason
     assert reason.startswith("Stiff: drag takes the speed away at 4.0e+03/s")
-    slow, ratio = (float(text) for text in re.findall(r"relaxes at (\S+)/s; .* by a factor of (\S+)\. ", reason)[0])
+    slow, ratio = (
+        float(text)
+        for text in re.findall(r"relaxes at (\S+)/s; .* by a factor of (\S+)\. ", reason)[0]
+    )
     assert slow == pytest.approx(9.79 / 4000, rel=0.02)
     assert ratio == pytest.approx(4000**2 / 9.79, rel=0.05)
 
@@ -188,7 +197,10 @@ def test_hardware_decides_nothing_but_for_results_of_its_own(paris, level, digit
 
 @pytest.mark.parametrize("digits", [9, 25])
 def test_a_proof_has_no_number_of_hardware(paris, digits):
-    assert reference.solve(paris, t_end="60", digits=digits, level="enclosed").run.number[:4] in ("real", "limb")
+    assert reference.solve(paris, t_end="60", digits=digits, level="enclosed").run.number[:4] in (
+        "real",
+        "limb",
+    )
 
 
 @cache
@@ -198,10 +210,14 @@ def in_200_bits(times):
 
 
 @pytest.mark.parametrize("engine", ["limbs", "heyoka"])
-@pytest.mark.parametrize("t_end", ["600", *(pytest.param(end, marks=pytest.mark.long) for end in ("5000", "20000"))])
+@pytest.mark.parametrize(
+    "t_end", ["600", *(pytest.param(end, marks=pytest.mark.long) for end in ("5000", "20000"))]
+)
 def test_a_single_run_states_errors_that_its_own_arithmetic_makes(paris, t_end, engine):
     """heyoka's constants are rounded to the bits of the run, those of limbs are not: their errors differ by 2**15."""
-    scene = paris.with_values([f"run.t_end={t_end}", "run.grid_step=100", "run.level=computed", "run.digits=25"])
+    scene = paris.with_values(
+        [f"run.t_end={t_end}", "run.grid_step=100", "run.level=computed", "run.digits=25"]
+    )
     solution = reference.solve(scene, engine=engine)
     truth = in_200_bits(solution.times)
     assert solution.run.engine == engine
@@ -212,7 +228,9 @@ def test_a_single_run_states_errors_that_its_own_arithmetic_makes(paris, t_end, 
 @pytest.mark.parametrize("transits", [True, False])
 def test_a_run_in_double_states_errors_that_double_makes(paris, transits, size):
     """A run without transits was once compared with itself, and stated 5e-15 m where it was off by 7e-12."""
-    solution = reference.solve(paris, t_end=size("21600", "86400"), level="computed", digits=3, transits=transits)
+    solution = reference.solve(
+        paris, t_end=size("21600", "86400"), level="computed", digits=3, transits=transits
+    )
     golden = reference.load("paris")
     assert solution.run.number == "double"
     for name in STATE:

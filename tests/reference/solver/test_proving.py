@@ -22,7 +22,9 @@ def pilot(proved):
 
 
 # the word of the zeros, and what messages call one of them
-KINDS = pytest.mark.parametrize(("word", "name"), [("xdot", "transit"), ("gate 30", "gate 30 passage")])
+KINDS = pytest.mark.parametrize(
+    ("word", "name"), [("xdot", "transit"), ("gate 30", "gate 30 passage")]
+)
 
 
 def with_times(solution, word, times):
@@ -44,19 +46,25 @@ def without(solution, word, k):
     table, directions, _ = solution.zeros[word]
     values, errors = ([*column[:k], *column[k + 1 :]] for column in (table.values, table.errors))
     directions = [*directions[:k], *directions[k + 1 :]]
-    return changed(solution, word, table=replace(table, values=values, errors=errors), directions=directions)
+    return changed(
+        solution, word, table=replace(table, values=values, errors=errors), directions=directions
+    )
 
 
 @KINDS
 @pytest.mark.parametrize("k", [0, 3, 6])
 @pytest.mark.parametrize("way", [-1, 1])
-def test_a_zero_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(proved, pilot, word, name, k, way):
+def test_a_zero_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(
+    proved, pilot, word, name, k, way
+):
     """In double a time near 60 s has a last bit of 7e-15 s; xdot has errors near 1e-15 m/s, over its slope of 0.04."""
     times = proved.zeros[word].table.exact("t")
     for off, seen in ((Fraction(1, 10**13), True), (Fraction(1, 10**9), False)):
         moved = with_times(proved, word, [t + way * off * (i == k) for i, t in enumerate(times)])
         if not seen:
-            with pytest.raises(IntegrationError, match=f"does not find {name} {k + 1} of the enclosure"):
+            with pytest.raises(
+                IntegrationError, match=f"does not find {name} {k + 1} of the enclosure"
+            ):
                 guarded(moved, pilot)
             continue
         guard = guarded(moved, pilot).guard
@@ -91,7 +99,9 @@ def test_a_zero_that_is_missing_is_refused_unless_some_are_undecided(proved, pil
 @pytest.mark.parametrize(("x", "number"), [("0.3", "double"), ("-1e-9", "real")])
 def test_a_flat_transit_soon_after_the_release_is_seen_in_more_bits(x, number):
     """A nanometre beside the meridian, 0.615 m from the rest position: xdot is 0 at x/(0.615 Ω sin φ), after 30 µs."""
-    scene = reference.load_scene("paris", [f"release.x={x}", "release.y=0.5", "run.t_end=20", "run.grid_step=20"])
+    scene = reference.load_scene(
+        "paris", [f"release.x={x}", "release.y=0.5", "run.t_end=20", "run.grid_step=20"]
+    )
     solution = reference.solve(scene, digits=20, level="enclosed")
     assert solution.guard.number.startswith(number)
     if number == "real":

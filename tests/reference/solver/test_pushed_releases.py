@@ -22,8 +22,13 @@ PERIOD_S, PRECESSION_DEG_PER_H = 8.972486042888, -10.54416016
 
 
 def proved(site=None, t_end="20", words=WORDS, **release):
-    changed = {"site": ASIDE["site"] | (site or {}), "run": ASIDE["run"] | {"t_end": t_end, "grid_step": t_end}}
-    return reference.solve(ASIDE | changed | {"release": release}, level="enclosed", sections=list(words))
+    changed = {
+        "site": ASIDE["site"] | (site or {}),
+        "run": ASIDE["run"] | {"t_end": t_end, "grid_step": t_end},
+    }
+    return reference.solve(
+        ASIDE | changed | {"release": release}, level="enclosed", sections=list(words)
+    )
 
 
 def test_period_and_precession_of_a_bob_that_is_pushed_aside_are_proved():
@@ -99,13 +104,18 @@ def test_what_is_zero_by_rounding_alone_is_not_taken_for_zero(release):
 
 def test_doubles_that_only_nearly_cancel_are_taken_as_they_are():
     """0.3 · -0.04 + 0.4 · 0.03 is not 0 in the doubles next to these decimals: it is 4e-19, outwards."""
-    scene = ASIDE | {"inputs": "binary64", "release": {"x": "0.3", "y": "0.4", "vx": "-0.04", "vy": "0.03"}}
+    scene = ASIDE | {
+        "inputs": "binary64",
+        "release": {"x": "0.3", "y": "0.4", "vx": "-0.04", "vy": "0.03"},
+    }
     solution = reference.solve(scene, level="enclosed", t_end="20", sections=list(WORDS))
     x, y, vx, vy = solution.scene.exact.position
     radial = x * vx + y * vy
     assert radial > 0
     first = solution.sections["highest"].table.exact("t")[0]
-    assert float(first) == pytest.approx(float(radial / (x * x + y * y) * 20 / Fraction("9.8107")), rel=0.2)
+    assert float(first) == pytest.approx(
+        float(radial / (x * x + y * y) * 20 / Fraction("9.8107")), rel=0.2
+    )
 
 
 @pytest.mark.parametrize(
@@ -114,9 +124,21 @@ def test_doubles_that_only_nearly_cancel_are_taken_as_they_are():
         # where the plumb line leans, "sideways" to the north is uphill, and to the east is not
         ({"gravity_is": "ellipsoid"}, {"x": "0", "y": "1", "vx": "0.1"}, True),
         ({"gravity_is": "ellipsoid", "latitude": "90"}, {"x": "1", "y": "0", "vy": "0.1"}, True),
-        ({"gravity_is": "ellipsoid", "rotation_rate": "0"}, {"x": "1", "y": "0", "vy": "0.1"}, True),
-        ({"gravity_is": "ellipsoid", "latitude": "1e-40"}, {"x": "1", "y": "0", "vy": "0.1"}, False),
-        ({"gravity_is": "ellipsoid", "rotation_rate": "1e-25"}, {"x": "1", "y": "0", "vy": "0.1"}, False),
+        (
+            {"gravity_is": "ellipsoid", "rotation_rate": "0"},
+            {"x": "1", "y": "0", "vy": "0.1"},
+            True,
+        ),
+        (
+            {"gravity_is": "ellipsoid", "latitude": "1e-40"},
+            {"x": "1", "y": "0", "vy": "0.1"},
+            False,
+        ),
+        (
+            {"gravity_is": "ellipsoid", "rotation_rate": "1e-25"},
+            {"x": "1", "y": "0", "vy": "0.1"},
+            False,
+        ),
     ],
 )
 def test_sideways_is_across_the_plumb_line(site, release, decided):
@@ -126,7 +148,11 @@ def test_sideways_is_across_the_plumb_line(site, release, decided):
 
 # what is uncertain, and whether the push is exactly sideways all the same, for every pendulum
 BOXES = [
-    (EXACT["aside"], {"pendulum.length": "0.001", "release.vy": "0.0001", "release.x": "0.001"}, True),
+    (
+        EXACT["aside"],
+        {"pendulum.length": "0.001", "release.vy": "0.0001", "release.x": "0.001"},
+        True,
+    ),
     (EXACT["aside"], {"site.gravity": "0.00001", "site.latitude": "0.01"}, True),
     (EXACT["aside, by angles"], {"release.angle": "0.001", "release.azimuth": "0.01"}, True),
     (EXACT["aside, at an azimuth"], {"pendulum.length": "0.001"}, True),
@@ -138,7 +164,9 @@ BOXES = [
 
 
 @pytest.mark.parametrize("release, widths, decided", BOXES)
-def test_a_box_is_decided_where_every_pendulum_is_and_holds_the_points_of_its_corners(release, widths, decided):
+def test_a_box_is_decided_where_every_pendulum_is_and_holds_the_points_of_its_corners(
+    release, widths, decided
+):
     run = ASIDE["run"] | {"t_end": "20", "grid_step": "20"}
     scene = reference.parse_scene(ASIDE | {"release": release, "run": run})
     ranges = reference.prove_ranges(scene, widths=widths, sections=list(WORDS), derivatives=True)
@@ -149,9 +177,16 @@ def test_a_box_is_decided_where_every_pendulum_is_and_holds_the_points_of_its_co
             section, key = name.split(".")
             middle = getattr(getattr(scene, section), key) or "0"
             values[name] = f"{Decimal(middle) + sign * Decimal(width):f}"
-        corner = reference.solve(scene.with_values(values), level="enclosed", digits=15, sections=list(WORDS))
+        corner = reference.solve(
+            scene.with_values(values), level="enclosed", digits=15, sections=list(WORDS)
+        )
         for word in WORDS:
             box, point = ranges.sections[word], corner.sections[word].table.exact("t")
-            listed = [t for t in point if not any(low <= t <= high for low, high, _ in box.possible)]
+            listed = [
+                t for t in point if not any(low <= t <= high for low, high, _ in box.possible)
+            ]
             assert len(listed) == len(box.table)
-            assert all(low <= t <= high for t, (low, high) in zip(listed, box.table.exact("t"), strict=True))
+            assert all(
+                low <= t <= high
+                for t, (low, high) in zip(listed, box.table.exact("t"), strict=True)
+            )

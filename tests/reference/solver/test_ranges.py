@@ -51,7 +51,9 @@ def test_what_is_given_exactly_stays_so_and_widths_grow_with_the_time(paris):
 
 
 def test_doubles_are_rounded_outward(paris):
-    for (low, high), left, right in zip(paris.grid.exact("y"), paris.grid.low("y"), paris.grid.high("y"), strict=True):
+    for (low, high), left, right in zip(
+        paris.grid.exact("y"), paris.grid.low("y"), paris.grid.high("y"), strict=True
+    ):
         assert Fraction(left) <= low <= high <= Fraction(right)
         assert Fraction(np.nextafter(left, np.inf)) > low
 
@@ -79,11 +81,19 @@ def test_an_input_takes_its_short_name_or_a_long_one(paris):
 @pytest.mark.parametrize("name", one_in(2, UNCERTAIN))
 def test_every_input_may_be_uncertain(name):
     release = name.startswith("release.a")
-    angles = {"release": {"angle": "3", "azimuth": "20", "angle_rate": "0.1", "azimuth_rate": "0.1"}}
+    angles = {
+        "release": {"angle": "3", "azimuth": "20", "angle_rate": "0.1", "azimuth_rate": "0.1"}
+    }
     position = {"release": {"x": "1", "y": "0.5", "vx": "0.01", "vy": "0.02"}}
-    document = {"id": "a", "pendulum": {"length": "20", "drag": "0.01"}, "run": {"t_end": "30", "grid_step": "10"}}
+    document = {
+        "id": "a",
+        "pendulum": {"length": "20", "drag": "0.01"},
+        "run": {"t_end": "30", "grid_step": "10"},
+    }
     scene = reference.parse_scene(document | (angles if release else position))
-    wide, narrow = (reference.prove_ranges(scene, widths={name: f"±{width}"}) for width in ("1e-4", "1e-5"))
+    wide, narrow = (
+        reference.prove_ranges(scene, widths={name: f"±{width}"}) for width in ("1e-4", "1e-5")
+    )
     for column in ("x", "vy"):
         assert (wide.grid.low(column)[1:] < narrow.grid.low(column)[1:]).all()
         assert (narrow.grid.high(column)[1:] < wide.grid.high(column)[1:]).all()
@@ -94,7 +104,10 @@ def test_every_input_may_be_uncertain(name):
     [
         ({"lenght": "±1"}, "expected an input on which the motion depends"),
         ({"run.t_end": "±1"}, "expected an input on which the motion depends"),
-        ({"length": "1 mm"}, "expected half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001"),
+        (
+            {"length": "1 mm"},
+            "expected half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001",
+        ),
         ({"length": None}, "expected half of a width"),
         ({3: "0.001"}, "expected an input on which the motion depends"),
         ({"length": "-0.001"}, "expected a width above 0"),
@@ -119,20 +132,31 @@ def test_a_wrong_width_is_told(uncertain, told):
 
 def test_a_box_too_wide_is_refused_with_the_time_up_to_which_it_holds():
     wide = {"pendulum.length": "±0.001", "release.x": "±2"}
-    with pytest.raises(reference.UnreachableError, match=r"too wide: it holds up to t = (\d+)") as caught:
+    with pytest.raises(
+        reference.UnreachableError, match=r"too wide: it holds up to t = (\d+)"
+    ) as caught:
         reference.prove_ranges("paris", t_end="3600", widths=wide)
     holds = str(caught.value).partition("t = ")[2].partition(" ")[0]
     assert reference.prove_ranges("paris", t_end=holds, widths=wide).times[-1] == Fraction(holds)
 
 
 def test_a_box_without_a_pull_is_refused():
-    floating = {"id": "a", "site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "0", "vx": "1"}}
+    floating = {
+        "id": "a",
+        "site": {"gravity": "0", "rotation_rate": "0"},
+        "release": {"x": "1", "y": "0", "vx": "1"},
+    }
     with pytest.raises(reference.UnreachableError, match="too wide: it holds up to t = 0"):
         reference.prove_ranges(floating, t_end="10", widths={"length": "±0.001"})
 
 
 def test_derivatives_are_those_of_the_period_of_small_swings_and_of_neighbours():
-    scene = {"id": "a", "site": {"rotation_rate": "0"}, "release": {"x": "0.02", "y": "0.01"}, "run": {"t_end": "60"}}
+    scene = {
+        "id": "a",
+        "site": {"rotation_rate": "0"},
+        "release": {"x": "0.02", "y": "0.01"},
+        "run": {"t_end": "60"},
+    }
     widths = {"pendulum.length": "±1e-4", "site.gravity": "±1e-5", "release.x": "±1e-4"}
     ranges = reference.prove_ranges(scene, widths=widths, derivatives=True)
     period = sum(map(float, ranges.period)) / 2
@@ -145,7 +169,9 @@ def test_derivatives_are_those_of_the_period_of_small_swings_and_of_neighbours()
         assert low < slope < high
         assert high - low < 0.01 * abs(slope)
     beyond, within = (
-        reference.solve({**scene, "pendulum": {"length": str(67 + step)}}, level="computed", digits=12)
+        reference.solve(
+            {**scene, "pendulum": {"length": str(67 + step)}}, level="computed", digits=12
+        )
         for step in (1e-4, -1e-4)
     )
     slopes = (beyond.grid["x"] - within.grid["x"]) / 2e-4
@@ -170,7 +196,9 @@ def test_above_the_horizontal_transits_tell_no_period():
 def test_derivatives_that_are_not_there_are_told(paris):
     with pytest.raises(reference.InputError, match="derivatives=True"):
         paris.derivative("length")
-    ranges = reference.prove_ranges("paris", t_end="60", widths={"length": "±0.001"}, derivatives=True)
+    ranges = reference.prove_ranges(
+        "paris", t_end="60", widths={"length": "±0.001"}, derivatives=True
+    )
     with pytest.raises(reference.InputError, match=r"There are pendulum\.length"):
         ranges.derivative("gravity")
 
@@ -189,17 +217,23 @@ def widths_over_hulls(end, derivatives, count):
     scene = reference.load_scene("paris", ["run.grid_step=2", f"run.t_end={end}"])
     ranges = reference.prove_ranges(scene, widths=MEASURED, derivatives=derivatives)
     grid = ranges.grid
-    low, high = (np.column_stack([end(name) for name in grid.columns]) for end in (grid.low, grid.high))
+    low, high = (
+        np.column_stack([end(name) for name in grid.columns]) for end in (grid.low, grid.high)
+    )
     model, rng, box = Variants(), Random(4711), Box(*ranges.proof.proved.box)
     least, most = np.full_like(low, np.inf), np.full_like(low, -np.inf)
     for k in range(count):
-        states = model.states(drawn(box, rng, corner=k % 2 == 0), np.array([float(t) for t in ranges.times]))
+        states = model.states(
+            drawn(box, rng, corner=k % 2 == 0), np.array([float(t) for t in ranges.times])
+        )
         np.minimum(least, states, out=least)
         np.maximum(most, states, out=most)
     rounding = 1e-9 * (high - low).max(axis=0)  # of runs in double; the release is exact
     assert (low - rounding <= least).all()
     assert (most <= high + rounding).all()
-    by_swing = [x[: len(x) // 8 * 8].reshape(-1, 8, 6).max(axis=1) for x in (high - low, most - least)]
+    by_swing = [
+        x[: len(x) // 8 * 8].reshape(-1, 8, 6).max(axis=1) for x in (high - low, most - least)
+    ]
     return (by_swing[0] / by_swing[1])[1:]
 
 
@@ -211,11 +245,17 @@ def test_intervals_are_hardly_wider_than_the_pendulums_are_apart(derivatives, mo
 @pytest.mark.long
 def test_a_day_of_paris_holds_every_pendulum(tally):
     wider = widths_over_hulls("86400", True, 1000)
-    tally(f"a day of Paris, width over hull by swing: median {np.median(wider, axis=0)}, at the end {wider[-1]}")
+    tally(
+        f"a day of Paris, width over hull by swing: median {np.median(wider, axis=0)}, at the end {wider[-1]}"
+    )
 
 
 SWINGS = {  # scene, widths, whether the turn of the plane is decided
-    "from rest": ({"release": {"x": "0.3", "y": "0.4"}}, {"length": "±0.01", "latitude": "±0.1"}, True),
+    "from rest": (
+        {"release": {"x": "0.3", "y": "0.4"}},
+        {"length": "±0.01", "latitude": "±0.1"},
+        True,
+    ),
     "across the cut": (  # the points lie west and east, at azimuths near 180 degrees
         {"release": {"x": "-1", "y": "0"}, "site": {"rotation_rate": "1e-3"}},
         {"rotation_rate": "±1e-6", "y0": "±1e-4"},
@@ -232,7 +272,10 @@ SWINGS = {  # scene, widths, whether the turn of the plane is decided
         True,
     ),
     "lean": (
-        {"site": {"rotation_rate": "0.01", "equatorial_radius": "1000"}, "release": {"x": "1", "y": "2"}},
+        {
+            "site": {"rotation_rate": "0.01", "equatorial_radius": "1000"},
+            "release": {"x": "1", "y": "2"},
+        },
         {"latitude": "±0.02", "rotation_rate": "±1e-5"},
         True,
     ),
@@ -269,29 +312,43 @@ def swings_outside(name, count, derivatives, swing_of=None):
     With `swing_of` that tells the swing from the proven highest points.
     """
     document, widths, decided = SWINGS[name]
-    scene = reference.parse_scene({"id": "a", **document, "run": {"t_end": "60", "grid_step": "60"}})
-    ranges = reference.prove_ranges(scene, widths=widths, sections="highest", derivatives=derivatives)
+    scene = reference.parse_scene(
+        {"id": "a", **document, "run": {"t_end": "60", "grid_step": "60"}}
+    )
+    ranges = reference.prove_ranges(
+        scene, widths=widths, sections="highest", derivatives=derivatives
+    )
     highest, found = ranges.sections["highest"], []
     known = sum(high < decided_before(highest.possible) for _, high in highest.table.exact("t"))
     if swing_of is None:
         proved = ranges.swing
     else:
-        intervals = [*zip(*(highest.table.exact(column) for column in ("t", "x", "y", "z")), strict=True)]
+        intervals = [
+            *zip(*(highest.table.exact(column) for column in ("t", "x", "y", "z")), strict=True)
+        ]
         proved = swing_of(intervals[:known], scene.exact, ranges.proof.bits, ranges.proof.lean)
     assert (proved is not None and proved.precession is not None) == decided
-    swings = (sum(high < decided_before(ranges.possible) for _, high in ranges.transits.exact("t")) - 1) // 2
+    swings = (
+        sum(high < decided_before(ranges.possible) for _, high in ranges.transits.exact("t")) - 1
+    ) // 2
     for run in runs_in(name, Box(*ranges.proof.proved.box), count if decided else 0):
         points, times = azimuths(run)[:known], run.transits.exact("t")
         turned = [(b - a + 90) % 180 - 90 for (_, a), (_, b) in pairwise(points)]
         span = points[-1][0] - points[0][0]
         rate = sum(turned) * 3600 / span
         period = ranges.period and (times[2 * swings] - times[0]) / swings
-        numbers = {"hz": Fraction(len(points) - 1, 2) / span, "precession": rate, "full_turn": 360 / abs(rate)}
+        numbers = {
+            "hz": Fraction(len(points) - 1, 2) / span,
+            "precession": rate,
+            "full_turn": 360 / abs(rate),
+        }
         numbers |= {"period": 2 * span / (len(points) - 1)}
         intervals = [(word, value, getattr(proved, word)) for word, value in numbers.items()]
         for word, value, interval in [*intervals, ("of transits", period, ranges.period)]:
             if interval and not interval[0] <= value <= interval[1]:
-                found.append(f"{word} {float(value)} not in [{float(interval[0])}, {float(interval[1])}]")
+                found.append(
+                    f"{word} {float(value)} not in [{float(interval[0])}, {float(interval[1])}]"
+                )
     return found
 
 
@@ -324,22 +381,30 @@ def test_a_mutation_of_the_swing_of_a_box_is_noticed(mutation, name):
 
 def test_derivatives_narrow_period_and_precession():
     wide, narrow = (
-        reference.prove_ranges("museum_gate", t_end="100", widths=MEASURED, sections="highest", derivatives=d)
+        reference.prove_ranges(
+            "museum_gate", t_end="100", widths=MEASURED, sections="highest", derivatives=d
+        )
         for d in (False, True)
     )
     assert wide.period[0] <= narrow.period[0] < narrow.period[1] <= wide.period[1]
     (low, high), (least, most) = wide.swing.precession, narrow.swing.precession
     assert low < least < most < high
     assert most - least < (high - low) / 10
-    point = reference.solve("museum_gate", t_end="100", level="enclosed", sections="highest").swing.precession
+    point = reference.solve(
+        "museum_gate", t_end="100", level="enclosed", sections="highest"
+    ).swing.precession
     assert least < point[0] < point[1] < most
     slope = narrow.derivative("latitude").precession  # of -Ω sin φ, in degrees an hour per degree
     assert slope[0] < -15.041 * np.cos(np.radians(50)) * np.pi / 180 < slope[1]
 
 
-@pytest.mark.parametrize("width", ["±0.001", "+-0.001", "+/-0.001", "0.001", " ± 0.001", 0.001, Decimal("0.001")])
+@pytest.mark.parametrize(
+    "width", ["±0.001", "+-0.001", "+/-0.001", "0.001", " ± 0.001", 0.001, Decimal("0.001")]
+)
 def test_half_of_a_width_stands_with_a_sign_or_without_in_python_and_in_a_scene(width):
-    assert widths_of(reference.load_scene("paris"), {"length": width}) == {"pendulum.length": Fraction(1, 1000)}
+    assert widths_of(reference.load_scene("paris"), {"length": width}) == {
+        "pendulum.length": Fraction(1, 1000)
+    }
     scene = {"id": "a", "release": {"x": "1", "y": "0"}, "uncertain": {"pendulum.length": width}}
     if not isinstance(width, float):
         assert reference.parse_scene(scene).uncertain == {"pendulum.length": "±0.001"}

@@ -13,7 +13,8 @@ from reference.errors import InputError
 from reference.scenes.fields import LEVELS
 from reference.scenes.scene import parse_scene
 
-NEAR = 0.05  # of a swing: doubles lose digits where the motion amplifies errors; 400 bits tell each time exactly
+# of a swing: doubles lose digits where the motion amplifies errors; 400 bits tell each time exactly
+NEAR = 0.05
 LASTS = 12  # a damped swing is followed while it is above exp(-LASTS) of itself
 
 
@@ -26,7 +27,13 @@ def drawn(seed):
     end /= 1 + (seed == 34)  # a pushed rod, where doubles leave the sphere after four swings
     document["run"] |= {"t_end": f"{end:.9g}", "grid_step": f"{end / 3:.6g}", "digits": 14}
     azimuths = [f"{rng.uniform(-180, 180):.6f}" for _ in range(3)]
-    words = ["highest", "lowest", f"gate {azimuths[0]}", f"gate {azimuths[1]}@0", f"turn {azimuths[2]}"]
+    words = [
+        "highest",
+        "lowest",
+        f"gate {azimuths[0]}",
+        f"gate {azimuths[1]}@0",
+        f"turn {azimuths[2]}",
+    ]
     if seed in (2, 15):  # planets that turn so fast that the pull singles out no rest position
         del words[2]
     return parse_scene(document), words, 6.2832 / pace
@@ -41,8 +48,15 @@ def check(solution, words, swing):
         assert not passages.possible, (word, passages.possible)
         times = [float(t) for t in passages.table.exact("t")]
         told = list(zip(times, passages.directions, strict=True))
-        assert [way for _, way in told] == [way for _, way in expected[word]], (word, told, expected[word])
-        assert all(abs(t - other) < NEAR * swing for (t, _), (other, _) in zip(told, expected[word], strict=True)), word
+        assert [way for _, way in told] == [way for _, way in expected[word]], (
+            word,
+            told,
+            expected[word],
+        )
+        assert all(
+            abs(t - other) < NEAR * swing
+            for (t, _), (other, _) in zip(told, expected[word], strict=True)
+        ), word
     assert outside(inputs, {word: solution.sections[word].table for word in words}) == []
 
 
@@ -52,21 +66,40 @@ def test_what_the_end_of_a_steps_polynomial_lacks_counts_in_the_bounds():
     Bounds that follow from the errors of the grid alone do not hold here.
     """
     words = "run.sections=highest; lowest; turn 30"
-    scene = ["run.t_end=45", "run.digits=20", words, "release.vy=0.228", "release.x=0.802", "site.latitude=75.57"]
-    computed = reference.solve(reference.load_scene("paris", [*scene, "run.level=computed"]), engine="heyoka")
-    assert outside(computed.scene.exact, {word: found.table for word, found in computed.sections.items()}) == []
+    scene = [
+        "run.t_end=45",
+        "run.digits=20",
+        words,
+        "release.vy=0.228",
+        "release.x=0.802",
+        "site.latitude=75.57",
+    ]
+    computed = reference.solve(
+        reference.load_scene("paris", [*scene, "run.level=computed"]), engine="heyoka"
+    )
+    assert (
+        outside(
+            computed.scene.exact, {word: found.table for word, found in computed.sections.items()}
+        )
+        == []
+    )
 
 
 # in every run: a push with drag on the Earth
 @pytest.mark.parametrize(
-    "seed", [seed if seed == 8 else pytest.param(seed, marks=pytest.mark.long) for seed in range(40)]
+    "seed",
+    [seed if seed == 8 else pytest.param(seed, marks=pytest.mark.long) for seed in range(40)],
 )
 def test_sections_of_random_scenes_are_those_of_another_code(seed):
     scene, words, swing = drawn(seed)
     check(reference.solve(scene, level="enclosed", sections=words), words, swing)
 
 
-OWN_PLANE = {"id": "own_plane", "release": {"angle": "5", "azimuth": "30"}, "run": {"t_end": "40", "grid_step": "20"}}
+OWN_PLANE = {
+    "id": "own_plane",
+    "release": {"angle": "5", "azimuth": "30"},
+    "run": {"t_end": "40", "grid_step": "20"},
+}
 TINY = {  # a swing of a nanometre, whose height changes by 1e-20 m
     "id": "tiny",
     "site": {"gravity_is": "effective", "latitude": "90"},
@@ -91,7 +124,9 @@ def test_a_release_at_rest_in_the_gates_own_plane_is_possible_next_to_0_and_noth
     assert solution.sections["gate 30"].directions == [-1, 1, -1, 1, -1]
 
 
-@pytest.mark.parametrize("level", ["self_consistent", pytest.param("confirmed", marks=pytest.mark.long), "enclosed"])
+@pytest.mark.parametrize(
+    "level", ["self_consistent", pytest.param("confirmed", marks=pytest.mark.long), "enclosed"]
+)
 def test_the_highest_points_of_a_nanometres_swing_are_found_once_each(level):
     solution = reference.solve(TINY, level=level, sections=["highest", "lowest"])
     half = math.pi * math.sqrt(67 / 9.80665)
@@ -105,7 +140,9 @@ def test_the_highest_points_of_a_nanometres_swing_are_found_once_each(level):
 
 def test_all_levels_find_the_same_passages():
     words = ["highest", "gate 53.130102354155978@0", "gate 30", "turn 90", "turn 0"]
-    solutions = [reference.solve("paris", level=x, digits=15, t_end=60, sections=words) for x in LEVELS]
+    solutions = [
+        reference.solve("paris", level=x, digits=15, t_end=60, sections=words) for x in LEVELS
+    ]
     proof = solutions[-1]
     for solution in solutions[:-1]:
         for word in words:
@@ -113,10 +150,14 @@ def test_all_levels_find_the_same_passages():
             assert mine.directions == proved.directions
             apart = mine.table.distance(proved.table)
             for name in mine.table.columns:
-                bounds = zip(apart.exact(name), mine.table.bound(name), proved.table.bound(name), strict=True)
+                bounds = zip(
+                    apart.exact(name), mine.table.bound(name), proved.table.bound(name), strict=True
+                )
                 assert all(gap <= a + b for gap, a, b in bounds), (word, name)
     # xdot = 0 is one of them
-    assert proof.sections["turn 0"].table.exact("t") == pytest.approx(proof.transits.exact("t"), abs=1e-30)
+    assert proof.sections["turn 0"].table.exact("t") == pytest.approx(
+        proof.transits.exact("t"), abs=1e-30
+    )
 
 
 @pytest.mark.parametrize(
@@ -134,14 +175,21 @@ def test_all_levels_find_the_same_passages():
     ],
 )
 def test_a_wrong_section_is_refused_with_what_was_expected(words):
-    with pytest.raises(InputError, match=r"run\.sections.*(highest, lowest, gate AZIMUTH|each section once)"):
+    with pytest.raises(
+        InputError, match=r"run\.sections.*(highest, lowest, gate AZIMUTH|each section once)"
+    ):
         reference.solve("paris", sections=words)
 
 
 V11 = {  # Ω²l is 27.7 m/s², gravity 0.57: nothing but the axis of rotation holds the bob
     "id": "v11",
     "pendulum": {"length": "362.83"},
-    "site": {"latitude": "80.9", "gravity": "0.572", "rotation_rate": "0.27638", "equatorial_radius": "2.528"},
+    "site": {
+        "latitude": "80.9",
+        "gravity": "0.572",
+        "rotation_rate": "0.27638",
+        "equatorial_radius": "2.528",
+    },
     "release": {"x": "22.59", "y": "13.88", "vx": "0.855", "vy": "-0.55"},
     "run": {"t_end": "754.7", "grid_step": "44.4", "digits": 15},
 }
@@ -164,7 +212,9 @@ WEIGHTLESS = LEANING | {"id": "weightless", "site": {"gravity": "0", "rotation_r
         (LEANING, ("enclosed", "uncertain"), "in so fast a rotation a proof singles none out"),
     ],
 )
-def test_a_gate_without_a_rest_position_is_refused_with_its_reason_at_every_level(scene, levels, reason):
+def test_a_gate_without_a_rest_position_is_refused_with_its_reason_at_every_level(
+    scene, levels, reason
+):
     for level in levels:
         words = ["highest", "gate 33.3"]
         with pytest.raises(InputError, match=r"run\.sections: got 'gate 33\.3'") as caught:
@@ -173,11 +223,22 @@ def test_a_gate_without_a_rest_position_is_refused_with_its_reason_at_every_leve
             else:
                 reference.solve(scene, sections=words, level=level)
         assert reason in str(caught.value)
-        assert "Write gate 33.3@0 for the plane through the suspension's vertical" in str(caught.value)
+        assert "Write gate 33.3@0 for the plane through the suspension's vertical" in str(
+            caught.value
+        )
 
 
 def test_where_a_rest_position_is_known_the_gate_through_it_is_found():
     for level in ("self_consistent", "confirmed"):
-        assert len(reference.solve(LEANING, level=level, sections="gate 33.3").sections["gate 33.3"].table) == 1
-    beside = reference.solve(LEANING, level="enclosed", sections="gate 33.3@0").sections["gate 33.3@0"]
+        assert (
+            len(
+                reference.solve(LEANING, level=level, sections="gate 33.3")
+                .sections["gate 33.3"]
+                .table
+            )
+            == 1
+        )
+    beside = reference.solve(LEANING, level="enclosed", sections="gate 33.3@0").sections[
+        "gate 33.3@0"
+    ]
     assert not beside.possible

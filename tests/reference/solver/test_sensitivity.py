@@ -15,7 +15,9 @@ from reference.solver.sensitivity import Sensitivity, with_value
 
 TIMES = np.linspace(0.0, 600.0, 31)
 SCENES = {
-    "paris": make_scene(pendulum={"drag": "1e-4"}, release={"x": "0.3", "y": "0.4", "vx": "0.01", "vy": "-0.02"}),
+    "paris": make_scene(
+        pendulum={"drag": "1e-4"}, release={"x": "0.3", "y": "0.4", "vx": "0.01", "vy": "-0.02"}
+    ),
     "wide": make_scene(
         pendulum={"length": "2"},
         release={"angle": "70", "azimuth": "20", "angle_rate": "3", "azimuth_rate": "-4"},
@@ -43,18 +45,23 @@ def model():
     return Variants()
 
 
-@pytest.mark.parametrize(("scene", "name"), [(s, n) for s in SCENES for n in sorted(SCENES[s].exact.by_name)])
+@pytest.mark.parametrize(
+    ("scene", "name"), [(s, n) for s in SCENES for n in sorted(SCENES[s].exact.by_name)]
+)
 def test_a_derivative_is_the_limit_of_differences(scene, name):
     response = response_of(scene)
     value, nudge = SCENES[scene].exact.by_name[name], Fraction(NUDGES.get(name, "1e-6"))
     ahead, behind = (
-        model().states(with_value(SCENES[scene].exact, name, value + side * nudge), TIMES) for side in (1, -1)
+        model().states(with_value(SCENES[scene].exact, name, value + side * nudge), TIMES)
+        for side in (1, -1)
     )
     expected = (ahead - behind) / (2 * float(nudge))
     derivative = response.derivative(name)
     # rounding of the states over the nudge, and a third-order term, are what differences lose
     noise = np.abs(ahead).max(axis=0) * 2.0**-52 / float(nudge)
-    assert np.all(np.abs(derivative - expected).max(axis=0) <= 1e-5 * np.abs(expected).max() + noise)
+    assert np.all(
+        np.abs(derivative - expected).max(axis=0) <= 1e-5 * np.abs(expected).max() + noise
+    )
 
 
 def test_the_rounding_of_the_inputs_is_the_difference_of_the_two_golden_datasets():
@@ -68,7 +75,8 @@ def test_the_rounding_of_the_inputs_is_the_difference_of_the_two_golden_datasets
         expected = np.array([differences[k] for k in rows])
         scale = np.abs(moved[:, :3] if i < 3 else moved[:, 3:]).max()
         assert np.abs(moved[:, i] - expected).max() < 1e-5 * scale
-    assert 1e-13 < np.abs(moved[:, :3]).max() < 1e-12  # rounding the inputs of Paris moves the bob by 5e-13 m in a day
+    # rounding the inputs of Paris moves the bob by 5e-13 m in a day
+    assert 1e-13 < np.abs(moved[:, :3]).max() < 1e-12
 
 
 def test_inputs_that_are_doubles_already_move_nothing():

@@ -36,7 +36,9 @@ SURE, OPEN = Fraction(1, 10**12), Fraction(1)
 def solution():
     short = {"t_end": "60", "digits": 6, "level": "computed"}
     solved = reference.solve(reference.load_scene("paris"), sections=["gate 30"], **short)
-    errors = {word: dict.fromkeys(zeros.table.columns, SURE) for word, zeros in solved.zeros.items()}
+    errors = {
+        word: dict.fromkeys(zeros.table.columns, SURE) for word, zeros in solved.zeros.items()
+    }
     return replace(
         solved,
         grid=solved.grid.with_errors(dict.fromkeys(GRID, SURE)),
@@ -67,7 +69,9 @@ def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_zeros(s
     check_decided(solution)
     check_decided(replace(solution, zeros={}))
     if kind == "grid":
-        unsure = replace(solution, grid=solution.grid.with_errors(dict.fromkeys(GRID, SURE) | {"y": OPEN}))
+        unsure = replace(
+            solution, grid=solution.grid.with_errors(dict.fromkeys(GRID, SURE) | {"y": OPEN})
+        )
     else:
         zeros = solution.zeros[kind]
         zeros = with_errors(zeros, dict.fromkeys(zeros.table.columns, SURE) | {"y": OPEN})
@@ -85,10 +89,15 @@ def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, word, o
     unsure = replace(solution, grid=grid, zeros=solution.zeros | {word: zeros})
     with pytest.raises(UndecidedRounding) as caught:
         check_decided(unsure)
-    assert (caught.value.width, caught.value.column) == (2 * OPEN * 10 ** grid_decimals(unsure)["y"], "y")
+    assert (caught.value.width, caught.value.column) == (
+        2 * OPEN * 10 ** grid_decimals(unsure)["y"],
+        "y",
+    )
 
 
-@pytest.mark.parametrize(("values", "digits"), [(("60", "0"), 0), (("0.05",), 2), (("1.5", "0.125", "7"), 3)])
+@pytest.mark.parametrize(
+    ("values", "digits"), [(("60", "0"), 0), (("0.05",), 2), (("1.5", "0.125", "7"), 3)]
+)
 def test_terminating_decimals_are_printed_exactly(values, digits):
     assert exact_decimals(tuple(map(Fraction, values))) == digits
 
@@ -123,7 +132,9 @@ def test_a_swing_is_measured_by_its_highest_points_unless_some_are_undecided(sol
     highest, lowest = found.sections["highest"], found.sections["lowest"]
     # two a swing of 16.4355 s
     times = highest.table["t"]
-    assert float(sum(found.swing.hz)) / 2 == pytest.approx((len(times) - 1) / 2 / (times[-1] - times[0]), rel=1e-9)
+    assert float(sum(found.swing.hz)) / 2 == pytest.approx(
+        (len(times) - 1) / 2 / (times[-1] - times[0]), rel=1e-9
+    )
     assert float(found.swing.hz[0]) == pytest.approx(1 / 16.4355, rel=1e-4)
     for sections, reason in (
         ({"lowest": lowest}, NO_SECTION),
@@ -139,7 +150,11 @@ def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
     gaps = {name: Fraction(i, 7) for i, name in enumerate(GRID)}
     check = CrossCheck.by(witness, gaps, None)
     assert (check.engine, check.formulation, check.number) == ("heyoka", "spin", "double")
-    assert (check.position_m, check.velocity_m_s, check.transit_s) == (Fraction(2, 7), Fraction(5, 7), None)
+    assert (check.position_m, check.velocity_m_s, check.transit_s) == (
+        Fraction(2, 7),
+        Fraction(5, 7),
+        None,
+    )
     assert SAMPLED == 10  # "a tenth" in help, pages and what is written
 
 
@@ -150,14 +165,21 @@ def test_transits_are_the_zeros_of_xdot_and_sections_the_others(solution):
     assert solution.sections == {"gate 30": solution.zeros["gate 30"]}
     assert len(solution.transits) > 0
     without = replace(solution, zeros={})
-    assert (len(without.transits), without.directions, without.possible, without.sections) == (0, [], (), {})
+    assert (len(without.transits), without.directions, without.possible, without.sections) == (
+        0,
+        [],
+        (),
+        {},
+    )
     assert without.transits.columns == TRANSITS
 
 
 def told_by_mypy(program, *words):
     """Return what mypy, in a process of its own as it raises the recursion limit for good, says of a program."""
     words = ["--strict", f"--cache-dir={program.parent}", *words, str(program)]
-    return subprocess.run([sys.executable, "-m", "mypy", *words], capture_output=True, text=True, check=False).stdout
+    return subprocess.run(
+        [sys.executable, "-m", "mypy", *words], capture_output=True, text=True, check=False
+    ).stdout
 
 
 def test_a_type_checker_finds_what_is_no_column(tmp_path):

@@ -53,7 +53,9 @@ HARD = {
 
 @pytest.mark.parametrize("release", one_in(3, HARD.values()), ids=HARD.keys())
 def test_large_angles_keep_forty_digits(release, size):
-    scene = make_scene(pendulum={"length": "1"}, release=release, run={"t_end": size("6", "60"), "digits": 40})
+    scene = make_scene(
+        pendulum={"length": "1"}, release=release, run={"t_end": size("6", "60"), "digits": 40}
+    )
     solution = reference.solve(scene)
     sheet = grid_sheet(solution)
     truth = by_higher_precision(scene)
@@ -107,7 +109,8 @@ def test_double_serves_where_few_digits_are_asked_and_real_where_many_are(paris)
     many = {"t_end": "60", "digits": 30, "level": "computed"}
     assert reference.solve(paris, **many, engine="heyoka").run.number.startswith("real")
     assert reference.solve(paris, **many, engine="limbs").run.number.startswith("limbs")
-    assert reference.solve(paris, **many).run.number.startswith("real")  # a minute is not worth numba's import
+    # a minute is not worth numba's import
+    assert reference.solve(paris, **many).run.number.startswith("real")
     with pytest.raises(InputError, match="engine"):
         reference.solve(paris, **many, engine="abacus")
 
@@ -116,8 +119,12 @@ def test_arrays_are_the_nearest_doubles_of_the_exact_values(paris):
     solution = reference.solve(paris, t_end="120", digits=25, level="self_consistent")
     assert solution.t.tolist() == [0, 60, 120]
     for name in ("x", "y", "z", "vx", "vy", "vz"):
-        assert getattr(solution, name).tolist() == [float(value) for value in solution.grid.exact(name)]
-    with pytest.raises(AttributeError, match=r"a Solution has no attribute 'transit'; it has transits, "):
+        assert getattr(solution, name).tolist() == [
+            float(value) for value in solution.grid.exact(name)
+        ]
+    with pytest.raises(
+        AttributeError, match=r"a Solution has no attribute 'transit'; it has transits, "
+    ):
         _ = solution.transit
     assert solution.exact("x") == solution.grid.exact("x")
     assert solution.exact("t") == list(solution.times)
@@ -130,9 +137,21 @@ def test_a_scene_may_be_given_by_id_by_path_and_as_mappings(paris, tmp_path):
     for given in ("paris", path, str(path), paris.model_dump()):
         assert reference.solve(given, **short).grid.values == expected
     assert len(reference.sweep("paris", ["run.t_end=60,61"])) == 2
-    assert reference.trajectory("paris", [0, 1]).tolist() == reference.trajectory(paris, [0, 1]).tolist()
-    for wrong, field in ((None, "scene"), (3, "scene"), ("pariss", "SCENE"), ({"id": "a"}, "release")):
-        for call in (reference.solve, reference.sweep, lambda scene: reference.trajectory(scene, [0, 1])):
+    assert (
+        reference.trajectory("paris", [0, 1]).tolist()
+        == reference.trajectory(paris, [0, 1]).tolist()
+    )
+    for wrong, field in (
+        (None, "scene"),
+        (3, "scene"),
+        ("pariss", "SCENE"),
+        ({"id": "a"}, "release"),
+    ):
+        for call in (
+            reference.solve,
+            reference.sweep,
+            lambda scene: reference.trajectory(scene, [0, 1]),
+        ):
             with pytest.raises(InputError) as caught:
                 call(wrong)
             assert caught.value.field == field
@@ -140,7 +159,11 @@ def test_a_scene_may_be_given_by_id_by_path_and_as_mappings(paris, tmp_path):
 
 def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(paris):
     assert len(reference.solve(paris, t_end="60", digits=10, transits=False).transits) == 0
-    planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run={"t_end": "60", "digits": 10})
+    planar = make_scene(
+        site={"rotation_rate": "0"},
+        release={"x": "0", "y": "0.4"},
+        run={"t_end": "60", "digits": 10},
+    )
     assert reference.solve(planar).transits["t"].shape == (0,)
 
 
@@ -152,9 +175,14 @@ def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(pari
         pytest.param({"site": {"latitude": "-33.9"}}, marks=pytest.mark.long),
         pytest.param({"site": {"rotation_rate": "0"}}, marks=pytest.mark.long),
         pytest.param({"site": {"rotation_rate": "0.001"}}, marks=pytest.mark.long),
-        pytest.param({"site": {"rotation_rate": "0.001", "gravity_is": "effective"}}, marks=pytest.mark.long),
+        pytest.param(
+            {"site": {"rotation_rate": "0.001", "gravity_is": "effective"}}, marks=pytest.mark.long
+        ),
         {"pendulum": {"drag": "0.01"}},
-        {"site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "1", "vx": "1", "vy": "0"}},
+        {
+            "site": {"gravity": "0", "rotation_rate": "0"},
+            "release": {"x": "1", "y": "1", "vx": "1", "vy": "0"},
+        },
         {"release": {"x": "0", "y": "0"}},
         pytest.param({"release": {"x": "1e-9", "y": "0"}}, marks=pytest.mark.long),
     ],
@@ -185,11 +213,17 @@ def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
     run = {"t_end": "120", "digits": "30", "level": level}
     fast = {"rotation_rate": "0.01", "altitude": "100"}
     effective = reference.solve(make_scene(site={**fast, "gravity_is": "effective"}, run=run))
-    on_axis = reference.solve(make_scene(site={**fast, "equatorial_radius": "0", "altitude": "0"}, run=run))
+    on_axis = reference.solve(
+        make_scene(site={**fast, "equatorial_radius": "0", "altitude": "0"}, run=run)
+    )
     assert len(effective.transits) > 0
-    assert [effective.grid.exact(name) for name in GRID] == [on_axis.grid.exact(name) for name in GRID]
+    assert [effective.grid.exact(name) for name in GRID] == [
+        on_axis.grid.exact(name) for name in GRID
+    ]
     assert effective.transits.exact("t") == on_axis.transits.exact("t")
-    otherwise = reference.solve(make_scene(site=fast, run=run | {"digits": "9", "level": "computed"}))
+    otherwise = reference.solve(
+        make_scene(site=fast, run=run | {"digits": "9", "level": "computed"})
+    )
     assert abs(effective.x[-1] - otherwise.x[-1]) > 1e-3
 
 
@@ -228,11 +262,17 @@ def test_two_cheap_runs_that_diverge_give_nothing_and_those_of_too_many_steps_ar
         solver.roughly(reference.load_scene("paris"), [Fraction(10**12)])
 
 
-@pytest.mark.parametrize(("asked", "times"), [([], [0, 60]), ([0], [0, 60]), ([17], [0, 17]), ([90, 17], [0, 17, 90])])
+@pytest.mark.parametrize(
+    ("asked", "times"), [([], [0, 60]), ([0], [0, 60]), ([17], [0, 17]), ([90, 17], [0, 17, 90])]
+)
 def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(paris, asked, times):
     solution = solver.solve_at(paris, [*map(Fraction, asked)], 12)
     assert list(solution.times) == times
-    assert (solution.level, solution.scene.run.digits, solution.zeros) == ("self_consistent", 12, {})
+    assert (solution.level, solution.scene.run.digits, solution.zeros) == (
+        "self_consistent",
+        12,
+        {},
+    )
 
 
 def test_what_a_proof_and_ranges_are_asked_for_they_have_and_else_it_is_refused(paris):
@@ -243,7 +283,11 @@ def test_what_a_proof_and_ranges_are_asked_for_they_have_and_else_it_is_refused(
     assert (solution.proof.audited, solution.proof.confirmed) == (True, "sampled")
     assert solution.function is not None
     ranges = reference.prove_ranges(paris, {"length": "±0.001"}, **short)
-    assert (ranges.scene.run.level, ranges.engine, ranges.derivatives) == ("enclosed", "limbs", False)
+    assert (ranges.scene.run.level, ranges.engine, ranges.derivatives) == (
+        "enclosed",
+        "limbs",
+        False,
+    )
     assert ranges.uncertain == {"pendulum.length": "0.001"}
     for wish in wishes.items():
         with pytest.raises(InputError, match="the level enclosed"):
@@ -272,7 +316,9 @@ def test_an_engine_whose_runs_come_no_nearer_is_replaced():
     """limbs count from the length of the cord: they have not the bits for so many digits of so small a swing."""
     tiny = {"x": "1e-25", "y": "0", "vx": "0", "vy": "1e-25"}
     run_ = {"t_end": "30", "grid_step": "10", "digits": 60, "level": "self_consistent"}
-    solution = reference.solve(make_scene(site={"rotation_rate": "0"}, release=tiny, run=run_), engine="limbs")
+    solution = reference.solve(
+        make_scene(site={"rotation_rate": "0"}, release=tiny, run=run_), engine="limbs"
+    )
     assert (solution.run.engine, solution.checks[0].engine) == ("heyoka", "heyoka")
     assert solution.discarded_s > 0
 
@@ -286,7 +332,9 @@ SECOND = [  # level, engine and digits; the engine and the formulation of the se
 
 
 @pytest.mark.parametrize(("level", "engine", "digits", "other", "formulation"), SECOND)
-def test_a_level_has_the_second_run_that_it_is_named_for(paris, level, engine, digits, other, formulation):
+def test_a_level_has_the_second_run_that_it_is_named_for(
+    paris, level, engine, digits, other, formulation
+):
     """By another formulation, or at least in other steps: by an engine's own it would agree with itself."""
     solution = reference.solve(paris, t_end="60", digits=digits, level=level, engine=engine)
     (check,) = solution.checks
@@ -342,7 +390,11 @@ def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
     """Rounding the inputs of Paris to binary64 alone moves the bob by 5e-13 m in a day, and by 1e-13 m in six hours."""
     ends = [
         reference.solve(
-            paris.with_values([f"inputs={reading}"]), t_end="21600", digits=11, level="computed", transits=False
+            paris.with_values([f"inputs={reading}"]),
+            t_end="21600",
+            digits=11,
+            level="computed",
+            transits=False,
         ).x[-1]
         for reading in ("decimal", "binary64")
     ]
@@ -361,5 +413,7 @@ for level in sys.argv[1:]:
 def test_a_plain_script_without_a_main_guard_may_use_both_cores(tmp_path, size):
     script, levels = tmp_path / "mine.py", size(["confirmed"], ["confirmed", "enclosed"])
     script.write_text(SCRIPT)
-    done = subprocess.run([sys.executable, str(script), *levels], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, str(script), *levels], capture_output=True, text=True, check=False
+    )
     assert (done.stdout, done.stderr) == ("".join(f"{level} 7\n" for level in levels), "")

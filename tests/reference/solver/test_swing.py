@@ -18,7 +18,8 @@ def test_a_swing_smaller_than_the_rest_position_is_off_the_plumb_line_is_not_tol
 
 
 def test_a_site_that_turns_faster_than_the_bob_swings_leaves_the_turn_open():
-    swing = swing_of("fast_pole", "10")  # 10 rad/s: eleven radians from one highest point to the next
+    # 10 rad/s: eleven radians from one highest point to the next
+    swing = swing_of("fast_pole", "10")
     assert swing.precession is None
     # what the engine of sweeps counts
     assert float(swing.period[0]) == pytest.approx(2.3008, rel=1e-3)
@@ -34,4 +35,6 @@ def test_the_rest_of_a_damped_swing_has_none():
         }
     )
     assert swing_of(damped, "45") is None
-    assert swing_of(damped, "8").hz[0] == pytest.approx(math.sqrt(9.78 / 2 - 1 / 4) / 2 / math.pi, rel=1e-2)
+    assert swing_of(damped, "8").hz[0] == pytest.approx(
+        math.sqrt(9.78 / 2 - 1 / 4) / 2 / math.pi, rel=1e-2
+    )

@@ -11,4 +11,5 @@ def test_paris_as_a_row():
     assert row["frequency_hz"][0] == pytest.approx(0.0608436, abs=1e-7)
     assert row["precession_deg_per_h"][0] == pytest.approx(-11.34, abs=0.02)  # clockwise
     assert row["transits"][0] == 438  # two a swing of 16.4355 s
-    assert row["max_angle_deg"][0] == pytest.approx(0.5, abs=0.1)  # 0.6 m on 67 m, about the plumb line
+    # 0.6 m on 67 m, about the plumb line
+    assert row["max_angle_deg"][0] == pytest.approx(0.5, abs=0.1)

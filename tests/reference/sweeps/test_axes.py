@@ -27,7 +27,11 @@ def test_steps_are_exact_decimals_with_both_ends_in():
 
 @pytest.mark.parametrize(
     "word",
-    ["site.latitude=-90:90:0.7", "release.x=0.1:0.3:0.000001", "site.gravity=9.8:9.8000000000000000000001:1e-25"],
+    [
+        "site.latitude=-90:90:0.7",
+        "release.x=0.1:0.3:0.000001",
+        "site.gravity=9.8:9.8000000000000000000001:1e-25",
+    ],
 )
 def test_numbers_are_the_nearest_sums_of_two_doubles(word):
     made = grid([word], "decimal")
@@ -54,8 +58,12 @@ def test_the_rows_of_a_grid_are_all_combinations_the_last_field_fastest():
 
 
 def test_more_rows_than_can_be_counted_on_are_refused():
-    with pytest.raises(InputError, match=r"got '1002001000 rows', expected at most 100,000,000 rows"):
-        grid(["site.latitude=0:1:0.001", "release.x=0:1:0.001", "release.y=0:0.999:0.001"], "decimal")
+    with pytest.raises(
+        InputError, match=r"got '1002001000 rows', expected at most 100,000,000 rows"
+    ):
+        grid(
+            ["site.latitude=0:1:0.001", "release.x=0:1:0.001", "release.y=0:0.999:0.001"], "decimal"
+        )
     with pytest.raises(InputError, match=r"at most 10,000,000 values"):
         axis("site.altitude=0:1:1e-7", "decimal")
 
@@ -105,7 +113,9 @@ def test_values_come_from_a_file(tmp_path):
 @pytest.mark.parametrize("option", ["--rows", "--over"])
 def test_only_regular_files_hold_values(tmp_path, option):
     def read(path):
-        return listed(Path(path)) if option == "--rows" else axis(f"site.latitude=@{path}", "decimal")
+        return (
+            listed(Path(path)) if option == "--rows" else axis(f"site.latitude=@{path}", "decimal")
+        )
 
     for name in ("pipe.csv", "pipe.parquet"):
         os.mkfifo(tmp_path / name)
@@ -119,7 +129,10 @@ def test_only_regular_files_hold_values(tmp_path, option):
 
 @pytest.mark.parametrize(
     ("name", "count", "said"),
-    [("site.latitude", MOST_VALUES + 1, "at most 10,000,000"), ("nothing", 1, "a field that a sweep can vary")],
+    [
+        ("site.latitude", MOST_VALUES + 1, "at most 10,000,000"),
+        ("nothing", 1, "a field that a sweep can vary"),
+    ],
 )
 def test_rows_of_parquet_are_counted_before_they_are_read(tmp_path, name, count, said):
     """What stands before the footer is damaged: it is not looked at."""
@@ -161,7 +174,9 @@ def test_rows_of_parquet_are_exactly_the_doubles_that_they_hold(tmp_path):
     pa = pytest.importorskip("pyarrow")
     import pyarrow.parquet as pq
 
-    pq.write_table(pa.table({"release.x": [0.1, 0.25], "release.y": ["0.1", "0.3"]}), tmp_path / "rows.parquet")
+    pq.write_table(
+        pa.table({"release.x": [0.1, 0.25], "release.y": ["0.1", "0.3"]}), tmp_path / "rows.parquet"
+    )
     table = listed(tmp_path / "rows.parquet")
     assert Fraction(table.texts(0)["release.x"]) == Fraction(0.1)
     assert table.texts(1) == {"release.x": "0.25", "release.y": "0.3"}
@@ -171,7 +186,12 @@ def test_rows_of_parquet_are_exactly_the_doubles_that_they_hold(tmp_path):
 
 
 def test_every_number_of_a_scene_can_be_varied():
-    assert {"pendulum.length", "site.inverse_flattening", "release.azimuth_rate", "run.t_end"} <= set(varied_names())
+    assert {
+        "pendulum.length",
+        "site.inverse_flattening",
+        "release.azimuth_rate",
+        "run.t_end",
+    } <= set(varied_names())
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,8 @@ def asked(out):
 
 @pytest.fixture(scope="module", autouse=True)
 def libraries():
-    pytest.importorskip("distributed")  # here and not above, where whatever collects tests would wait for it
+    # here and not above, where whatever collects tests would wait for it
+    pytest.importorskip("distributed")
     pytest.importorskip("pyarrow")
 
 
@@ -74,7 +75,10 @@ def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(clu
     assert done == [ROWS]
     parts = sorted(path.name for path in (here / "rows").iterdir())
     assert [path.name for path in sorted((there / "rows").glob("part-*"))] == parts
-    assert all((here / "rows" / name).read_bytes() == (there / "rows" / name).read_bytes() for name in parts)
+    assert all(
+        (here / "rows" / name).read_bytes() == (there / "rows" / name).read_bytes()
+        for name in parts
+    )
     assert load_sweep(there).counts == {"ok": ROWS}
 
 
@@ -85,7 +89,12 @@ def test_if_the_scheduler_is_lost_what_is_done_stays_and_the_same_command_goes_o
 
     folder = tmp_path / "out"
     with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp://", dashboard_address=None, silence_logs=50
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        protocol="tcp://",
+        dashboard_address=None,
+        silence_logs=50,
     ) as lost:
 
         def report(rows: int) -> None:
@@ -99,7 +108,8 @@ def test_if_the_scheduler_is_lost_what_is_done_stays_and_the_same_command_goes_o
     assert run(asked(folder), folder, workers=1).counts == {"ok": ROWS}
 
 
-@pytest.mark.long  # thirty seconds of workers that start; test_store.py has the row by itself in every run
+# thirty seconds of workers that start; test_store.py has the row by itself in every run
+@pytest.mark.long
 def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatch):
     from reference.sweeps import cluster as module
 
@@ -128,7 +138,9 @@ def test_a_worker_that_comes_later_with_other_versions_does_no_work(cluster):
     with scheduler_at(cluster.scheduler_address) as scheduler:
         assert scheduler.submit(abs, -1).result() == 1
         scheduler.versions["heyoka"] = "1.0"
-        with pytest.raises(InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as here"):
+        with pytest.raises(
+            InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as here"
+        ):
             scheduler.submit(abs, -1).result()
 
 
@@ -139,7 +151,8 @@ def test_a_worker_that_comes_later_with_other_versions_does_no_work(cluster):
         ("http://127.0.0.1:1", r"tcp://HOST:PORT"),
         ("local:none", r"local:N"),
         ("local:0", r"local:N"),
-        pytest.param("tcp://127.0.0.1:1", "a scheduler that answers", marks=pytest.mark.long),  # waits for 10 s
+        # waits for 10 s
+        pytest.param("tcp://127.0.0.1:1", "a scheduler that answers", marks=pytest.mark.long),
     ],
 )
 def test_a_wrong_address_is_named(tmp_path, address, said):
@@ -159,16 +172,35 @@ def test_a_scheduler_without_workers_is_named(tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
-def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_own(tmp_path, monkeypatch):
+def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_own(
+    tmp_path, monkeypatch
+):
     import dask
 
     from reference.sweeps.cluster import scheduler_at
 
     key, certificate = str(tmp_path / "key.pem"), str(tmp_path / "certificate.pem")
-    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate]
+    command = [
+        "openssl",
+        "req",
+        "-x509",
+        "-newkey",
+        "rsa:2048",
+        "-nodes",
+        "-keyout",
+        key,
+        "-out",
+        certificate,
+    ]
     subprocess.run([*command, "-subj", "/CN=sweep", "-days", "2"], check=True, capture_output=True)
-    names = ["ca-file", *(f"{who}.{what}" for who in ("client", "scheduler", "worker") for what in ("cert", "key"))]
-    given = {f"distributed.comm.tls.{name}": key if name.endswith("key") else certificate for name in names}
+    names = [
+        "ca-file",
+        *(f"{who}.{what}" for who in ("client", "scheduler", "worker") for what in ("cert", "key")),
+    ]
+    given = {
+        f"distributed.comm.tls.{name}": key if name.endswith("key") else certificate
+        for name in names
+    }
     encrypted, scratch = {"distributed.comm.require-encryption": True}, tmp_path / "scratch"
     scratch.mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(scratch))
@@ -207,16 +239,32 @@ def test_ctrl_c_prints_one_sentence_and_what_a_killed_sweep_left_is_removed(tmp_
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
     (tmp_path / "tmp").mkdir()
     out = str(tmp_path / "out")
-    words = ["sweep", "paris", "--over", "latitude=0:90:0.05", "--t-end", "20000", "--engine", "heyoka"]
+    words = [
+        "sweep",
+        "paris",
+        "--over",
+        "latitude=0:90:0.05",
+        "--t-end",
+        "20000",
+        "--engine",
+        "heyoka",
+    ]
     words += ["--audit", "0", "--cluster", "local:2", "--out", out]
     of_dask = (tmp_path / "tmp").glob
-    interrupted(words, lambda *_: any(of_dask("*/dask-scratch-space")), signal.SIGKILL, whole_group=True)
+    interrupted(
+        words, lambda *_: any(of_dask("*/dask-scratch-space")), signal.SIGKILL, whole_group=True
+    )
     assert any(of_dask("*/dask-scratch-space"))
     both_workers = 4  # with the command itself, and what multiprocessing starts to clear up
-    status, err, group = interrupted(words, lambda group, _: members(group) >= both_workers, whole_group=True)
+    status, err, group = interrupted(
+        words, lambda group, _: members(group) >= both_workers, whole_group=True
+    )
     *notices, line = err.decode().splitlines()
     assert status == 130, err.decode()
-    assert all(": about " in notice for notice in notices)  # how long it will take, on a slow machine
-    assert line == f"foucault: stopped; what is done is in {out}: `foucault sweep --out {out}` goes on"
+    # how long it will take, on a slow machine
+    assert all(": about " in notice for notice in notices)
+    assert (
+        line == f"foucault: stopped; what is done is in {out}: `foucault sweep --out {out}` goes on"
+    )
     assert gone_within(group, PATIENCE_S)
     assert not any(of_dask("*/dask-scratch-space"))

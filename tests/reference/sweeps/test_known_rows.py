@@ -83,7 +83,9 @@ def test_a_row_is_right_or_left_to_the_solver(name, engine):
         is_right(name, row)
 
 
-@pytest.mark.parametrize("name", [name if name in SOLVED else pytest.param(name, marks=LONG) for name in KNOWN])
+@pytest.mark.parametrize(
+    "name", [name if name in SOLVED else pytest.param(name, marks=LONG) for name in KNOWN]
+)
 def test_the_solver_gives_a_row_with_small_errors(name):
     scene, *values = KNOWN[name][0].split()
     asked = request(load_scene(scene, values[1:]), values[:1])
@@ -95,15 +97,24 @@ def test_a_swing_that_has_died_down_is_told():
     scene, *values = KNOWN["strongly damped"][0].split()
     over, *others = [*values, "pendulum.drag=4", "run.t_end=10"]
     asked = request(load_scene(scene, others), [over])
-    row, finer = promoted(asked, 0, doubtful=True), promoted(asked, 0, doubtful=False, level="computed", digits=40)
+    row, finer = (
+        promoted(asked, 0, doubtful=True),
+        promoted(asked, 0, doubtful=False, level="computed", digits=40),
+    )
     for column in ("swing_hz", "precession_deg_per_h"):
         error = row.values[ERRORS[column]]
-        assert abs(row.values[column] - finer.values[column]) <= error <= 1e-9 * abs(row.values[column]), column
+        assert (
+            abs(row.values[column] - finer.values[column])
+            <= error
+            <= 1e-9 * abs(row.values[column])
+        ), column
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_the_largest_angle_may_be_that_of_the_end(engine):
-    scene = load_scene("paris", ["site.latitude=90", "release.x=0", "release.y=0", "release.vx=0.1", "run.t_end=2"])
+    scene = load_scene(
+        "paris", ["site.latitude=90", "release.x=0", "release.y=0", "release.vx=0.1", "run.t_end=2"]
+    )
     swept = sweep(scene, ["pendulum.length=67"], engine=engine)
     solved = promoted(swept.request, 0, doubtful=True).values
     for row in (next(swept.rows()), solved):
@@ -117,7 +128,9 @@ def test_the_largest_angle_of_a_bob_at_rest_is_told_at_every_level():
     swept = sweep(scene, ["pendulum.length=67"])
     assert swept["max_angle_deg"] == 0
     for level in ("self_consistent", "enclosed"):
-        assert promoted(swept.request, 0, doubtful=False, level=level).values["max_angle_deg"] == 0, level
+        assert (
+            promoted(swept.request, 0, doubtful=False, level=level).values["max_angle_deg"] == 0
+        ), level
 
 
 @pytest.mark.parametrize("engine", ENGINES)

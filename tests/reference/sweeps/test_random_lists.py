@@ -18,7 +18,8 @@ from reference.sweeps.sweep import sweep
 
 SCENES = {"angles": "two_radians", "positions": "paris"}
 MOST_SOLVED = {"angles": 53, "positions": 39}
-EVERY = {"angles": 84, "positions": 133}  # whose multiples the solver solves: row 168, of the cheapest; 0 and 133
+# whose multiples the solver solves: row 168, of the cheapest; 0 and 133
+EVERY = {"angles": 84, "positions": 133}
 SAME = ("status", "transits", "close_pairs")
 ERRORS = {column.name: column.error for column in COLUMNS if column.error}
 
@@ -28,7 +29,10 @@ def solved(name, every):
 
     It solves such a row once, here, for both.
     """
-    scene, rows = load_scene(SCENES[name], ["run.t_end=60"]), ROOT / f"tests/helpers/random_{name}.csv"
+    scene, rows = (
+        load_scene(SCENES[name], ["run.t_end=60"]),
+        ROOT / f"tests/helpers/random_{name}.csv",
+    )
     kept = {}
 
     def some(request, row, *, doubtful):
@@ -39,7 +43,10 @@ def solved(name, every):
             kept[row] = promoted(request, row, doubtful=doubtful)
         return kept[row]
 
-    return [list(swept_here(scene, [], some, rows, engine=engine).rows()) for engine in ("heyoka", "octet")]
+    return [
+        list(swept_here(scene, [], some, rows, engine=engine).rows())
+        for engine in ("heyoka", "octet")
+    ]
 
 
 def differences(one, other):
@@ -62,7 +69,9 @@ def test_the_engines_agree_over_a_list(name, size):
     pairs = [pair for pair in zip(*lists, strict=True) if not any(map(is_left, pair))]
     wrong = {one["row"]: differences(one, other) for one, other in pairs}
     assert {row: columns for row, columns in wrong.items() if columns} == {}
-    by_solver = [[row for row in rows if is_left(row) or row["level"] != "computed"] for rows in lists]
+    by_solver = [
+        [row for row in rows if is_left(row) or row["level"] != "computed"] for rows in lists
+    ]
     assert 0 < sum(map(len, by_solver)) <= MOST_SOLVED[name]
     assert any(row["level"] != "computed" for pair in pairs for row in pair)
     assert len(pairs) >= 250 - size(MOST_SOLVED[name], 0)
@@ -73,7 +82,9 @@ def test_a_highest_point_soon_after_the_release_counts(drag):
     """Pushed outward, the bob rises for a moment: that is its first highest point, with and without drag."""
     scene = load_scene("paris", ["run.t_end=3600", f"pendulum.drag={drag}"])
     own = sweep(scene, ["release.vx=1e-9,1e-5,1e-4"], engine="heyoka")
-    other = sweep(scene.with_values(["pendulum.drag=0"]), ["release.vx=1e-9,1e-5,1e-4"], engine="octet")
+    other = sweep(
+        scene.with_values(["pendulum.drag=0"]), ["release.vx=1e-9,1e-5,1e-4"], engine="octet"
+    )
     for column in ("swing_hz", "precession_deg_per_h", "max_angle_deg"):
         gap = np.abs(own[column] - other[column])
         assert (gap <= own[ERRORS[column]] + other[ERRORS[column]]).all(), column

@@ -35,7 +35,10 @@ def assert_constants(many):
             got = getattr(rows, name)[i].reshape(-1, 2)
             scale = max(abs(float(v)) for v in values) or 1.0
             for (high, low), value in zip(got, values, strict=True):
-                assert abs(high - value) <= np.spacing(abs(high)) + 2.0**-100 * scale, (inputs, name)
+                assert abs(high - value) <= np.spacing(abs(high)) + 2.0**-100 * scale, (
+                    inputs,
+                    name,
+                )
                 worst = max(worst, abs(float((high + start.ctx.mpf(low)) - value)) / scale)
         assert rows.zeros_at_release[i] == zero_at_release(start), inputs
         assert bool(rows.still[i]) == xdot_vanishes(start), inputs
@@ -46,9 +49,14 @@ def assert_constants(many):
 @pytest.mark.parametrize("gravity_is", ["ellipsoid", "effective"])
 def test_constants_and_releases_are_within_an_ulp_of_the_model(kind, gravity_is, size, tally):
     generator = random.Random(f"{kind} {gravity_is}")
-    many = [replace(random_inputs(kind, generator), gravity_is=gravity_is) for _ in range(size(15, 1000))]
+    many = [
+        replace(random_inputs(kind, generator), gravity_is=gravity_is)
+        for _ in range(size(15, 1000))
+    ]
     worst = assert_constants(many)
-    tally(f"constants, {kind}, {gravity_is}: {len(many)} rows, high + low within {worst:.1e} of the largest component")
+    tally(
+        f"constants, {kind}, {gravity_is}: {len(many)} rows, high + low within {worst:.1e} of the largest component"
+    )
     assert worst < 2.0**-98
 
 

@@ -67,7 +67,10 @@ def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, e
             if len(times) > 1:
                 pairs.append(("interval_s", "interval_error_s", mean_interval(times, directions)))
             for name, error, value in pairs:
-                assert np.isnan(value) == np.isnan(row[name]) == np.isnan(row[error]), (word, many[i])
+                assert np.isnan(value) == np.isnan(row[name]) == np.isnan(row[error]), (
+                    word,
+                    many[i],
+                )
                 worst = np.nanmax([worst, abs(row[name] - value) / row[error]])
     tally(
         f"sections of sweeps, {engine}: {count} passages, {undecided} undecided, largest error {worst:.2f} of its own"
@@ -100,14 +103,22 @@ def solved(release, latitude):
 
 
 def at_paris(release):
-    return load_scene("paris", ["run.t_end=100", f"run.sections={'; '.join(WORDS)}", *release.split()])
+    return load_scene(
+        "paris", ["run.t_end=100", f"run.sections={'; '.join(WORDS)}", *release.split()]
+    )
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("release", ["release.x=0.5 release.y=0", "release.x=0 release.y=0.5", "release.x=1e-9"])
-def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_solver_gives(engine, release, size):
+@pytest.mark.parametrize(
+    "release", ["release.x=0.5 release.y=0", "release.x=0 release.y=0.5", "release.x=1e-9"]
+)
+def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_solver_gives(
+    engine, release, size
+):
     latitudes = size(["45"], ["-30", "45", "90"])
-    swept = sweep(at_paris(release), [f"site.latitude={','.join(latitudes)}"], engine=engine, workers=1)
+    swept = sweep(
+        at_paris(release), [f"site.latitude={','.join(latitudes)}"], engine=engine, workers=1
+    )
     for latitude, row in zip(latitudes, swept.rows(), strict=True):
         assert row["status"] == "ok", row["reason"]
         for word, (times, directions) in solved(release, latitude).items():
@@ -115,12 +126,16 @@ def test_a_release_at_rest_in_the_gate_and_a_swing_of_nanometres_are_what_the_so
             if times:
                 assert abs(row[f"{word}: t_first_s"] - times[0]) <= row[f"{word}: t_error_s"], word
                 interval = mean_interval(times, directions)
-                assert abs(row[f"{word}: interval_s"] - interval) <= row[f"{word}: interval_error_s"], word
+                assert (
+                    abs(row[f"{word}: interval_s"] - interval) <= row[f"{word}: interval_error_s"]
+                ), word
 
 
 @pytest.mark.parametrize("engine", one_in(2, ENGINES))
 def test_a_motion_that_stays_in_the_gate_fails_alone_and_says_so(engine):
-    scene = load_scene("paris", ["run.t_end=60", "release.x=0.5", "release.y=0", "run.sections=gate 0@0"])
+    scene = load_scene(
+        "paris", ["run.t_end=60", "release.x=0.5", "release.y=0", "run.sections=gate 0@0"]
+    )
     swept = sweep(scene, ["site.latitude=0,45"], engine=engine, workers=1)
     assert swept["status"].tolist() == ["doubtful", "ok"]
     assert "gate 0@0: the motion stays in this section" in swept["reason"][0]

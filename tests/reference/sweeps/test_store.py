@@ -31,7 +31,11 @@ def asked(out, **options):
 
 
 def contents(folder):
-    return {path.relative_to(folder): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {
+        path.relative_to(folder): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
 
 
 @pytest.fixture(scope="module")
@@ -42,15 +46,23 @@ def whole(tmp_path_factory):
 
 
 def test_the_folder_holds_what_memory_would(whole):
-    there, here = load_sweep(whole), sweep(load_scene("paris", ["run.t_end=30"]), OVER, engine="heyoka")
+    there, here = (
+        load_sweep(whole),
+        sweep(load_scene("paris", ["run.t_end=30"]), OVER, engine="heyoka"),
+    )
     for name, values in here.columns().items():
         assert np.array_equal(values, there[name], equal_nan=values.dtype.kind == "f"), name
-    assert json.loads((whole / "summary.json").read_text()) == {"rows": ROWS, "counts": {"ok": ROWS}, "audit": None}
+    assert json.loads((whole / "summary.json").read_text()) == {
+        "rows": ROWS,
+        "counts": {"ok": ROWS},
+        "audit": None,
+    }
 
 
 def test_any_number_of_workers_and_any_interruption_give_the_same_bytes(whole, tmp_path):
     folder = tmp_path / "resumed"
-    (folder / ".plan.json.partial-abc").mkdir(parents=True)  # of a command that was killed as it began
+    # of a command that was killed as it began
+    (folder / ".plan.json.partial-abc").mkdir(parents=True)
     run(asked(folder), folder)
     shutil.copytree(whole, folder, dirs_exist_ok=True)
     (folder / "summary.json").unlink()
@@ -78,7 +90,10 @@ def test_others_read_it_as_it_is(whole):
     assert table["frequency_hz"].tolist() == frequency.tolist()
     assert set(table["status"]) == {"ok"}
     polars = pytest.importorskip("polars")
-    assert polars.scan_parquet(whole / "rows/*.parquet").collect()["frequency_hz"].to_list() == frequency.tolist()
+    assert (
+        polars.scan_parquet(whole / "rows/*.parquet").collect()["frequency_hz"].to_list()
+        == frequency.tolist()
+    )
     duckdb = pytest.importorskip("duckdb")
     query = f"select frequency_hz from '{whole}/rows/*.parquet' order by row"
     assert [row[0] for row in duckdb.sql(query).fetchall()] == frequency.tolist()
@@ -94,7 +109,10 @@ def test_each_column_says_what_it_means(whole):
 def test_another_sweep_or_other_files_are_left_alone(whole, tmp_path):
     before = contents(whole)
     with pytest.raises(InputError, match=r"differs in scene\b"):
-        run(replace(asked(whole), scene=load_scene("paris", ["run.t_end=31", "run.grid_step=31"])), whole)
+        run(
+            replace(asked(whole), scene=load_scene("paris", ["run.t_end=31", "run.grid_step=31"])),
+            whole,
+        )
     assert contents(whole) == before
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(InputError, match="a new or empty folder"):
@@ -104,7 +122,10 @@ def test_another_sweep_or_other_files_are_left_alone(whole, tmp_path):
 
 
 def test_the_same_fields_in_another_order_are_another_sweep(tmp_path):
-    scene, over = load_scene("paris", ["run.t_end=30"]), ["site.latitude=0:20:10", "release.x=0.1,0.2"]
+    scene, over = (
+        load_scene("paris", ["run.t_end=30"]),
+        ["site.latitude=0:20:10", "release.x=0.1,0.2"],
+    )
     folder = tmp_path / "ordered"
     run(asked_for(scene, over, None, folder, audit=0, engine="heyoka"), folder)
     with pytest.raises(InputError, match=r"differs in over\b"):
@@ -115,7 +136,8 @@ def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
     folder = tmp_path / "changed"
     shutil.copytree(whole, folder)
     plan = json.loads((folder / "plan.json").read_text())
-    for other in ({"rows_per_part": 32}, {"hash": "0" * 64}):  # the latter as of a version with other columns
+    # the latter as of a version with other columns
+    for other in ({"rows_per_part": 32}, {"hash": "0" * 64}):
         (folder / "plan.json").write_text(json.dumps(plan | other))
         with pytest.raises(InputError, match="as this version writes it"):
             load_sweep(folder)
@@ -123,7 +145,9 @@ def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
     with pytest.raises(InputError, match=r"pyarrow 1\.0"):
         run(asked(folder), folder)
     older = replace(asked(folder), identity="heyoka 1.0")
-    (folder / "plan.json").write_text(json.dumps({"hash": older.hash, "pyarrow": plan["pyarrow"], **older.document()}))
+    (folder / "plan.json").write_text(
+        json.dumps({"hash": older.hash, "pyarrow": plan["pyarrow"], **older.document()})
+    )
     with pytest.raises(InputError, match=r"expected heyoka 1\.0, as in .* Install the versions"):
         run(asked(folder), folder)
 
@@ -147,7 +171,9 @@ def test_the_times_of_transits_are_a_dataset_of_their_own(tmp_path):
 def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, monkeypatch):
     monkeypatch.setattr(driver, "compute", poisoned_sweep.compute_here)
     scene, folder, done = load_scene("paris", ["run.t_end=2"]), tmp_path / "poisoned", []
-    request = asked_for(scene, ["site.latitude=0:38:1"], None, folder, audit=0, digits=16, want=("state",))
+    request = asked_for(
+        scene, ["site.latitude=0:38:1"], None, folder, audit=0, digits=16, want=("state",)
+    )
     request = replace(request, rows_per_part=13)
     swept = run(request, folder, workers=1, report=done.append)
     assert swept.tally.counts == swept.counts == {"ok": 38, "crashed": 1}
@@ -158,7 +184,13 @@ def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, mon
 
 
 def test_what_became_of_the_rows_is_counted_in_the_memory_of_one_part(tmp_path):
-    whole = asked_for(load_scene("paris"), ["site.latitude=1:80:1", "release.x=0.1:0.6:0.001"], None, tmp_path, audit=0)
+    whole = asked_for(
+        load_scene("paris"),
+        ["site.latitude=1:80:1", "release.x=0.1:0.6:0.001"],
+        None,
+        tmp_path,
+        audit=0,
+    )
     request = replace(whole, rows_per_part=1024)
     store = Store.begun(tmp_path, request)
     for number in range(request.parts):

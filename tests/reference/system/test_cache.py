@@ -46,7 +46,9 @@ def test_what_fails_leaves_nothing_behind(own_cache):
 
 def test_an_entry_is_computed_once(own_cache):
     assert cache.arrays("kind", "name", made)["x"].tolist() == [0, 1, 2]
-    assert {key: value.tolist() for key, value in cache.arrays("kind", "name", refuse).items()} == {"x": [0, 1, 2]}
+    assert {key: value.tolist() for key, value in cache.arrays("kind", "name", refuse).items()} == {
+        "x": [0, 1, 2]
+    }
 
 
 def test_old_entries_go(own_cache):
@@ -74,7 +76,8 @@ def test_a_folder_of_one_kind_is_trusted_as_little(own_cache):
 
 
 @pytest.mark.parametrize(
-    ("mode", "why"), [(0o777, "others can write into "), (0o775, "others can write into "), (0o700, "another user")]
+    ("mode", "why"),
+    [(0o777, "others can write into "), (0o775, "others can write into "), (0o700, "another user")],
 )
 def test_nothing_is_taken_from_where_others_can_write(own_cache, mode, why, capfd):
     if mode == 0o700 and os.getuid() != 0:
@@ -111,11 +114,18 @@ print(cache.temporary())
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become a user without a passwd entry")
 def test_without_a_home_there_is_no_cache_and_a_temporary_folder_goes():
-    with tempfile.TemporaryDirectory(dir="/tmp") as folder:  # the folder of this run is closed to other users
+    # the folder of this run is closed to other users
+    with tempfile.TemporaryDirectory(dir="/tmp") as folder:
         Path(folder).chmod(0o777)
-        environment = {"PATH": os.environ["PATH"], "TMPDIR": folder, "PYTHONPATH": os.pathsep.join(sys.path)}
+        environment = {
+            "PATH": os.environ["PATH"],
+            "TMPDIR": folder,
+            "PYTHONPATH": os.pathsep.join(sys.path),
+        }
         command = [sys.executable, "-c", WITHOUT_HOME]
-        done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            command, env=environment, cwd=folder, capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, done.stderr
         assert "this user has no home folder" in done.stderr
         assert len(done.stderr.splitlines()) == 1
@@ -139,7 +149,9 @@ def test_a_child_does_not_say_again_that_there_is_no_cache(monkeypatch, capfd):
 
 
 @pytest.mark.parametrize("place", ["/proc/nothing", "/dev/null/x", "file"])
-def test_a_cache_that_cannot_be_used_costs_time_only_and_one_line_says_so(place, tmp_path, monkeypatch, capfd):
+def test_a_cache_that_cannot_be_used_costs_time_only_and_one_line_says_so(
+    place, tmp_path, monkeypatch, capfd
+):
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / place))
     for _ in range(2):

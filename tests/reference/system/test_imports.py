@@ -16,7 +16,10 @@ from reference import InputError
 from reference.system.imports import Registry
 
 INTERFACES = {
-    "compare.methods": ("METHODS", {"external", "fixed_step", "library", "method", "rhs", "tableau"}),
+    "compare.methods": (
+        "METHODS",
+        {"external", "fixed_step", "library", "method", "rhs", "tableau"},
+    ),
     "compare.approximations": ("APPROXIMATIONS", {"approximation", "case"}),
 }
 FILE = """
@@ -35,7 +38,9 @@ def package(tmp_path, monkeypatch):
         folder.mkdir()
         (folder / "__init__.py").write_text("")
         for file, words in files.items():
-            (folder / f"{file}.py").write_text(FILE.format(words=words) if words else "nothing = True")
+            (folder / f"{file}.py").write_text(
+                FILE.format(words=words) if words else "nothing = True"
+            )
         return name
 
     monkeypatch.syspath_prepend(tmp_path)
@@ -67,7 +72,9 @@ def test_one_id_in_two_files_is_refused(package):
 
 
 def test_an_unknown_id_is_answered_with_the_nearest_ones(package):
-    things = Registry(package("things_near", a=["apple", "pear", "peach"]), "THINGS", "thing", lambda thing: 0)
+    things = Registry(
+        package("things_near", a=["apple", "pear", "peach"]), "THINGS", "thing", lambda thing: 0
+    )
     with pytest.raises(InputError, match=r"thing: got 'paer'.*Did you mean pear\?") as refused:
         things["paer"]
     assert refused.value.field == "thing"
@@ -92,9 +99,13 @@ def test_ids_are_the_keys_and_may_be_typed_in_a_comma_separated_list(registry, l
 
 def test_listing_loads_no_heavy_library():
     heavy = "heyoka flint scipy numba matplotlib rebound jax sksundae numbalsoda"
-    listed = "; ".join(f"import {name} as m; list(m.{INTERFACES[name][0]}.values())" for name in INTERFACES)
+    listed = "; ".join(
+        f"import {name} as m; list(m.{INTERFACES[name][0]}.values())" for name in INTERFACES
+    )
     code = f"import sys; {listed}; print(set(sys.modules) & set({heavy.split()}))"
-    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
     assert process.stdout.strip() == "set()"
 
 
@@ -120,7 +131,9 @@ SWEEP = "sweep paris --over latitude=0,5 --t-end 60 --engine heyoka"
         ("sweep paris --rows rows.parquet", "pyarrow", "sweep"),
     ],
 )
-def test_a_command_whose_package_is_missing_names_the_extra(foucault, monkeypatch, tmp_path, line, module, extra):
+def test_a_command_whose_package_is_missing_names_the_extra(
+    foucault, monkeypatch, tmp_path, line, module, extra
+):
     monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rows.parquet").touch()
@@ -137,7 +150,9 @@ def test_a_scene_with_uncertain_inputs_is_shown_without_the_proof(foucault, monk
     monkeypatch.setitem(sys.modules, "flint", None)
     status, out, err = foucault("show", "museum_gate")
     assert (status, err) == (0, "")
-    inputs, motion, ranges = (next(line for line in out.splitlines() if line.startswith(f"[{word}")) for word in SHOWN)
+    inputs, motion, ranges = (
+        next(line for line in out.splitlines() if line.startswith(f"[{word}")) for word in SHOWN
+    )
     assert "length = " in inputs and "period_s = " in motion
     assert "pip install 'foucault-reference[enclose]'" in ranges
     status, out, _ = foucault("show", "museum_gate", "--json")

@@ -71,7 +71,9 @@ def said(process: subprocess.Popen[str]) -> list[str]:
     return words
 
 
-def test_of_the_processes_that_live_one_compiles_and_again_if_a_function_of_another_file_changed_that_it_calls(folder):
+def test_of_the_processes_that_live_one_compiles_and_again_if_a_function_of_another_file_changed_that_it_calls(
+    folder,
+):
     killed = begun(folder)
     assert killed.stdout is not None
     assert [killed.stdout.readline(), killed.stdout.readline()] == ["announced\n", "compiled\n"]
@@ -104,7 +106,10 @@ def test_it_is_kept_beside_the_package_or_else_in_the_cache(folder):
 
     def kept_in(package):
         told = subprocess.check_output(
-            [sys.executable, "-c", FOLDER], cwd=folder, env=environment | {"PYTHONPATH": str(package)}, text=True
+            [sys.executable, "-c", FOLDER],
+            cwd=folder,
+            env=environment | {"PYTHONPATH": str(package)},
+            text=True,
         )
         return Path(told.strip())
 

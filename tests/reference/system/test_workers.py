@@ -42,7 +42,11 @@ def test_a_child_takes_objects_while_it_works_and_ends_when_its_parent_stops():
 
 def parent(code: str) -> list[str]:
     """Return the command of a process that has children: a program that may use what tests run in them."""
-    return [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(HELPERS)!r})\n{BEGUN}{code}"]
+    return [
+        sys.executable,
+        "-c",
+        f"import sys; sys.path.insert(0, {str(HELPERS)!r})\n{BEGUN}{code}",
+    ]
 
 
 HELPERS = Path(child.__file__).parent
@@ -55,7 +59,9 @@ from reference.system.workers import Worker
 
 def test_a_child_whose_parent_ends_before_it_sends_anything_ends_without_a_word():
     # returns when the child, too, has closed its stderr
-    ended = subprocess.run(parent("Worker(doubled, DeadlyArgument())"), capture_output=True, cwd=ROOT, check=False)
+    ended = subprocess.run(
+        parent("Worker(doubled, DeadlyArgument())"), capture_output=True, cwd=ROOT, check=False
+    )
     assert (ended.returncode, ended.stdout, ended.stderr) == (-signal.SIGKILL, b"", b"")
 
 
@@ -74,12 +80,19 @@ worker.stop()
 
 @pytest.mark.parametrize(
     ("number", "started"),
-    [(signal.SIGINT, False), (signal.SIGTERM, False), (signal.SIGHUP, False), (signal.SIGINT, True)],
+    [
+        (signal.SIGINT, False),
+        (signal.SIGTERM, False),
+        (signal.SIGHUP, False),
+        (signal.SIGINT, True),
+    ],
 )
 def test_a_signal_to_the_whole_group_leaves_the_end_of_a_child_to_its_parent(number, started):
     """Ctrl-C reaches children too, also while they begin; a child that ended by itself would look like a crash."""
     program = parent(SIGNALLED.format(number=int(number), started=started))
-    ended = subprocess.run(program, capture_output=True, text=True, cwd=ROOT, start_new_session=True, check=False)
+    ended = subprocess.run(
+        program, capture_output=True, text=True, cwd=ROOT, start_new_session=True, check=False
+    )
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "signalled\n6\n", "")
 
 
@@ -103,7 +116,8 @@ worker.receive()
         process.kill()
         assert process.stdout.read() == b""
     end = time.monotonic() + 60
-    while not (tmp_path / "cleared").exists() and time.monotonic() < end:  # the child ends a moment after its parent
+    # the child ends a moment after its parent
+    while not (tmp_path / "cleared").exists() and time.monotonic() < end:
         time.sleep(0.01)
     assert (tmp_path / "cleared").exists()
 
@@ -137,7 +151,8 @@ def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it():
 
 
 def receive_nothing(worker: Worker) -> None:
-    with contextlib.suppress(IntegrationError, ValueError):  # the latter if the pipe is closed before it waits
+    # the latter if the pipe is closed before it waits
+    with contextlib.suppress(IntegrationError, ValueError):
         worker.receive()
 
 

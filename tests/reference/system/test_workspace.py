@@ -43,7 +43,9 @@ def test_the_folder_is_there_for_the_work_and_gone_after_it(tmp_path):
     assert left(tmp_path) == []
 
 
-@pytest.mark.parametrize("place", ["filelock.FileLock.acquire", "filelock.FileLock.release", "shutil.rmtree"])
+@pytest.mark.parametrize(
+    "place", ["filelock.FileLock.acquire", "filelock.FileLock.release", "shutil.rmtree"]
+)
 def test_an_interruption_as_it_begins_or_ends_leaves_nothing(tmp_path, monkeypatch, place):
     usual, calls = pkgutil.resolve_name(place), []
 
@@ -94,13 +96,17 @@ foucault.main()
 
 
 def test_what_a_signal_interrupts_as_it_begins_is_cleared_away_before_the_end(tmp_path):
-    ended = subprocess.run([sys.executable, "-c", KEPT, tmp_path / "made"], capture_output=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", KEPT, tmp_path / "made"], capture_output=True, check=False
+    )
     assert ended.returncode == 128 + signal.SIGTERM
     assert left(tmp_path) == []
 
 
 def test_a_living_process_keeps_its_folder_and_a_killed_one_does_not(tmp_path):
-    with subprocess.Popen([sys.executable, "-c", HOLDER, str(tmp_path)], stdout=subprocess.PIPE) as process:
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(tmp_path)], stdout=subprocess.PIPE
+    ) as process:
         assert process.stdout is not None
         held = Path(process.stdout.readline().decode().strip())
         with workspace(tmp_path, "pp") as work:
@@ -121,7 +127,9 @@ def test_those_of_the_name_go_and_folders_of_other_names_stay(tmp_path, name):
 
 
 @pytest.mark.parametrize("replaced", [False, True])
-def test_what_was_moved_away_by_a_killed_process_comes_back_unless_it_was_replaced(tmp_path, replaced):
+def test_what_was_moved_away_by_a_killed_process_comes_back_unless_it_was_replaced(
+    tmp_path, replaced
+):
     stale = tmp_path / ".pp.partial-1"
     (stale / OLD).mkdir(parents=True)
     (stale / OLD / "grid.csv").write_text("years of work")

@@ -63,7 +63,9 @@ def test_rewritings_change_no_bit(a, b):
 
     values = python_function(record(function, ["x", "y"]))(a, b)
     expected = (a + -b, -a + b, a - -b, a, -1 * a, a, a, -a, b, a)
-    assert all(p == q or (math.isnan(p) and math.isnan(q)) for p, q in zip(values, expected, strict=True))
+    assert all(
+        p == q or (math.isnan(p) and math.isnan(q)) for p, q in zip(values, expected, strict=True)
+    )
 
 
 def test_an_exact_zero_drops_out_but_a_double_zero_does_not():
@@ -73,7 +75,9 @@ def test_an_exact_zero_drops_out_but_a_double_zero_does_not():
 
 
 def test_fractions_become_the_nearest_double():
-    assert "* 0.3333333333333333\n" in record(lambda s, _: (Fraction(1, 3) * s[0],), ["a"]).source("f")
+    assert "* 0.3333333333333333\n" in record(lambda s, _: (Fraction(1, 3) * s[0],), ["a"]).source(
+        "f"
+    )
 
 
 @pytest.mark.parametrize(
@@ -101,11 +105,16 @@ def test_a_function_that_straight_line_code_does_not_have_is_named():
 def test_the_jacobian_is_the_derivative_of_the_rates(formulation):
     example = problem(formulation, pendulum={"drag": "0.1"}, site={"rotation_rate": "0.05"})
     at = (example.start + 0.05 * np.arange(1, len(example.start) + 1)).tolist()
-    rates, slopes = python_function(example.system.program), python_function(example.system.jacobian)
+    rates, slopes = (
+        python_function(example.system.program),
+        python_function(example.system.jacobian),
+    )
     k, step = example.parameters.tolist(), 1e-6
     values = np.array(slopes(*at, *k)).reshape(len(at), len(at))
     for i in range(len(at)):
-        ahead, behind = ([x + (sign * step if j == i else 0) for j, x in enumerate(at)] for sign in (1, -1))
+        ahead, behind = (
+            [x + (sign * step if j == i else 0) for j, x in enumerate(at)] for sign in (1, -1)
+        )
         slope = (np.array(rates(*ahead, *k)) - np.array(rates(*behind, *k))) / (2 * step)
         np.testing.assert_allclose(values[:, i], slope, rtol=1e-7, atol=1e-8)
 
@@ -133,7 +142,10 @@ def test_constants_that_a_scene_does_not_have_are_no_parameters():
 
 
 def test_scenes_of_one_kind_share_their_code():
-    assert problem("momentum").system.program == problem("momentum", site={"latitude": "-33"}).system.program
+    assert (
+        problem("momentum").system.program
+        == problem("momentum", site={"latitude": "-33"}).system.program
+    )
 
 
 @pytest.mark.parametrize("scene", ["paris", "pole_near", "equator_near", "weightless", "damped"])
@@ -158,7 +170,9 @@ def test_a_state_goes_back_to_metres():
     np.testing.assert_allclose(rows, [[0.3, 0.4, -math.sqrt(67**2 - 0.25), 0, 0, 0]], rtol=1e-15)
 
 
-@pytest.mark.parametrize("times", [[], [0.0], [1.0, 2.0], [0.0, 2.0, 1.0], [0.0, math.nan], [0.0, 0.0]])
+@pytest.mark.parametrize(
+    "times", [[], [0.0], [1.0, 2.0], [0.0, 2.0, 1.0], [0.0, math.nan], [0.0, 0.0]]
+)
 def test_times_that_do_not_increase_from_zero_are_refused(times):
     with pytest.raises(InputError, match="increasing"):
         Problem.of(load_scene("paris"), "plane", times)

@@ -43,25 +43,47 @@ console.log(JSON.stringify({ told, meanings: headers.map((word) => meaning(word,
 def run(golden, cases=(), headers=()):
     """Run the script on cases of (trajectory or None, transits or None, tolerance or None)."""
     script = "".join(map(source, ("function.mjs", "reading.js", "judging.js"))) + RUN
-    asked = [{"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases]
+    asked = [
+        {"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases
+    ]
     truth = embedded(golden, function_made(golden))
     document = {"truth": truth, "words": truth["words"], "cases": asked, "headers": list(headers)}
     done = subprocess.run(
-        ["node", "-e", script], input=json.dumps(document, default=plain), capture_output=True, text=True, check=True
+        ["node", "-e", script],
+        input=json.dumps(document, default=plain),
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return json.loads(done.stdout)
 
 
 def printed(numbers):
     """Return numbers as the page prints them."""
-    script = source("drawing.js") + 'console.log(JSON.stringify(JSON.parse(require("fs").readFileSync(0)).map(small)));'
-    done = subprocess.run(["node", "-e", script], input=json.dumps(numbers), capture_output=True, text=True, check=True)
+    script = (
+        source("drawing.js")
+        + 'console.log(JSON.stringify(JSON.parse(require("fs").readFileSync(0)).map(small)));'
+    )
+    done = subprocess.run(
+        ["node", "-e", script],
+        input=json.dumps(numbers),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     return json.loads(done.stdout)
 
 
 def test_a_number_of_the_page_is_its_value_to_three_digits():
     """A zero of an exponent or of a whole number stays."""
-    assert printed([2.5649e-10, 1e-20, 0.3001, 0.0, 100.0, 250.0]) == ["2.56e-10", "1e-20", "0.3", "0", "100", "250"]
+    assert printed([2.5649e-10, 1e-20, 0.3001, 0.0, 100.0, 250.0]) == [
+        "2.56e-10",
+        "1e-20",
+        "0.3",
+        "0",
+        "100",
+        "250",
+    ]
     powers = [float(f"1e{k}") for k in range(-40, 7)]
     errors = [float(f"2.56e{k}") for k in range(-40, 7)]
     numbers = [*powers, *errors, *(-number for number in errors)]
@@ -139,16 +161,23 @@ def test_trajectories_are_judged_as_score_does(reading, tmp_path, size):
         if name == "minutes" and not golden.function:
             continue  # most of its rows are not at golden times
         expected = (score.errors.max_m, score.errors.rms_m, score.errors.end_m, score.covered)
-        assert [mine["path"][key] for key in SAME] == pytest.approx(expected, rel=1e-5, abs=3e-14), name
+        assert [mine["path"][key] for key in SAME] == pytest.approx(
+            expected, rel=1e-5, abs=3e-14
+        ), name
         assert mine["amplitude_m"] == pytest.approx(score.errors.amplitude_m, rel=1e-12), name
-        if score.errors.max_m > 2e-14:  # at the rounding of doubles the bounds differ: score knows the truth to more
+        # at the rounding of doubles the bounds differ: score knows the truth to more
+        if score.errors.max_m > 2e-14:
             assert mine["path"]["digits"] == pytest.approx(score.errors.digits, rel=1e-5), name
         assert mine["tolerance_m"] == pytest.approx(score.tolerance_m, rel=1e-12)
         if score.verdict == "disagrees":
-            assert (mine["path"]["worst"]["t"], mine["path"]["worst"]["component"]) == score.worst[:2], name
+            assert (mine["path"]["worst"]["t"], mine["path"]["worst"]["component"]) == score.worst[
+                :2
+            ], name
     verdicts = {name: mine["verdict"] for name, mine in zip(texts, told, strict=True)}
     found = {name: mine["notes"] for name, mine in zip(texts, told, strict=True)}
-    assert {name for name, word in verdicts.items() if word == "disagrees"} == {"wrong", *SAID} & {*texts}
+    assert {name for name, word in verdicts.items() if word == "disagrees"} == {"wrong", *SAID} & {
+        *texts
+    }
     for name, text in SAID.items():
         if name not in texts:
             continue
@@ -166,7 +195,14 @@ SAID = {  # of a wrong file, in the words of compare/diagnosis
     "minutes": f"Your file {TIMES_SAID['min']}",
     "late": "Your clock is 0.01000 s slow",
 }
-ROUNDINGS = {"exchanged": 0, "turned": 0, "centimetres": 3, "millimetres_west": 3, "minutes": 2, "late": 3}
+ROUNDINGS = {
+    "exchanged": 0,
+    "turned": 0,
+    "centimetres": 3,
+    "millimetres_west": 3,
+    "minutes": 2,
+    "late": 3,
+}
 
 
 def most_left(golden, name):
@@ -177,7 +213,10 @@ def most_left(golden, name):
     within its proven bound of the truth, and a golden double within half a unit in the last place.
     """
     rounding = 2.0**-53
-    size, speed = (float(np.hypot(*(golden.grid[one] for one in pair)).max()) for pair in (("x", "y"), ("vx", "vy")))
+    size, speed = (
+        float(np.hypot(*(golden.grid[one] for one in pair)).max())
+        for pair in (("x", "y"), ("vx", "vy"))
+    )
     own = ROUNDINGS[name] * rounding * (speed * golden.t[-1] if name == "minutes" else size)
     if golden.function is None:
         return own
@@ -187,20 +226,26 @@ def most_left(golden, name):
 def test_the_page_says_how_it_read_a_file_as_score_does(golden, tmp_path):
     t, x, y = (golden.grid[name][:3] for name in ("t", "x", "y"))
     more = {
-        "german": csv("Zeit [min]; x [cm]; Nord (mm); Bild", t / 60, 100 * x, 1000 * y, t, separator=";").replace(
-            ".", ","
-        ),
+        "german": csv(
+            "Zeit [min]; x [cm]; Nord (mm); Bild", t / 60, 100 * x, 1000 * y, t, separator=";"
+        ).replace(".", ","),
         "table": csv("t x y", t, x, y, separator="\t"),
         "quoted": csv('"time (ms)","position x","south","step","-"', 1000 * t, x, -y, t, t),
     }
     texts = trajectories(golden) | more
     for (name, text), mine in zip(
-        texts.items(), run(golden, [(text, None, None) for text in texts.values()])["told"], strict=True
+        texts.items(),
+        run(golden, [(text, None, None) for text in texts.values()])["told"],
+        strict=True,
     ):
         path = tmp_path / f"{name}.csv"
         path.write_text(text)
-        wanted = [convention.text.partition(" (--columns")[0] for convention in read(path).conventions]
-        assert [note for note in mine["notes"] if note[:4] == "Read"] == [f"Reading: {text}." for text in wanted], name
+        wanted = [
+            convention.text.partition(" (--columns")[0] for convention in read(path).conventions
+        ]
+        assert [note for note in mine["notes"] if note[:4] == "Read"] == [
+            f"Reading: {text}." for text in wanted
+        ], name
         assert not (name in more and name != "table") or len(wanted) >= 2
 
 
@@ -228,7 +273,9 @@ def test_transits_are_matched_as_score_does(golden, tmp_path):
         assert found["matched"] == expected.matched, name
         assert found["missed"] == expected.missed and found["extra"] == expected.extra, name
         sizes = expected.max_error_s, expected.max_conditioned_m
-        assert [found["max_error_s"], found["max_conditioned_error_m"]] == pytest.approx(sizes, rel=1e-9), name
+        assert [found["max_error_s"], found["max_conditioned_error_m"]] == pytest.approx(
+            sizes, rel=1e-9
+        ), name
 
 
 ROW = "0,0.3,0.4\n"
@@ -262,7 +309,11 @@ def test_what_score_refuses_the_page_refuses(golden, tmp_path):
 
 def between_golden_times(golden):
     t, x, y = (golden.grid[name][:50] for name in ("t", "x", "y"))
-    return csv("t,x,y", t + t[1] / 120, x, y), csv("t,x,y", t**1.01, x, y), csv("t,x,y", t / 2, x, y)
+    return (
+        csv("t,x,y", t + t[1] / 120, x, y),
+        csv("t,x,y", t**1.01, x, y),
+        csv("t,x,y", t / 2, x, y),
+    )
 
 
 @pytest.mark.parametrize(("name", "shift"), [("paris", "0.500"), ("creeping", "0.00333")])
@@ -273,7 +324,10 @@ def test_rows_between_the_golden_times_are_no_verdict_but_a_message(name, shift)
     shifted, between, some = between_golden_times(golden)
     told = run(golden, [(shifted, None, None), (between, None, None), (some, None, 10.0)])["told"]
     assert f"All are {shift} s after one: is the clock shifted?" in told[0]["refused"]
-    assert "No row after t = 0 is at a golden time" in told[1]["refused"] and "clock" not in told[1]["refused"]
+    assert (
+        "No row after t = 0 is at a golden time" in told[1]["refused"]
+        and "clock" not in told[1]["refused"]
+    )
     assert told[2]["path"]["rows"] == 25 and told[2]["notes"] == [
         "25 of 50 rows are not at golden times and were not judged."
     ]
@@ -281,7 +335,9 @@ def test_rows_between_the_golden_times_are_no_verdict_but_a_message(name, shift)
 
 def test_rows_between_the_golden_times_are_judged_by_the_shipped_function(golden, tmp_path):
     texts = between_golden_times(golden)
-    asked = [(text, None, tolerance) for text, tolerance in zip(texts, (None, None, 10.0), strict=True)]
+    asked = [
+        (text, None, tolerance) for text, tolerance in zip(texts, (None, None, 10.0), strict=True)
+    ]
     for (text, _, tolerance), mine in zip(asked, run(golden, asked)["told"], strict=True):
         path = tmp_path / "mine.csv"
         path.write_text(text)
@@ -321,7 +377,9 @@ def at_any_time(request, tmp_path_factory):
         return scene, reference.load("hard.binary64")
     short = scene.with_values(["run.digits=12"])
     solution = reference.solve(short, level="enclosed", engine="limbs", function=True)
-    return scene, reference.load(reference.write(solution, tmp_path_factory.mktemp("function") / scene.id))
+    return scene, reference.load(
+        reference.write(solution, tmp_path_factory.mktemp("function") / scene.id)
+    )
 
 
 def odd_files(golden):
@@ -343,7 +401,9 @@ def odd_files(golden):
         "centimetres": csv("t,x,y", t, 100 * x, 100 * y),
         "minutes": csv("t,x,y", t / 60, x, y),
         "units": csv("time (ms),x (mm),y (cm)", 1000 * t, 1000 * x, 100 * (y + 1e-7 * size)),
-        "late": csv("t,x,y", t, *(np.array(part) for part in (golden.at(t * (1 - 1e-9)).x, golden.at(t).y))),
+        "late": csv(
+            "t,x,y", t, *(np.array(part) for part in (golden.at(t * (1 - 1e-9)).x, golden.at(t).y))
+        ),
         "small": csv("t,x,y", t, 3e-3 * x, 3e-3 * y),
         "one_row": csv("t,x,y", t[500:501], x[500:501], y[500:501]),
         "late_begin": csv("t,x,y", t[900:], x[900:] + 1e-9, y[900:]),
@@ -371,10 +431,14 @@ def test_rows_at_any_times_are_judged_as_score_does(at_any_time, tmp_path):
         assert mine["path"]["rows"] == len(text.splitlines()) - 1
         expected = (score.errors.max_m, score.errors.rms_m, score.errors.end_m, score.covered)
         known = 1e-14 * float(golden.scene.exact.length)
-        assert [mine["path"][key] for key in SAME] == pytest.approx(expected, rel=1e-5, abs=known), name
+        assert [mine["path"][key] for key in SAME] == pytest.approx(
+            expected, rel=1e-5, abs=known
+        ), name
         assert mine["tolerance_m"] == pytest.approx(score.tolerance_m, rel=1e-12), name
         if score.verdict == "disagrees":
-            assert tolerance or mine["path"]["digits"] == pytest.approx(score.errors.digits, rel=1e-5), name
+            assert tolerance or mine["path"]["digits"] == pytest.approx(
+                score.errors.digits, rel=1e-5
+            ), name
             assert mine["path"]["worst"]["t"] == score.worst[0], name
             assert name == "exchanged" or mine["path"]["worst"]["component"] == score.worst[1], name
         said = [note for note in mine["notes"] if note.startswith("Your file")]
@@ -394,14 +458,17 @@ def test_the_bound_is_that_of_the_columns_of_the_file(at_any_time):
     plane, sphere = csv("t,x,y", t, at.x, at.y), csv("t,x,y,z", t, at.x, at.y, at.z)
     told = run(golden, [(plane, None, None), (sphere, None, None)])["told"]
     flat = np.hypot(bound["x"], bound["y"])
-    assert [one["bound_m"] for one in told] == pytest.approx([flat, np.hypot(flat, bound["z"])], rel=1e-12)
+    assert [one["bound_m"] for one in told] == pytest.approx(
+        [flat, np.hypot(flat, bound["z"])], rel=1e-12
+    )
 
 
 def test_an_extra_transit_is_excused_by_xdot_as_score_does(at_any_time, tmp_path):
     scene, golden = at_any_time
     times = golden.transits["t"]
     size = float(np.hypot(golden.x, golden.y).max())
-    rate = np.abs(golden.transits["ax"]) / embedded(golden)["omega"]  # of the position, for an error of the time
+    # of the position, for an error of the time
+    rate = np.abs(golden.transits["ax"]) / embedded(golden)["omega"]
     cases = {
         "two_within": np.sort([*times, times[3] + 0.5e-6 * size / rate[3]]),
         "two_beyond": np.sort([*times, times[3] + 2e-6 * size / rate[3]]),
@@ -412,7 +479,9 @@ def test_an_extra_transit_is_excused_by_xdot_as_score_does(at_any_time, tmp_path
         path = tmp_path / f"{name}.csv"
         path.write_text(text)
         score = judge(None, scene, transits=read_transits(path), explain=False)
-        assert mine["verdict"] == score.verdict == ("agrees" if name == "two_within" else "disagrees"), name
+        assert (
+            mine["verdict"] == score.verdict == ("agrees" if name == "two_within" else "disagrees")
+        ), name
         assert mine["transits"]["extra"] == score.transits.extra, name
 
 
@@ -423,7 +492,12 @@ def test_clocks_and_ends_of_runs_are_taken_as_score_takes_them(golden, tmp_path)
     since_1970 = csv("t,x,y", t + 1760000000.0, x, y)
     late = csv("t,x,y", t[1:] + 1760000000.0, x[1:], y[1:])
     rows, ended = csv("t,x,y", t, x, y), csv("t", np.append(zeros, t[-1]))
-    asked = [(since_1970, None, None), (late, None, None), (rows, ended, None), (rows, csv("t", zeros), None)]
+    asked = [
+        (since_1970, None, None),
+        (late, None, None),
+        (rows, ended, None),
+        (rows, csv("t", zeros), None),
+    ]
     counted, refused, extra, right = run(golden, asked)["told"]
     path, transits = tmp_path / "mine.csv", tmp_path / "zeros.csv"
     path.write_text(since_1970)

@@ -20,7 +20,12 @@ from compare.report.atlas.pages import scene_page
 from reference.scenes.shipped import golden_root
 
 CHROMIUM = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+    (
+        path
+        for name in ("chromium", "chromium-browser", "google-chrome")
+        if (path := shutil.which(name))
+    ),
+    None,
 )
 browser = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 
@@ -46,27 +51,42 @@ def test_a_page_for_each_scene_and_one_over_all(atlas):
     hard = (atlas / "hard.html").read_text()
     assert "Path from above" in hard and "On the sphere" in hard
     assert "foucault score hard mine.csv --t-end 5 --inputs decimal" in hard
-    assert "judged by the golden rows alone: the dataset has no golden function" in hard and 'id="player"' not in hard
+    assert (
+        "judged by the golden rows alone: the dataset has no golden function" in hard
+        and 'id="player"' not in hard
+    )
     assert f"y within {reference.load('paris.binary64').function.bound['y']:.1e} m" in page
     assert all(record.sha256 in page for record in golden.manifest.files.values())
     assert golden.manifest.cross_checks[0].position_m in page and golden.manifest.seal in page
 
 
 def test_the_index_promises_a_player_only_where_there_is_a_golden_function(atlas):
-    players = {path.stem for path in atlas.glob("*.html") if '<div id="player">' in path.read_text()}
+    players = {
+        path.stem for path in atlas.glob("*.html") if '<div id="player">' in path.read_text()
+    }
     assert "paris" in players and players < {"conical", "hard", "paris"}
-    assert "plays the motion where the scene has a golden function" in (atlas / "index.html").read_text()
+    assert (
+        "plays the motion where the scene has a golden function"
+        in (atlas / "index.html").read_text()
+    )
 
 
 def test_a_thumbnail_shows_the_path_from_its_release_on(atlas):
     card = re.search(r'id="paris" .*?</a>', (atlas / "index.html").read_text(), re.S)[0]
-    x, y = (float(word) for word in re.search(r'class="release" d="M(\S+) (\S+?)h0"', card).groups())
+    x, y = (
+        float(word) for word in re.search(r'class="release" d="M(\S+) (\S+?)h0"', card).groups()
+    )
     golden = reference.load("paris")
     unit = 0.46 * 200 / np.hypot(golden.x, golden.y).max()
-    assert (x - 100, 100 - y) == pytest.approx((0.3 * unit, 0.4 * unit), abs=1.5)  # 0.3 m east, 0.4 m north
+    # 0.3 m east, 0.4 m north
+    assert (x - 100, 100 - y) == pytest.approx((0.3 * unit, 0.4 * unit), abs=1.5)
     path = re.search(r'<path d="M(.*?)"', card)[1]
     places = np.array(
-        [[float(word) for word in place.split()] for part in path.split("M") for place in re.findall(r"\d+ \d+", part)]
+        [
+            [float(word) for word in place.split()]
+            for part in path.split("M")
+            for place in re.findall(r"\d+ \d+", part)
+        ]
     )
     assert path.count("M") == 8 and len(places) == 9 * 41, "nine swings, spread over the day"
     assert places.min() >= 0 and places.max() <= 200
@@ -76,7 +96,9 @@ def test_pages_load_nothing_stay_small_and_have_each_id_once(atlas):
     for path in atlas.glob("*.html"):
         text = path.read_text()
         assert "default-src 'none'" in text
-        assert not re.search(r"<(?:link|img|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text)
+        assert not re.search(
+            r"<(?:link|img|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text
+        )
         assert path.stat().st_size < 1_000_000
         names = re.findall(r' id="([^"]+)"', text.partition("<script")[0])
         assert len(names) == len(set(names)), path
@@ -88,7 +110,10 @@ def test_the_script_beside_a_page_is_the_shipped_function_and_nothing_else(atlas
     made, shipped = json.loads(value), golden_root() / "paris.binary64"
     assert name == "globalThis.goldenFunction" and made["end"] == 86_400
     assert made["record"] == json.loads((shipped / "function.json").read_text())
-    assert base64.b64decode(made["coefficients"], validate=True) == (shipped / "function.f64").read_bytes()
+    assert (
+        base64.b64decode(made["coefficients"], validate=True)
+        == (shipped / "function.f64").read_bytes()
+    )
     page = (atlas / "paris.html").read_text()
     assert '"function":null' in page and "are in paris.function.js beside this page" in page
 
@@ -96,7 +121,9 @@ def test_the_script_beside_a_page_is_the_shipped_function_and_nothing_else(atlas
 def test_what_studies_say_of_a_scene(tmp_path):
     kept = kept_studies(studies_folder())
     assert kept["paris"].same_digits and kept["paris"].least and kept["paris"].span_s == 86_400
-    assert [one.error_m for one in kept["hard"].least] == sorted(one.error_m for one in kept["hard"].least)
+    assert [one.error_m for one in kept["hard"].least] == sorted(
+        one.error_m for one in kept["hard"].least
+    )
     assert kept_studies(None) == {} and "silently wrong" in kept["hard"].sentence()
     (tmp_path / "other.json").write_text('{"rows": [{"scene": "paris"}]}')
     with pytest.raises(reference.InputError, match="a study as `foucault study` writes it"):
@@ -259,7 +286,11 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_pat
     times = golden.transits["t"]
 
     def rows(header, *columns):
-        return header + "\n" + "".join(",".join(map(repr, row)) + "\n" for row in zip(*columns, strict=True))
+        return (
+            header
+            + "\n"
+            + "".join(",".join(map(repr, row)) + "\n" for row in zip(*columns, strict=True))
+        )
 
     columns = [one.tolist() for one in (t, x + 1e-8, y)]
     right = rows("t,x,y", *columns)
@@ -272,7 +303,9 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_pat
         [["late.csv", rows("t,x,y", (t + 7.0).tolist()[:-1], columns[1][:-1], columns[2][:-1])]],
         [["ragged.csv", right + "86400,0.1\n"]],
     ]
-    told = in_browser(atlas / "paris.html", TOLD % json.dumps(dropped).replace("<", "\\u003c"), tmp_path)
+    told = in_browser(
+        atlas / "paris.html", TOLD % json.dumps(dropped).replace("<", "\\u003c"), tmp_path
+    )
     assert told["fits"], "the page is wider than a phone"
     assert told["errors"] == []
     words = [one[0] for one in told["told"]]
@@ -285,9 +318,9 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_pat
     path = tmp_path / "right.csv"
     path.write_text(right)
     score = judge(path, "paris", explain=False)
-    assert score.verdict == "agrees" and f"{score.errors.max_m:.3g}".replace("e-0", "e-") in texts[0].replace(
-        "1.00e", "1e"
-    )
+    assert score.verdict == "agrees" and f"{score.errors.max_m:.3g}".replace("e-0", "e-") in texts[
+        0
+    ].replace("1.00e", "1e")
     assert "10514 matched, 0 missed, 0 extra" in texts[1]
     assert f"10513 matched, 1 missed ({times[41]:.6f} s)" in texts[2]
     assert "Your file writes north as x and east as y: put right, " in texts[3]
@@ -315,13 +348,17 @@ def dropped_on(page, files, tmp_path, *flags):
 
 @browser
 @pytest.mark.parametrize("flag", ["", "--force-prefers-reduced-motion"])
-def test_a_file_at_any_times_is_judged_and_the_motion_played_beside_it(atlas, circling, flag, tmp_path):
+def test_a_file_at_any_times_is_judged_and_the_motion_played_beside_it(
+    atlas, circling, flag, tmp_path
+):
     files = [["right.csv", odd(circling, 1e-9)], ["wrong.csv", odd(circling, 1e-4)]]
     told = dropped_on(atlas / "conical.html", files, tmp_path, *filter(None, [flag]))
     assert told["fits"] and told["errors"] == [] and told["display"] == "block"
     (right, words, *_), (wrong, *_) = told["told"]
     assert (right, wrong) == ("agrees", "disagrees")
-    said = re.search(r"the golden function, which is within (\S+) m of the truth at every time", words)
+    said = re.search(
+        r"the golden function, which is within (\S+) m of the truth at every time", words
+    )
     assert float(said[1]) == pytest.approx(
         np.hypot(circling.function.bound["x"], circling.function.bound["y"]), rel=0.01
     )
@@ -329,7 +366,9 @@ def test_a_file_at_any_times_is_judged_and_the_motion_played_beside_it(atlas, ci
     begin, end = (re.search(rf"^{text}$", words, re.M) for text in ("61.5", "93.25"))
     assert begin and end, "the chart spans the file"
     before, after, drawn, later = told["moved"]
-    assert before != after and all("yours in orange, its error times 1,000" in text for text in (before, after))
+    assert before != after and all(
+        "yours in orange, its error times 1,000" in text for text in (before, after)
+    )
     assert later == drawn, "a press of the button stops it"
     assert drawn > 40 if not flag else 3 <= drawn <= 5
 
@@ -341,7 +380,10 @@ def test_a_page_without_the_coefficients_beside_it_judges_the_rows_alone(atlas, 
     for folder in (beside, alone):
         folder.mkdir()
     shutil.copy(atlas / "paris.function.js", beside)
-    files = [["right.csv", odd(golden, 1e-9)], ["rows.csv", (golden.path / "grid.binary64.csv").read_text()]]
+    files = [
+        ["right.csv", odd(golden, 1e-9)],
+        ["rows.csv", (golden.path / "grid.binary64.csv").read_text()],
+    ]
     told = dropped_on(atlas / "paris.html", files, beside)
     assert [one[0] for one in told["told"]] == ["agrees", "agrees"] and told["errors"] == []
     assert told["display"] == "none", "no gap stands where nothing is drawn before the first play"

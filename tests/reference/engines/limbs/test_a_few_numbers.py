@@ -14,7 +14,9 @@ AMPLITUDE = Fraction(1, 10**9)  # m
 
 
 def test_a_seconds_pendulum():
-    scene = make_scene(pendulum={"length": LENGTH}, site={"rotation_rate": "0"}, release={"x": "1e-9", "y": "0"})
+    scene = make_scene(
+        pendulum={"length": LENGTH}, site={"rotation_rate": "0"}, release={"x": "1e-9", "y": "0"}
+    )
     swing = run_in_limbs(scene, 113, (Fraction(0), Fraction(1, 2), Fraction(1), Fraction(5, 2)))
     x, vx, t = swing.grid.exact("x"), swing.grid.exact("vx"), swing.transits.exact("t")
 

@@ -13,7 +13,15 @@ pytest.importorskip("numba")
 
 import numba
 
-from reference.engines.limbs.limb import add_product, carry, divide, joined, nearest_whole, rows_of, split
+from reference.engines.limbs.limb import (
+    add_product,
+    carry,
+    divide,
+    joined,
+    nearest_whole,
+    rows_of,
+    split,
+)
 from reference.engines.limbs.size import LIMB_BITS, fraction_bits
 from reference.engines.simd.lanes import LANES, aligned
 from reference.numbers.precision import context
@@ -38,15 +46,25 @@ careless = compiled_with(fastmath=True)
 
 
 def product_over(a, b, divisor, run):
-    rows_a, rows_b, to = rows_of(a, LIMB_COUNT), rows_of(b, LIMB_COUNT), aligned(LANES * (LIMB_COUNT + 2))
+    rows_a, rows_b, to = (
+        rows_of(a, LIMB_COUNT),
+        rows_of(b, LIMB_COUNT),
+        aligned(LANES * (LIMB_COUNT + 2)),
+    )
     run(to, 2.0 * rows_a, rows_b, LIMB_COUNT, float(divisor))
     return joined(to[: LANES * LIMB_COUNT].reshape(LIMB_COUNT, LANES).T)
 
 
-numbers = st.lists(st.fractions(min_value=-1, max_value=1, max_denominator=10**50), min_size=8, max_size=8)
+numbers = st.lists(
+    st.fractions(min_value=-1, max_value=1, max_denominator=10**50), min_size=8, max_size=8
+)
 
 
-@given(st.integers(min_value=-(2 ** fraction_bits(LIMB_COUNT)), max_value=2 ** fraction_bits(LIMB_COUNT)))
+@given(
+    st.integers(
+        min_value=-(2 ** fraction_bits(LIMB_COUNT)), max_value=2 ** fraction_bits(LIMB_COUNT)
+    )
+)
 def test_an_integer_comes_back_from_its_limbs(value):
     limbs = split(value, LIMB_COUNT)
     assert all(abs(d) <= 2 ** (LIMB_BITS - 1) for d in limbs)
@@ -76,7 +94,9 @@ def test_canary_a_compiler_that_may_rearrange_and_fuse_gives_the_same_bits(size)
 def test_canary_the_largest_limbs_there_can_be_are_multiplied_exactly():
     limb_count, largest = 18, 2.0 ** (LIMB_BITS - 1)
     rows, to = np.full(LANES * limb_count, largest), aligned(LANES * (limb_count + 2))
-    exact = numba.njit(error_model="numpy")(lambda to, a, b, limb_count: add_product(to, a, b, 0, limb_count))
+    exact = numba.njit(error_model="numpy")(
+        lambda to, a, b, limb_count: add_product(to, a, b, 0, limb_count)
+    )
     for _ in range(56):  # as many orders as can meet where all limbs are used
         exact(to, 2.0 * rows, rows, limb_count)
     for r in range(1, limb_count + 1):

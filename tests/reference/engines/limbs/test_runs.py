@@ -50,11 +50,20 @@ SCENES = {
         "site": {"rotation_rate": "0"},
         "release": {"angle": "179.999999999999", "azimuth": "30"},
     },
-    "without_gravity": {"site": {"gravity": "0"}, "release": {"x": "1", "y": "0.5", "vx": "1", "vy": "2"}},
+    "without_gravity": {
+        "site": {"gravity": "0"},
+        "release": {"x": "1", "y": "0.5", "vx": "1", "vy": "2"},
+    },
 }
 TIMES = tuple(Fraction(7 * k, 5) for k in range(26))
-FAST = {"fast_earth", "fast_earth_with_drag"}  # gravity is a thousand times the usual: a tenth of the time will do
-CASES = [(name, 45) for name in SCENES] + [("paris", 32), ("paris", 60), ("near_inverted", 32), ("near_inverted", 60)]
+# gravity is a thousand times the usual: a tenth of the time will do
+FAST = {"fast_earth", "fast_earth_with_drag"}
+CASES = [(name, 45) for name in SCENES] + [
+    ("paris", 32),
+    ("paris", 60),
+    ("near_inverted", 32),
+    ("near_inverted", 60),
+]
 CASES += [("from_the_top", digits) for digits in range(30, 60, 4)]
 SPARE = 8  # times what heyoka loses at the same precision: the conditioning of the scene, measured
 FLOOR_BITS = 6
@@ -73,17 +82,20 @@ def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
     sizes = finer.grid.largest()
 
     def allowed(columns):
-        return SPARE * max(lost[c] for c in columns) + max(sizes[c] for c in columns) * Fraction(2) ** (
-            FLOOR_BITS - prec
-        )
+        return SPARE * max(lost[c] for c in columns) + max(sizes[c] for c in columns) * Fraction(
+            2
+        ) ** (FLOOR_BITS - prec)
 
-    position = allowed(POSITION[:2] if name == "tiny" else POSITION)  # z is of the size of l, and its error is x's
+    # z is of the size of l, and its error is x's
+    position = allowed(POSITION[:2] if name == "tiny" else POSITION)
     assert max(gaps[c] for c in POSITION) <= position
     assert max(gaps[c] for c in VELOCITY) <= allowed(VELOCITY)
     assert ours.directions == finer.directions
     late = finer.transits.distance(ours.transits).exact("t")
     for gap, ax in zip(late, ours.transits.exact("ax"), strict=True):
-        assert gap <= 4 * allowed(VELOCITY) / abs(ax) + times[-1] * Fraction(2) ** (FLOOR_BITS - prec)
+        assert gap <= 4 * allowed(VELOCITY) / abs(ax) + times[-1] * Fraction(2) ** (
+            FLOOR_BITS - prec
+        )
 
 
 def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
@@ -108,7 +120,9 @@ def test_a_quarter_period_is_that_of_the_elliptic_integral():
     quarter = ctx.sqrt(ctx.mpf(2) / ctx.mpf("9.81")) * ctx.ellipk(ctx.sinpi(ctx.mpf(75) / 180) ** 2)
     time = Fraction(int(ctx.floor(quarter * 2**190)), 2**190)
     result = run_in_limbs(scene, 160, (Fraction(0), time), zeros=())
-    x, y, z = (ctx.mpf(value) / 2**result.grid.bits for value in result.grid.only(POSITION).values[1])
+    x, y, z = (
+        ctx.mpf(value) / 2**result.grid.bits for value in result.grid.only(POSITION).values[1]
+    )
     assert abs(x) < 1e-44
     assert y == 0
     assert abs(z + 2) < 1e-44
@@ -140,7 +154,9 @@ def test_more_bits_than_there_can_be_are_refused():
 def test_a_transit_that_only_grazes_is_refused():
     # swinging exactly north-south at the pole of a slow Earth, xdot is far below the precision at every turn
     scene = make_scene(
-        site={"latitude": "90", "rotation_rate": "1e-300"}, release={"x": "0", "y": "0.5"}, pendulum={"length": "2"}
+        site={"latitude": "90", "rotation_rate": "1e-300"},
+        release={"x": "0", "y": "0.5"},
+        pendulum={"length": "2"},
     )
     with pytest.raises(IntegrationError):
         run_in_limbs(scene, 113, TIMES)
@@ -187,9 +203,15 @@ print((result.grid.values, result.transits.values, result.steps))
 
 @pytest.mark.long
 def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys):
-    plain = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
+    plain = {
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "NUMBA_CACHE_DIR": str(tmp_path),
+    }
     command = [sys.executable, "-c", SHORT]
-    generic = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)
+    generic = subprocess.run(
+        command, env={**os.environ, **plain}, capture_output=True, text=True, check=True
+    )
     exec(SHORT, {})
     assert capsys.readouterr().out == generic.stdout
 
@@ -206,7 +228,8 @@ def test_the_first_use_is_announced_and_the_second_is_not(tmp_path, capsys):
     command = [sys.executable, "-c", f"SHORT = {SHORT!r}\n{FIRST_USE}"]
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
     first, second = (
-        subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout for _ in range(2)
+        subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+        for _ in range(2)
     )
     exec(SHORT, {})
     assert (first, second) == ("announced\n" + second, capsys.readouterr().out)

@@ -26,7 +26,9 @@ LAST_PLACES = 64  # units of the last limb: a coefficient is divided once an ord
 
 
 def first_step(scene, bits=BITS):
-    return next(engines()["limbs"].taylor_steps(scene.exact, (Fraction(0),), bits, 2 * SERIES_ORDER))
+    return next(
+        engines()["limbs"].taylor_steps(scene.exact, (Fraction(0),), bits, 2 * SERIES_ORDER)
+    )
 
 
 def assert_same_coefficients(scene, formulation="momentum", bits=BITS):
@@ -36,7 +38,9 @@ def assert_same_coefficients(scene, formulation="momentum", bits=BITS):
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     expected = [n[0], sin * n[1] - cos * n[2], cos * n[1] + sin * n[2], tension(n, v, k)]
     h = ctx.mpf(step.h.numerator) / step.h.denominator
-    for row, row_of_step, polynomial in zip(("x", "m", "w", "pull"), step.coefficients, expected, strict=True):
+    for row, row_of_step, polynomial in zip(
+        ("x", "m", "w", "pull"), step.coefficients, expected, strict=True
+    ):
         for j, coefficient in enumerate(polynomial.coefficients):
             exact = coefficient * h ** (j + (2 if row == "pull" else 0)) * 2**step.bits
             assert abs(row_of_step[j] - exact) < LAST_PLACES, (row, j)
@@ -54,7 +58,8 @@ def test_the_series_of_paris_is_that_of_every_polynomial_formulation(paris, form
 )
 def test_the_series_is_that_of_the_model_for_few_limbs_and_for_many(bits, drag):
     scene = make_scene(
-        pendulum={"length": "3.7", "drag": drag}, release={"angle": "70", "azimuth": "20", "azimuth_rate": "30"}
+        pendulum={"length": "3.7", "drag": drag},
+        release={"angle": "70", "azimuth": "20", "azimuth_rate": "30"},
     )
     assert_same_coefficients(scene, bits=bits)
 

@@ -40,7 +40,9 @@ def search():
         m.length[:], m.transits.sought[:] = lengths, 1.0
         m.time[:] = 1.0
         m.transits.before[:] = polynomials[:, 0]
-        m.transits.after[:] = [np.polyval(f[::-1], r) for f, r in zip(polynomials, lengths, strict=True)]
+        m.transits.after[:] = [
+            np.polyval(f[::-1], r) for f, r in zip(polynomials, lengths, strict=True)
+        ]
         on_lanes(m, ORDER)
         return m, lambda lane, multiplicity=-1: on_one(m, lane, multiplicity, ORDER)
 
@@ -58,17 +60,25 @@ def polynomials(generator, count):
     """Random series of all kinds: single zeros, close pairs, none, several."""
     orders = np.arange(ORDER)
     for _ in range(count):
-        f = generator.normal(size=(LANES, ORDER)) * generator.uniform(0.05, 0.9, size=(LANES, 1)) ** orders
+        f = (
+            generator.normal(size=(LANES, ORDER))
+            * generator.uniform(0.05, 0.9, size=(LANES, 1)) ** orders
+        )
         f[:, 0] *= generator.uniform(0.0, 2.0, size=LANES)
         for lane in range(0, LANES, 2):  # a pair: (s - a)² + b
-            a, b = generator.uniform(0.1, 0.9), generator.normal() * 10.0 ** -generator.uniform(0, 9)
+            a, b = (
+                generator.uniform(0.1, 0.9),
+                generator.normal() * 10.0 ** -generator.uniform(0, 9),
+            )
             tail = np.zeros(ORDER)
             tail[0], tail[1:4] = 1.0, 0.2 * generator.normal(size=3)
             f[lane] = np.convolve([a * a + b, -2 * a, 1.0], tail)[:ORDER]
         yield f, generator.uniform(0.3, 1.5, size=LANES)
 
 
-def test_lanes_are_right_about_the_zeros_they_are_sure_of_and_bisection_finds_the_others(search, size, tally):
+def test_lanes_are_right_about_the_zeros_they_are_sure_of_and_bisection_finds_the_others(
+    search, size, tally
+):
     generator, sure, long = np.random.default_rng(7), 0, 0
     for many, lengths in polynomials(generator, size(12, 300)):
         m, bisected = search(many, lengths)
@@ -80,11 +90,19 @@ def test_lanes_are_right_about_the_zeros_they_are_sure_of_and_bisection_finds_th
                 count = bisected(lane)
                 found, slopes, long = m.w.places[:count].copy(), m.w.slopes[:count].copy(), long + 1
             else:
-                found, slopes, sure = z.place[[lane]][z.hit[[lane]] > 0], z.slope[[lane]][z.hit[[lane]] > 0], sure + 1
+                found, slopes, sure = (
+                    z.place[[lane]][z.hit[[lane]] > 0],
+                    z.slope[[lane]][z.hit[[lane]] > 0],
+                    sure + 1,
+                )
             # counts alone would not tell: a place may be off where half a step only is monotone
             assert len(found) == len(exact), (many[lane], lengths[lane])
-            scale = np.polyval(np.abs(many[lane])[::-1], max(1.0, lengths[lane]))  # what rounding counts from
-            assert (np.abs(found - exact) * np.abs(slopes) <= 2.0**-48 * scale).all(), (many[lane], lengths[lane])
+            # what rounding counts from
+            scale = np.polyval(np.abs(many[lane])[::-1], max(1.0, lengths[lane]))
+            assert (np.abs(found - exact) * np.abs(slopes) <= 2.0**-48 * scale).all(), (
+                many[lane],
+                lengths[lane],
+            )
     tally(f"zeros on lanes: {sure} lanes sure, {long} the long way, all as by FLINT")
     assert sure > 40 and long > 40
 

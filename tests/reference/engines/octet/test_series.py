@@ -41,7 +41,9 @@ def coefficients():
         numbers = packed(rows, RunOptions()).T
         m.state.reshape(-1, LANES)[:, : len(many)] = numbers
         fill(m, ORDER)
-        x, p, u = (array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u))
+        x, p, u = (
+            array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u)
+        )
         return x, p, u, numbers[UNIT], rows
 
     return of
@@ -50,17 +52,24 @@ def coefficients():
 def exact_series(engine, inputs):
     """The first step's coefficients of n east, north, up, shape (3, ORDER + 1), and its length, as fractions."""
     step = next(engines()[engine].taylor_steps(inputs, (Fraction(0),), BITS, 2 * BITS))
-    rows = [[Fraction(int(row[k]), 2**step.bits) for k in range(ORDER + 1)] for row in list(step.coefficients)[:3]]
+    rows = [
+        [Fraction(int(row[k]), 2**step.bits) for k in range(ORDER + 1)]
+        for row in list(step.coefficients)[:3]
+    ]
     rows = np.array(rows, dtype=object)
     if step.columns == EARTH:
         k = Start.of(inputs, BITS).k
-        sin, cos = (to_fraction(value) if value else Fraction(0) for value in ((k.sin, k.cos) if k.rate else (1, 0)))
+        sin, cos = (
+            to_fraction(value) if value else Fraction(0)
+            for value in ((k.sin, k.cos) if k.rate else (1, 0))
+        )
         rows = np.array([rows[0], sin * rows[1] + cos * rows[2], sin * rows[2] - cos * rows[1]])
     return rows, step.h
 
 
 @pytest.mark.parametrize(
-    ("engine", "kind"), [*(("limbs", kind) for kind in KINDS), *one_in(3, (("heyoka", kind) for kind in KINDS))]
+    ("engine", "kind"),
+    [*(("limbs", kind) for kind in KINDS), *one_in(3, (("heyoka", kind) for kind in KINDS))],
 )
 def test_the_series_is_that_of_other_engines_at_random_states(coefficients, engine, kind, size):
     generator = random.Random(f"{engine} {kind}")
@@ -78,6 +87,8 @@ def test_the_series_is_that_of_other_engines_at_random_states(coefficients, engi
             theirs = np.array(exact * np.array(scale), dtype=float)
             largest = np.abs(theirs).max(axis=0)
             # the rounding of a coefficient goes into all that follow; at rest every second order is next to nothing
-            near = np.maximum(largest, np.maximum(np.append(0.0, largest[:-1]), np.append(largest[1:], 0.0)))
+            near = np.maximum(
+                largest, np.maximum(np.append(0.0, largest[:-1]), np.append(largest[1:], 0.0))
+            )
             allowed = 2.0**-50 * (4 + np.arange(ORDER + 1)) * near
             assert (np.abs(np.array(ours) - theirs) <= allowed).all(), inputs
