@@ -1,6 +1,6 @@
-"""A motion as pictures show it: lines that follow the bob, the swing plane, the transits.
+"""What pictures show of a motion: its path, swing plane and transits.
 
-It comes from a golden dataset, or from a candidate's rows alone.
+The motion is a golden dataset, a solution, or the rows of a candidate.
 """
 
 from __future__ import annotations
@@ -16,33 +16,34 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Candidate
 from ..observed.swing_plane import Gauge, gauge_of
 
-# that are drawn, spread over the span, where the rows lie too far apart to be a line themselves
+# Rows that are too far apart for a line are replaced by this many single swings, spread over the span.
 SWINGS = 9
-POINTS = 40  # of one swing
-COARSE = 3  # rows farther apart than this many of these points are no line
-WIDE = -0.7  # height over the cord length, above which a swing is shown on its sphere
-# of the cord length: what moves less, by the rounding of its release, has no swing
-AT_REST = 2.0**-128
-_WINDOW = 24  # rows of a candidate whose longest axis gives the swing plane's direction
-_BENT = 0.5  # a step differs from the one before by less than this part of it where rows are a line
-# where the shorter axis is longer than this part of the longer one, an ellipse has no clear direction
-_FLAT = 0.5
+POINTS = 40  # per swing
+COARSE = 3  # rows farther apart than this many of these points are not joined to a line
+WIDE = -0.7  # z over cord length; a bob that rises above it is shown on its sphere
+AT_REST = 2.0**-128  # motion below this part of the cord length is rounding, not a swing
+_WINDOW = 24  # rows of a candidate whose longest axis is the swing plane
+_BENT = 0.5  # rows form a line if successive steps differ by less than this part of a step
+_FLAT = 0.5  # a path whose axes have a larger ratio than this has no clear direction
 
 
 @dataclass(frozen=True)
 class PicturedMotion:
-    """A motion as pictures show it.
+    """What pictures show of a motion.
 
     Attributes:
-        name: of the dataset or the file.
-        length: of the cord in m; 0 if it is not known.
+        name: name of the dataset or the file.
+        length: cord length in m; 0 if unknown.
         t: times of the rows in s, shape (rows,).
-        rows: x, y, z in m, shape (rows, 3); z is NaN where it is not known.
-        line: x, y, z in m of points that follow the bob, shape (points, 3); a row of NaN ends each of several lines;
-            empty where the rows lie too far apart.
-        swings: how many single swings the line shows; 0 if it shows the whole motion.
-        plane_t, plane: times in s and azimuth of the swing plane in degrees, from east to north, modulo 180.
-        transit_t, transit_x, directions: transits in s, x there in m, and +1 where xdot goes from - to +.
+        rows: x, y, z in m, shape (rows, 3); z is NaN where unknown.
+        line: x, y, z in m of a curve along the path, shape (points, 3). A row of NaN separates
+            single swings. Empty if the rows are too far apart.
+        swings: number of single swings in the line; 0 if it shows the whole motion.
+        plane_t: times in s of `plane`.
+        plane: azimuth of the swing plane in degrees, from east to north, modulo 180.
+        transit_t: times of the transits in s.
+        transit_x: x at the transits in m.
+        directions: +1 where xdot changes from - to +, otherwise -1.
     """
 
     name: str
@@ -64,72 +65,92 @@ class PicturedMotion:
 
     @classmethod
     def of_golden(cls, golden: Golden | Solution, until: float = np.inf) -> PicturedMotion:
-        """Take a motion from a golden dataset or a solution, up to a time in s.
+        """Return the motion of a golden dataset or a solution, up to a time in s.
 
-        One run in double fills the line in between far rows.
+        If its rows are too far apart for a line, single swings are computed in double precision.
         """
-        name = golden.manifest.id if isinstance(golden, Golden) else golden.scene.id
-        t, transits = golden.t[golden.t <= until], golden.transits
-        states, seen = (
-            np.column_stack([golden.grid[column][: len(t)] for column in STATE]),
-            transits["t"] <= until,
-        )
+        t = golden.t[golden.t <= until]
+        states = np.column_stack([golden.grid[column][: len(t)] for column in STATE])
+        positions = states[:, :3]
         length = float(golden.scene.exact.length)
-        gauge = _gauge(golden) if np.ptp(states[:, :3], axis=0).max() > AT_REST * length else None
+
+        moves = np.ptp(positions, axis=0).max() > AT_REST * length
+        gauge = _gauge(golden) if moves else None
         line, swings = _line(golden.scene, t, states, gauge)
-        plane = (
-            np.full(len(states), np.nan) if gauge is None else np.degrees(gauge.swing_plane(states))
-        )
+        if gauge is None:
+            plane = np.full(len(states), np.nan)
+        else:
+            plane = np.degrees(gauge.swing_plane(states))
         swinging = np.isfinite(plane)
+
+        transits = golden.transits
+        shown = transits["t"] <= until
         return cls(
-            name, length, t, states[:, :3], line, swings, t[swinging], plane[swinging],
-            transits["t"][seen], transits["x"][seen], np.array(golden.directions, int)[seen],
-        )  # fmt: skip
+            name=golden.manifest.id if isinstance(golden, Golden) else golden.scene.id,
+            length=length,
+            t=t,
+            rows=positions,
+            line=line,
+            swings=swings,
+            plane_t=t[swinging],
+            plane=plane[swinging],
+            transit_t=transits["t"][shown],
+            transit_x=transits["x"][shown],
+            directions=np.array(golden.directions, int)[shown],
+        )
 
     @classmethod
     def of_candidate(cls, candidate: Candidate) -> PicturedMotion:
-        """Take a motion from a candidate's rows; its swing plane is the longest axis of the rows around each time."""
-        x, y = candidate.columns["x"], candidate.columns["y"]
-        z = candidate.columns.get("z", np.full(len(x), np.nan))
-        rows = np.column_stack([x, y, z])
-        length = float(np.sqrt((rows**2).sum(axis=1)).max()) if "z" in candidate.columns else 0.0
+        """Return the motion of a candidate; its swing plane is the longest axis of nearby rows."""
+        columns = candidate.columns
+        unknown = np.full(len(columns["x"]), np.nan)
+        rows = np.column_stack([columns["x"], columns["y"], columns.get("z", unknown)])
+        length = float(np.sqrt((rows**2).sum(axis=1)).max()) if "z" in columns else 0.0
         plane_t, plane = _axes(candidate.t, rows)
-        nothing = np.empty(0)
         return cls(
-            candidate.name, length, candidate.t, rows, rows if _is_line(rows) else rows[:0], 0, plane_t, plane,
-            nothing, nothing, nothing,
-        )  # fmt: skip
+            name=candidate.name,
+            length=length,
+            t=candidate.t,
+            rows=rows,
+            line=rows if _is_line(rows) else rows[:0],
+            swings=0,
+            plane_t=plane_t,
+            plane=plane,
+            transit_t=np.empty(0),
+            transit_x=np.empty(0),
+            directions=np.empty(0),
+        )
 
 
 def _gauge(golden: Golden | Solution) -> Gauge | None:
-    """Return what measures the swing, or None where the bob does not swing but creeps back to rest."""
+    """Return the gauge of the swing plane; None if drag is so strong that the bob does not swing."""
     gauge = gauge_of(golden.scene)
     return gauge if gauge and golden.scene.exact.drag < 2 * gauge.omega else None
 
 
 def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
-    """Return the points of the line, shape (points, 3), and how many single swings they are."""
+    """Return the points of the line, shape (points, 3), and how many single swings it shows."""
     if gauge is None or t[1] * POINTS <= COARSE * gauge.period:
         return states[:, :3], 0
     swing = np.linspace(0.0, gauge.period, POINTS + 1)
-    end = float(t[-1]) - gauge.period
-    starts = (
-        np.linspace(0.0, end, SWINGS)
-        if end > SWINGS * gauge.period
-        else np.arange(0.0, end, gauge.period)
-    )
-    times = starts[:, None] + swing
+    last_start = float(t[-1]) - gauge.period
+    if last_start > SWINGS * gauge.period:
+        starts = np.linspace(0.0, last_start, SWINGS)
+    else:
+        starts = np.arange(0.0, last_start, gauge.period)
+
+    times, index = np.unique(starts[:, None] + swing, return_inverse=True)
     try:
-        points = trajectory(scene, np.unique(times))
+        points = trajectory(scene, times)[:, :3]
     except FoucaultError:
         return states[:, :3], 0
-    of_each = points[np.searchsorted(np.unique(times), times), :3]
-    apart = np.concatenate([of_each, np.full((len(starts), 1, 3), np.nan)], axis=1)
-    return apart.reshape(-1, 3), len(starts)
+    lines = points[index.reshape(len(starts), -1)]
+    gaps = np.full((len(starts), 1, 3), np.nan)
+    return np.concatenate([lines, gaps], axis=1).reshape(-1, 3), len(starts)
 
 
 def _is_line(rows: Array) -> bool:
-    """Return whether rows lie so close together that a line through them follows the bob."""
+    """Return whether the rows are so close together that a line through them follows the path."""
     steps = np.diff(rows[:, :2], axis=0)
     lengths = np.hypot(*steps.T)
     bends = np.hypot(*np.diff(steps, axis=0).T)
@@ -137,13 +158,15 @@ def _is_line(rows: Array) -> bool:
 
 
 def _axes(t: Array, rows: Array) -> tuple[Array, Array]:
-    """Return times and azimuths in degrees of the longest axis of the rows, window by window."""
-    parts = np.array_split(np.arange(len(t)), max(1, len(t) // _WINDOW))
-    times, angles = [], []
-    for part in parts:
-        about = rows[part, :2] - rows[:, :2].mean(axis=0)
-        sizes, axes = np.linalg.eigh(about.T @ about)
-        if len(part) > 2 and sizes[0] <= _FLAT**2 * sizes[1] and sizes[1] > 0:
-            times.append(float(t[part].mean()))
+    """Return times in s and azimuths in degrees of the longest axis in each window of rows."""
+    windows = np.array_split(np.arange(len(t)), max(1, len(t) // _WINDOW))
+    centre = rows[:, :2].mean(axis=0)
+    times = []
+    angles = []
+    for window in windows:
+        offsets = rows[window, :2] - centre
+        sizes, axes = np.linalg.eigh(offsets.T @ offsets)
+        if len(window) > 2 and sizes[0] <= _FLAT**2 * sizes[1] and sizes[1] > 0:
+            times.append(float(t[window].mean()))
             angles.append(float(np.degrees(np.arctan2(axes[1, 1], axes[0, 1]))))
     return np.array(times), (np.array(angles) + 90) % 180 - 90

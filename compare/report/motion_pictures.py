@@ -1,9 +1,10 @@
-"""Pictures of a motion: its path from above or on the sphere, the swing plane, the transits; as files or for a page."""
+"""Pictures of a motion: path from above or on the sphere, swing plane, transits; files or SVG."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,33 +17,50 @@ from reference.plain_text import shortened
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
 from .motion import POINTS, PicturedMotion
 
-DOTS = 360  # of one kind in a panel at most
-LINE = 1200  # points of a path at most
+DOTS = 360  # most dots of one kind in a panel
+LINE = 1200  # most points of a path
 DOT = 3.0  # diameter of a dot in points
-PANEL = (3.5, 3.0)  # in
-# azimuth and height of the eye that sees the sphere
-SEEN_FROM, ABOVE = np.radians(-60.0), np.radians(20.0)
-_SMALL = 0.01  # degrees: a swing plane that turns less is drawn on a scale of this
+PANEL = (3.5, 3.0)  # width and height in inches
+SEEN_FROM = np.radians(-60.0)  # azimuth of the eye that sees the sphere
+ABOVE = np.radians(20.0)  # and its elevation
+_LENGTH_UNITS = (  # factor, symbol, and the smallest length in m that is shown in it
+    (1e-3, "km", 1e3),
+    (1.0, "m", 0.1),
+    (1e3, "mm", 1e-3),
+    (1e6, "µm", 1e-6),
+    (1e9, "nm", 1e-9),
+    (1e12, "pm", 1e-12),
+)
+_TIME_UNITS = (  # seconds, symbol, and the smallest number of them that is shown in it
+    (86_400.0, "d", 3.0),
+    (3600.0, "h", 2.0),
+    (60.0, "min", 10.0),
+    (1.0, "s", 1.0),
+)
+_SMALL = 0.01  # degrees: the least range of the azimuth's axis
 _ROUNDED = re.compile(r"(\d+\.\d\d)\d+")
 _ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after it
 _FONTS = re.compile(r"font-family: [^;\"]+")
 _MARKERS = re.compile(r"(?:<use [^>]*style=\"fill: ([^;\"]*)[^>]*/>\s*){2,}")
 _PLACE = re.compile(r'x="(\S+)" y="(\S+)"')
-THUMB, THUMB_POINTS = 200, 400  # a thumbnail's side in units of its own, and its points at most
+THUMB = 200  # side of a thumbnail in its own units
+THUMB_POINTS = 400  # most points of a thumbnail
 LONGEST_NAME = 40  # characters of a file's name above its picture
 
 
 def path(axes: Any, motion: PicturedMotion) -> None:
-    """Draw the path from above: the whole of it, or some swings spread over the span, or the rows alone."""
-    size = float(np.nanmax(np.abs(np.concatenate([motion.rows, motion.line])[:, :2]))) or 1.0
+    """Draw the path from above: all of it, single swings spread over the span, or the rows."""
+    points = np.concatenate([motion.rows, motion.line])[:, :2]
+    size = float(np.nanmax(np.abs(points))) or 1.0
     scale, unit = length_unit(size)
-    line, rows = _line(motion) * scale, _thinned(motion.rows, LINE) * scale
+    line = _line(motion) * scale
+    rows = _thinned(motion.rows, LINE) * scale
     first = POINTS + 1 if motion.swings else len(line)
     axes.plot(line[first:, 0], line[first:, 1], color=COLOURS[1], linewidth=0.7)
     axes.plot(line[:first, 0], line[:first, 1], color=BLUE, linewidth=1.1 if motion.swings else 0.8)
     if not len(line):
         _dots(axes, rows[:, 0], rows[:, 1], BLUE)
-    _begin(axes, *rows[0, :2])
+    _mark_release(axes, *rows[0, :2])
     edge = 1.08 * size * scale
     axes.set(
         xlim=(-edge, edge),
@@ -55,23 +73,19 @@ def path(axes: Any, motion: PicturedMotion) -> None:
 
 
 def sphere(axes: Any, motion: PicturedMotion) -> None:
-    """Draw the path on its sphere, seen from the south-east and from above; what lies behind is faint."""
-    right, up, depth = _seen((_line(motion) if len(motion.line) else motion.rows) / motion.length)
+    """Draw the path on its sphere, seen from above and from the south-east; the far side is faint."""
+    path_points = _line(motion) if len(motion.line) else motion.rows
+    bob = _projected(path_points / motion.length)
     turn = np.linspace(0, 2 * np.pi, 73)
+    equator = _projected(np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]))
     axes.plot(np.cos(turn), np.sin(turn), color=FAINT, linewidth=0.8)
-    around = _seen(np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]))
-    for front, style in ((False, (0, (1, 3))), (True, "-")):
-        ring = np.where((around[2] > 0) == front, 1.0, np.nan)
-        axes.plot(around[0] * ring, around[1] * ring, color=FAINT, linewidth=0.6, linestyle=style)
-        near = np.where((depth > 0) == front, 1.0, np.nan)
-        axes.plot(
-            right * near,
-            up * near,
-            color=BLUE,
-            linewidth=0.9 if front else 0.5,
-            alpha=1.0 if front else 0.5,
-        )
-    _begin(axes, right[0], up[0])
+
+    axes.plot(*equator.half(front=False), color=FAINT, linewidth=0.6, linestyle=(0, (1, 3)))
+    axes.plot(*bob.half(front=False), color=BLUE, linewidth=0.5, alpha=0.5)
+    axes.plot(*equator.half(front=True), color=FAINT, linewidth=0.6)
+    axes.plot(*bob.half(front=True), color=BLUE, linewidth=0.9)
+
+    _mark_release(axes, bob.right[0], bob.up[0])
     axes.plot([0], [0], marker="+", color=INK, markersize=6)
     axes.set(
         xlim=(-1.08, 1.08),
@@ -83,11 +97,12 @@ def sphere(axes: Any, motion: PicturedMotion) -> None:
 
 
 def plane(axes: Any, motion: PicturedMotion) -> None:
-    """Draw the azimuth of the swing plane against time; where it turns little by little, it does not leap."""
+    """Draw the azimuth of the swing plane against time, unwrapped if it turns slowly."""
     steps = (np.diff(motion.plane) + 90) % 180 - 90
     smooth = np.abs(steps).max() < 60
     angle = np.unwrap(motion.plane, period=180) if smooth else motion.plane
-    t, angle = _thinned(motion.plane_t, DOTS), _thinned(angle, DOTS)
+    t = _thinned(motion.plane_t, DOTS)
+    angle = _thinned(angle, DOTS)
     seconds, word = time_unit(float(motion.t[-1]))
     _dots(axes, t * seconds, angle, BLUE)
     if np.ptp(angle) < _SMALL:
@@ -105,15 +120,13 @@ def plane(axes: Any, motion: PicturedMotion) -> None:
 
 
 def transits(axes: Any, motion: PicturedMotion) -> None:
-    """Draw x at each transit against its time: the turning points in the east, and those in the west."""
+    """Draw x at each transit against its time: the eastern and the western turning points."""
     scale, unit = length_unit(float(np.abs(motion.transit_x).max(initial=0.0)) or 1.0)
     seconds, word = time_unit(float(motion.t[-1]))
     for direction, colour in ((1, COLOURS[1]), (-1, BLUE)):
-        mine = motion.directions == direction
-        t, x = (
-            _thinned(motion.transit_t[mine], DOTS // 2),
-            _thinned(motion.transit_x[mine], DOTS // 2),
-        )
+        selected = motion.directions == direction
+        t = _thinned(motion.transit_t[selected], DOTS // 2)
+        x = _thinned(motion.transit_x[selected], DOTS // 2)
         _dots(axes, t * seconds, x * scale, colour)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
     axes.set(title=f"Where the bob turns in x: {counted(len(motion.transit_t), 'transit')}")
@@ -162,53 +175,47 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
 
 def thumbnail(motion: PicturedMotion) -> str:
     """Return the path, from above or on its sphere, as a small SVG element without words."""
+    radius = 0.46 * THUMB
     points = _thinned(_line(motion) if len(motion.line) else motion.rows, THUMB_POINTS)
-    right, up = _seen(points / motion.length)[:2] if motion.wide else points[:, :2].T
-    size = 1.0 if motion.wide else float(np.nanmax(np.hypot(right, up))) or 1.0
-    places = np.column_stack([right, -up]) * (0.46 * THUMB / size) + THUMB / 2
+    if motion.wide:
+        bob = _projected(points / motion.length)
+        right = bob.right
+        up = bob.up
+        size = 1.0
+        ring = f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{radius:.0f}"/>'
+    else:
+        right, up = points[:, :2].T
+        size = float(np.nanmax(np.hypot(right, up))) or 1.0
+        ring = ""
+
+    places = np.column_stack([right, -up]) * (radius / size) + THUMB / 2
     words = ["M" if np.isnan(x) else f"{x:.0f} {y:.0f}" for x, y in places]
-    ring = (
-        f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{0.46 * THUMB:.0f}"/>'
-        if motion.wide
-        else ""
-    )
     path = f"M{' '.join(words)}".removesuffix(" M")
     release = f'<path class="release" d="M{words[0]}h0"/>'
-    return f'<svg viewBox="0 0 {THUMB} {THUMB}" aria-hidden="true">{ring}<path d="{path}"/>{release}</svg>'
+    box = f"0 0 {THUMB} {THUMB}"
+    return f'<svg viewBox="{box}" aria-hidden="true">{ring}<path d="{path}"/>{release}</svg>'
 
 
 def _strokes(markers: re.Match[str]) -> str:
-    """Return dots, which are an element each, as one path of strokes without length."""
+    """Return markers, each an element of its own, as one path of zero-length strokes."""
     places = "".join(f"M{x} {y}h0" for x, y in _PLACE.findall(markers[0]))
     style = f"fill: none; stroke: {markers[1]}; stroke-width: {DOT}; stroke-linecap: round"
     return f'<path d="{places}" style="{style}"/>\n'
 
 
 def length_unit(size: float) -> tuple[float, str]:
-    """Return the factor and the word of a unit in which a length in m is a number from 1 to 1000."""
-    for factor, unit in (
-        (1e-3, "km"),
-        (1.0, "m"),
-        (1e3, "mm"),
-        (1e6, "µm"),
-        (1e9, "nm"),
-        (1e12, "pm"),
-    ):
-        if size * factor >= (0.1 if unit == "m" else 1.0):
+    """Return the unit that gives a length in m a handy size: its factor and its symbol."""
+    for factor, unit, smallest_m in _LENGTH_UNITS:
+        if size >= smallest_m:
             return factor, unit
     return 1.0, "m"
 
 
 def time_unit(span: float) -> tuple[float, str]:
-    """Return the factor and the word of a unit in which a span in s is a handy number."""
-    for seconds, word, least in (
-        (86_400.0, "d", 3.0),
-        (3600.0, "h", 2.0),
-        (60.0, "min", 10.0),
-        (1.0, "s", 1.0),
-    ):
-        if span >= least * seconds:
-            return 1 / seconds, word
+    """Return the unit that gives a span in s a handy size: its factor and its symbol."""
+    for seconds, unit, smallest in _TIME_UNITS:
+        if span >= smallest * seconds:
+            return 1 / seconds, unit
     return 1e3, "ms"
 
 
@@ -217,7 +224,9 @@ def _shown(motion: PicturedMotion) -> str:
     whole = f"{motion.t[-1] * seconds:.3g} {word}"
     if not len(motion.line):
         return f"rows in {whole}"
-    return f"{motion.swings} of the swings in {whole}" if motion.swings else whole
+    if motion.swings:
+        return f"{motion.swings} of the swings in {whole}"
+    return whole
 
 
 def _line(motion: PicturedMotion) -> Array:
@@ -232,15 +241,28 @@ def _thinned(values: Array, most: int) -> Array:
     return np.asarray(values[np.linspace(0, len(values) - 1, most).round().astype(int)])
 
 
-def _seen(points: Array) -> tuple[Array, Array, Array]:
-    """Return how far right, up and near points of a sphere of radius 1 are for the eye."""
+@dataclass(frozen=True)
+class _Projected:
+    """Points of the unit sphere as the eye sees them: to the right, up, and towards the eye."""
+
+    right: Array
+    up: Array
+    near: Array
+
+    def half(self, front: bool) -> tuple[Array, Array]:
+        """Return right and up of the points in front or behind, and NaN for the others."""
+        mask = np.where((self.near > 0) == front, 1.0, np.nan)
+        return self.right * mask, self.up * mask
+
+
+def _projected(points: Array) -> _Projected:
+    """Return points of the unit sphere, shape (points, 3), as the eye sees them."""
     x, y, z = points.T
     to_eye = x * np.cos(SEEN_FROM) + y * np.sin(SEEN_FROM)
-    right = y * np.cos(SEEN_FROM) - x * np.sin(SEEN_FROM)
-    return (
-        right,
-        z * np.cos(ABOVE) - to_eye * np.sin(ABOVE),
-        z * np.sin(ABOVE) + to_eye * np.cos(ABOVE),
+    return _Projected(
+        right=y * np.cos(SEEN_FROM) - x * np.sin(SEEN_FROM),
+        up=z * np.cos(ABOVE) - to_eye * np.sin(ABOVE),
+        near=z * np.sin(ABOVE) + to_eye * np.cos(ABOVE),
     )
 
 
@@ -248,6 +270,6 @@ def _dots(axes: Any, x: Array, y: Array, colour: str) -> None:
     axes.plot(x, y, linestyle="none", marker="o", markersize=DOT, markeredgewidth=0, color=colour)
 
 
-def _begin(axes: Any, x: float, y: float) -> None:
+def _mark_release(axes: Any, x: float, y: float) -> None:
     """Mark the release."""
     axes.plot([x], [y], marker="o", markersize=4.5, color=INK, linestyle="none", zorder=4)
