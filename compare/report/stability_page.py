@@ -24,7 +24,7 @@ from .pareto import tidy
 from .stability_charts import LETTERS, error_growth, heat_map
 from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
 
-COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
+COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)  # statuses with a count of their own
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 _LEAD_OF_PROGRAMS = (
     "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
@@ -36,162 +36,194 @@ def document_of(
     cells: Sequence[Cell], runs: Sequence[LongRun], programs: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
     """Return the JSON document of the command."""
+    statuses = Counter(cell.status for cell in cells)
     return {
         "programs": dict(programs or {}),
         "rows": [asdict(cell) for cell in cells],
-        **{status.value: sum(cell.status == status for cell in cells) for status in COUNTED},
+        **{status.value: statuses[status] for status in COUNTED},
         "long_runs": [run.document() for run in runs],
         "machine": machine(),
     }
 
 
 def headlines(cells: Sequence[Cell]) -> list[str]:
-    """Return the main results as sentences: the methods' own failures first, then what no method could have kept."""
-    wrong = [cell for cell in cells if cell.status == Status.SILENTLY_WRONG]
+    """Return the main results as sentences: failures of methods first, then ill-conditioned motions."""
     tried = [cell for cell in cells if cell.status not in NOT_TRIED]
-    runs = Counter(map(_named(cells), wrong))
-    sentences = [
-        *_programs_broken(cells),
-        f"{len(wrong)} of {len(tried)} runs{_not_tried(cells)} are silently wrong: they report "
-        f"success, but the error is over {WRONG} times what was asked for, and over what the motion makes of such an "
-        "error at the release.",
-    ]
+    wrong = [cell for cell in tried if cell.status == Status.SILENTLY_WRONG]
     magnified = [cell for cell in tried if cell.status == Status.ILL_CONDITIONED]
+    sentences = list(_programs_broken(cells))
+    sentences.append(
+        f"{len(wrong)} of {len(tried)} runs{_not_tried(cells)} are silently wrong: they report "
+        f"success, but the error is over {WRONG} times what was asked for, and over what the "
+        "motion makes of such an error at the release."
+    )
     if magnified:
-        where = Counter(cell.scene for cell in magnified)
-        scenes = ", ".join(f"{name} ({count})" for name, count in where.most_common())
+        scenes = Counter(cell.scene for cell in magnified)
         sentences.append(
-            f"{len(magnified)} more are as far off because the motion itself magnifies what was asked by more than "
-            f"the error: {scenes}."
+            f"{len(magnified)} more are as far off because the motion itself magnifies what was "
+            f"asked by more than the error: {_ranking(scenes)}."
         )
-    if runs:
-        worst = ", ".join(f"{name} ({count})" for name, count in runs.most_common(6))
-        sentences.append(f"Silently wrong most often: {worst}.")
-    return sentences + list(_stiffness(cells))
+    if wrong:
+        methods = Counter(map(_run_names(cells), wrong))
+        sentences.append(f"Silently wrong most often: {_ranking(methods, 6)}.")
+    sentences += _stiffness(cells)
+    return sentences
+
+
+def _ranking(counts: Counter[str], most: int | None = None) -> str:
+    """Return names with their counts, the most frequent first."""
+    return ", ".join(f"{name} ({count})" for name, count in counts.most_common(most))
 
 
 def _not_tried(cells: Sequence[Cell]) -> str:
     """Return in brackets how many cells have no run, and why; "" if all have one."""
     counts = Counter(cell.status.words for cell in cells if cell.status in NOT_TRIED)
-    return (
-        f" ({', '.join(f'{count} more were {words}' for words, count in counts.items())})"
-        if counts
-        else ""
-    )
+    if not counts:
+        return ""
+    reasons = ", ".join(f"{count} more were {words}" for words, count in counts.items())
+    return f" ({reasons})"
 
 
-def _named(cells: Sequence[Cell]) -> Callable[[Cell], str]:
-    """Return a function that names a cell's run: its method, with the formulation where that method has several."""
-    several = Counter(method for method, _ in {(cell.method, cell.precision) for cell in cells})
-    return lambda cell: f"{cell.method}{f', {cell.precision}' if several[cell.method] > 1 else ''}"
+def _run_names(cells: Sequence[Cell]) -> Callable[[Cell], str]:
+    """Return a function that names a cell's method, with the precision if the method has several."""
+    precisions = Counter(method for method, _ in {(cell.method, cell.precision) for cell in cells})
+
+    def name(cell: Cell) -> str:
+        if precisions[cell.method] > 1:
+            return f"{cell.method}, {cell.precision}"
+        return cell.method
+
+    return name
 
 
 def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each program of the user's a sentence: on which scenes it breaks, and how."""
     for name in dict.fromkeys(cell.method for cell in cells if cell.precision == NUMBER):
         tried = [cell for cell in cells if cell.method == name and cell.status not in NOT_TRIED]
-        breaks = []
-        for cell in tried:
-            if cell.status != Status.OK:
-                how = (
-                    cell.status.words
-                    if cell.wrong_from_s is None
-                    else f"wrong from t = {cell.wrong_from_s:g} s on"
-                )
-                breaks.append(f"{cell.scene} ({how})")
-        yield f"{name} breaks on {len(breaks)} of {len(tried)} scenes{': ' if breaks else ''}{', '.join(breaks)}."
+        failures = [_failure(cell) for cell in tried if cell.status != Status.OK]
+        listed = f": {', '.join(failures)}" if failures else ""
+        yield f"{name} breaks on {len(failures)} of {len(tried)} scenes{listed}."
+
+
+def _failure(cell: Cell) -> str:
+    """Return the scene of a failed run, and in brackets how it failed."""
+    if cell.wrong_from_s is None:
+        return f"{cell.scene} ({cell.status.words})"
+    return f"{cell.scene} (wrong from t = {cell.wrong_from_s:g} s on)"
 
 
 def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
-    """Yield for each pair a sentence: is the implicit method cheaper on stiff scenes, and more expensive on others?"""
+    """Yield a sentence per pair of methods: how the costs compare on stiff scenes and on others."""
     costs = {(cell.scene, cell.method): cell.cpu_s for cell in cells if cell.cpu_s}
-    stiff = {
-        scene for scene in {cell.scene for cell in cells} if "stiff" in load_scene(scene).flags
-    }
+    scenes = {cell.scene for cell in cells}
+    stiff = {scene for scene in scenes if "stiff" in load_scene(scene).flags}
     for implicit, explicit in PAIRS:
-        ratios: dict[bool, list[float]] = {True: [], False: []}
-        for (scene, method), cpu_s in costs.items():
-            if method == implicit and (scene, explicit) in costs:
-                ratios[scene in stiff].append(costs[scene, explicit] / cpu_s)
-        if ratios[True] and ratios[False]:
+        gains = {
+            scene: costs[scene, explicit] / costs[scene, implicit]
+            for scene in scenes
+            if (scene, explicit) in costs and (scene, implicit) in costs
+        }
+        on_stiff = [gain for scene, gain in gains.items() if scene in stiff]
+        on_others = [gain for scene, gain in gains.items() if scene not in stiff]
+        if on_stiff and on_others:
             yield (
-                f"{implicit} compared with {explicit}, median CPU time: {_times(median(ratios[True]))} on stiff scenes "
-                f"({len(ratios[True])} of them), {_times(median(ratios[False]))} on the others ({len(ratios[False])})."
+                f"{implicit} compared with {explicit}, median CPU time: "
+                f"{_times(median(on_stiff))} on stiff scenes ({len(on_stiff)} of them), "
+                f"{_times(median(on_others))} on the others ({len(on_others)})."
             )
 
 
 def _times(gain: float) -> str:
-    factor = f"{float(f'{max(gain, 1 / gain):.2g}'):g}"
-    return f"{factor} times {'cheaper' if gain >= 1 else 'more expensive'}"
+    comparison = "cheaper" if gain >= 1 else "more expensive"
+    two_digits = float(f"{max(gain, 1 / gain):.2g}")
+    return f"{two_digits:g} times {comparison}"
 
 
-def _parsed(document: dict[str, Any]) -> tuple[list[Cell], list[LongRun]]:
-    cells, runs = TypeAdapter(list[Cell]), TypeAdapter(list[LongRun])
-    return cells.validate_python(document["rows"]), runs.validate_python(document["long_runs"])
+def _cells_of(document: dict[str, Any]) -> list[Cell]:
+    return TypeAdapter(list[Cell]).validate_python(document["rows"])
+
+
+def _long_runs_of(document: dict[str, Any]) -> list[LongRun]:
+    return TypeAdapter(list[LongRun]).validate_python(document["long_runs"])
 
 
 def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
-    cells, runs = _parsed(document)
-    letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
-    kept = f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}."
-    failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
-    wrong, magnified = ([cell for cell in failures if cell.status == status] for status in COUNTED)
+    cells = _cells_of(document)
+    programs = document["programs"]
     parts = [
         section("Findings", findings(headlines(cells))),
-        section("Digits kept", figure(heat_map(cells), kept)),
-        section("Silently wrong", _runs(wrong, reasons=True)),
-    ]
-    if magnified:
-        parts.append(
-            section("Ill-conditioned: the motion magnifies errors", _runs(magnified, reasons=True))
-        )
-    parts += [
-        section(
-            "Other failures",
-            _runs([cell for cell in failures if cell.status not in COUNTED], reasons=True),
-        ),
+        section("Digits kept", figure(heat_map(cells), _heat_map_caption())),
+        *_failure_sections(cells),
         section("What each run was asked for, and what it kept", _runs(cells)),
         section("What the words mean", words({cell.status for cell in cells})),
         section("Scenes", _scenes(cells)),
+        *_long_run_sections(_long_runs_of(document)),
     ]
-    measured = [run for run in runs if run.exponent is not None]
-    if measured:
-        caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
-        picture = figure(error_growth(measured), caption)
-        parts.append(section("Long runs", picture, findings(laws(runs))))
-    programs = document["programs"]
     if programs:
-        rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
-        parts.append(
-            section("Programs", PageTable({"name": "wrapped", "command": "wrapped"}, rows).html())
-        )
+        parts.append(section("Programs", _programs_table(programs)))
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
     lead = paragraph(
-        "Each method was asked for the same number of digits on every scene, and its result was compared with the "
-        f"reference solution{_LEAD_OF_PROGRAMS if programs else ''}."
+        "Each method was asked for the same number of digits on every scene, and its result was "
+        f"compared with the reference solution{_LEAD_OF_PROGRAMS if programs else ''}."
     )
     return page("Stiff and extreme scenes: what breaks, and when", parts, lead=lead)
 
 
+def _heat_map_caption() -> str:
+    letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
+    return (
+        "Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. "
+        f"{letters}."
+    )
+
+
+def _failure_sections(cells: Sequence[Cell]) -> list[Html]:
+    """Return the sections on silently wrong, ill-conditioned and other failed runs."""
+    failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
+    wrong = [cell for cell in failures if cell.status == Status.SILENTLY_WRONG]
+    magnified = [cell for cell in failures if cell.status == Status.ILL_CONDITIONED]
+    others = [cell for cell in failures if cell.status not in COUNTED]
+    parts = [section("Silently wrong", _runs(wrong, reasons=True))]
+    if magnified:
+        heading = "Ill-conditioned: the motion magnifies errors"
+        parts.append(section(heading, _runs(magnified, reasons=True)))
+    parts.append(section("Other failures", _runs(others, reasons=True)))
+    return parts
+
+
+def _long_run_sections(runs: Sequence[LongRun]) -> list[Html]:
+    """Return the section on long runs; none if no growth of the error was measured."""
+    measured = [run for run in runs if run.exponent is not None]
+    if not measured:
+        return []
+    caption = (
+        "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) "
+        "and t²."
+    )
+    picture = figure(error_growth(measured), caption)
+    return [section("Long runs", picture, findings(laws(runs)))]
+
+
+def _programs_table(programs: Mapping[str, str]) -> Html:
+    rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
+    return PageTable({"name": "wrapped", "command": "wrapped"}, rows).html()
+
+
 def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:
-    """Return runs, the digits that they were asked for and kept, and on demand why they failed."""
+    """Return a table of runs: the digits asked for and kept, and if wanted why a run failed."""
     if not cells:
         return paragraph("None.")
-    texts, numbers = (
-        ("scene", "method", "precision", "setting", "status"),
-        ("asked for", "kept", "CPU s"),
-    )
-    columns = (
-        dict.fromkeys(texts, "")
-        | dict.fromkeys(numbers, "number")
-        | ({"reason": "prose"} if reasons else {})
-    )
+    columns = dict.fromkeys(("scene", "method", "precision", "setting", "status"), "")
+    columns |= dict.fromkeys(("asked for", "kept", "CPU s"), "number")
+    if reasons:
+        columns["reason"] = "prose"
     rows = []
     for cell in cells:
         kept = "" if cell.digits is None else f"{cell.digits:.1f}"
         run = (cell.scene, cell.method, cell.precision, setting(cell), cell.status.words)
-        rows.append((*run, f"{cell.asked:.1f}", kept, cpu(cell.cpu_s), cell.reason)[: len(columns)])
+        measured = (f"{cell.asked:.1f}", kept, cpu(cell.cpu_s))
+        rows.append((*run, *measured, cell.reason) if reasons else (*run, *measured))
     return PageTable(columns, rows).html()
 
 
@@ -200,10 +232,9 @@ def _scenes(cells: Sequence[Cell]) -> Html:
     for name in dict.fromkeys(cell.scene for cell in cells):
         scene = load_scene(name)
         statuses = [cell.status for cell in cells if cell.scene == name]
-        correct, failed = (
-            statuses.count(Status.OK),
-            sum(status not in (Status.OK, *NOT_TRIED) for status in statuses),
-        )
+        tried = [status for status in statuses if status not in NOT_TRIED]
+        correct = tried.count(Status.OK)
+        failed = len(tried) - correct
         rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))
     columns = {
         "scene": "",
@@ -217,7 +248,8 @@ def _scenes(cells: Sequence[Cell]) -> Html:
 
 def text_table(document: dict[str, Any]) -> str:
     """Return main results and one line for each method, as text for a terminal."""
-    cells, runs = _parsed(document)
+    cells = _cells_of(document)
+    runs = _long_runs_of(document)
     present = [status for status in Status if status in {cell.status for cell in cells}]
     rows = []
     for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
@@ -228,16 +260,22 @@ def text_table(document: dict[str, Any]) -> str:
     numbers = ("setting", "asked", *(status.words for status in present))
     table = PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
     lines = [*headlines(cells), f"load: {busy(cells)}", "", *table.lines()]
-    return "\n".join([*lines, "", *advice(present), *([""] if runs else []), *laws(runs)])
+    lines += ["", *advice(present)]
+    if runs:
+        lines += ["", *laws(runs)]
+    return "\n".join(lines)
 
 
 def _settings(cells: Sequence[Cell]) -> str:
-    """Return the setting of a method's cells, or from which to which they go: steps are parts of a scene's times."""
+    """Return the setting of a method's cells, or its range: a step depends on the scene's times."""
     settings = sorted({cell.setting for cell in cells if cell.setting is not None})
     if not settings:
         return ""
     unit = {"step": " s", "precision": " bits"}.get(cells[0].kind, "")
-    return "–".join(tidy(value) for value in dict.fromkeys((settings[0], settings[-1]))) + unit
+    smallest = tidy(settings[0])
+    largest = tidy(settings[-1])
+    span = smallest if smallest == largest else f"{smallest}–{largest}"
+    return span + unit
 
 
 REPORT = Report("stability.json", text_table, page_text)

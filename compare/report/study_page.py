@@ -20,48 +20,52 @@ TEXTS = texts_of(__file__)
 
 def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
-    rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    conclusions, coarse = sentences(document), not of_digits(rows, bound_m)
-    main = (
-        findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m.")
-    )
-    failed, lost = study_tables.failures(rows), {row.status for row in rows if row.failed}
-    limit = f"{document['limit_s']:g} CPU seconds"
-    measured = [
-        words.format(limit=limit, repeat_s=REPEAT_S, repeats=REPEATS) for words in TEXTS["measured"]
-    ]
-    parts = [
-        section("Main results", main),
-        *([section("Least cost of an error", study_tables.costs(rows, bound_m))] if coarse else []),
-        *_pictures(rows, bound_m),
-        *(
-            [section("The Pareto front", study_tables.pareto_front(rows, bound_m))]
-            if coarse
-            else []
-        ),
-        section("Every row", study_tables.every_row(rows, bound_m)),
-        *([section("What failed, and why", failed, study_tables.words(lost))] if failed else []),
-        section("How it was measured", *map(paragraph, measured)),
+    rows = rows_of(document)
+    bound_m = float(document["reference"]["bound_m"])
+    coarse = not of_digits(rows, bound_m)
+    parts = [section("Main results", _main_results(document))]
+    if coarse:
+        parts.append(section("Least cost of an error", study_tables.costs(rows, bound_m)))
+    parts += _pictures(rows, bound_m)
+    if coarse:
+        parts.append(section("The Pareto front", study_tables.pareto_front(rows, bound_m)))
+    parts.append(section("Every row", study_tables.every_row(rows, bound_m)))
+    failures = study_tables.failures(rows)
+    if failures:
+        statuses = {row.status for row in rows if row.failed}
+        parts.append(section("What failed, and why", failures, study_tables.words(statuses)))
+    parts += [
+        section("How it was measured", *_how_measured(document["limit_s"])),
         section("The methods", study_tables.methods(rows, bound_m, document["programs"])),
     ]
-    return page(
-        f"Error against run time: {document['title'] or document['scene']}",
-        parts,
-        lead=_lead(document),
-    )
+    title = document["title"] or document["scene"]
+    return page(f"Error against run time: {title}", parts, lead=_lead(document))
+
+
+def _main_results(document: dict[str, Any]) -> Html:
+    conclusions = sentences(document)
+    if not conclusions:
+        return paragraph("No method reached an error of 1e-3 m.")
+    return findings(conclusions)
+
+
+def _how_measured(limit_s: float) -> list[Html]:
+    limit = f"{limit_s:g} CPU seconds"
+    values = {"limit": limit, "repeat_s": REPEAT_S, "repeats": REPEATS}
+    return [paragraph(text.format(**values)) for text in TEXTS["measured"]]
 
 
 def _lead(document: dict[str, Any]) -> Html:
-    reference, machine = document["reference"], document["machine"]
+    reference = document["reference"]
+    machine = document["machine"]
+    versions = {name: text for name, text in machine.items() if name not in ("processor", "system")}
     details = {
         "scene": document["scene"],
         "span": f"{document['t_end']:g} s, {reference['transits']} transits",
         "reference": f"level {reference['level']}, bound {float(reference['bound_m']):.1e} m",
         "load": study_tables.busy(rows_of(document)),
         "machine": f"{machine['processor']}, {machine['system']}",
-        "versions": ", ".join(
-            f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")
-        ),
+        "versions": ", ".join(f"{name} {text}" for name, text in versions.items()),
     }
     return join([paragraph(TEXTS["lead"]), facts(details)])
 
@@ -71,14 +75,18 @@ def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
         return [section("Pictures", paragraph(TEXTS["no_pictures"]))]
     from . import study_charts
 
+    charts = TEXTS["pictures"]
+    if of_digits(rows, bound_m):
+        charts = {"precision_ladder": charts["precision_ladder"]}
     pictures = []
-    for chart, words in TEXTS["pictures"].items():
-        if not of_digits(rows, bound_m) or chart == study_charts.precision_ladder.__name__:
-            svg = getattr(study_charts, chart)(rows, bound_m)
-            caption = words["caption"] + (
-                _hidden(rows) if chart == study_charts.overview.__name__ else ""
-            )
-            pictures += [section(words["heading"], figure(svg, caption))] if svg is not None else []
+    for chart, words in charts.items():
+        svg = getattr(study_charts, chart)(rows, bound_m)
+        if svg is None:
+            continue
+        caption = words["caption"]
+        if chart == "overview":
+            caption += _hidden(rows)
+        pictures.append(section(words["heading"], figure(svg, caption)))
     return pictures
 
 
@@ -86,7 +94,9 @@ def _hidden(rows: Sequence[Row]) -> str:
     """Return a sentence about the methods that the picture of all of them cannot show."""
     unknown = {row.key for row in rows if not row.cpu_s or not (row.measured or row.failed)}
     hidden = [curve.label for curve in curves(rows) if unknown & {row.key for row in curve.rows}]
-    return f" Runs without a cost or an error are of {', '.join(hidden)}." if hidden else ""
+    if not hidden:
+        return ""
+    return f" Runs without a cost or an error are of {', '.join(hidden)}."
 
 
 REPORT = Report("study.json", study_tables.text_table, page_text)
