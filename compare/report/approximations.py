@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from reference import InputError, Scene
+from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..approximations import APPROXIMATIONS, motions
@@ -53,16 +55,15 @@ def document_of(
         swept: is filled with the rows of the sweeps, of which the page has pictures.
         report: called with the number of tables that are measured, and of all.
     """
-    t_end, chosen = float(scene.exact.t_end), [*motions().values()]
-    within = min(SWEEP_S, t_end)
-    tables: list[Callable[[], Iterable[Any]]] = [
-        *(
-            partial(limits_of, scene, chosen, over, t_end if over == "time" else within, swept)
-            for over in OVERS
-        ),
-        partial(error_table, scene, chosen, t_end),
-        partial(quantity_table, scene),
-    ]
+    t_end = float(scene.exact.t_end)
+    chosen = list(motions().values())
+    tables: list[Callable[[], Iterable[Any]]] = []
+    for over in OVERS:
+        end = t_end if over == "time" else min(SWEEP_S, t_end)
+        tables.append(partial(limits_of, scene, chosen, over, end, swept))
+    tables.append(partial(error_table, scene, chosen, t_end))
+    tables.append(partial(quantity_table, scene))
+
     measured = []
     for count, rows in enumerate(tables):
         if report is not None:
@@ -137,26 +138,32 @@ def page_text(scene: Scene, swept: Swept, report: dict[str, Any]) -> str:
 
 
 def _errors(report: dict[str, Any], measured: Mapping[str, str]) -> PageTable:
-    """Return a table with one row for each approximation: errors up to each time, of which each has its unit."""
+    """Return a table of errors up to each time, one row for each approximation.
+
+    Args:
+        report: the document of the command.
+        measured: the errors to show, with their units.
+    """
     times = sorted({row["t"] for row in report["rows"]})
     heads = [f"{unit}, up to {t:g} s" for unit in measured.values() for t in times]
     rows = []
     for name, errors in _by_approximation(report["rows"], "t").items():
         values = [errors[t][what] for what in measured for t in times]
-        remark = "" if errors[times[0]]["status"] == Status.OK else "does not apply to this scene"
-        rows.append((name, *("" if value is None else f"{value:.3g}" for value in values), remark))
-    return PageTable(
-        {"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}, rows
-    )
+        texts = ["" if value is None else f"{value:.3g}" for value in values]
+        applies = errors[times[0]]["status"] == Status.OK
+        remark = "" if applies else "does not apply to this scene"
+        rows.append((name, *texts, remark))
+    columns = {"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}
+    return PageTable(columns, rows)
 
 
 def _limits(report: dict[str, Any], over: str) -> PageTable:
     rows = [row for row in report["limits"] if row["over"] == over]
-    columns = {"approximation": "", **{f"within {name}": "number" for name, _, _ in LIMITS}}
-    cells = [
-        (name, *(_intervals(good[limit]) for limit, _, _ in LIMITS))
-        for name, good in _by_approximation(rows, "limit").items()
-    ]
+    names = [name for name, _, _ in LIMITS]
+    columns = {"approximation": "", **{f"within {name}": "number" for name in names}}
+    cells = []
+    for approximation, intervals in _by_approximation(rows, "limit").items():
+        cells.append((approximation, *[_intervals(intervals[name]) for name in names]))
     return PageTable(columns, cells)
 
 
@@ -172,21 +179,19 @@ def _quantities(report: dict[str, Any]) -> PageTable:
         "unit": "",
         "relative error": "number",
     }
-    rows = [
-        (
-            row["approximation"], row["value"] or row["reason"], row["truth"], row["unit"],
-            "" if row["relative_error"] is None else f"{row['relative_error']:.1e}",
-        )
-        for row in report["quantities"]
-    ]  # fmt: skip
+    rows = []
+    for row in report["quantities"]:
+        value = row["value"] or row["reason"]
+        error = row["relative_error"]
+        error_text = "" if error is None else f"{error:.1e}"
+        rows.append((row["approximation"], value, row["truth"], row["unit"], error_text))
     return PageTable(columns, rows)
 
 
 def _about() -> Html:
     columns = {"id": "", "description": "prose", "source": "prose", "leaves out": "prose"}
-    return PageTable(
-        columns, [(each.id, each.title, each.where, each.drops) for each in APPROXIMATIONS.values()]
-    ).html()
+    rows = [(each.id, each.title, each.where, each.drops) for each in APPROXIMATIONS.values()]
+    return PageTable(columns, rows).html()
 
 
 def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
@@ -203,62 +208,75 @@ def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
     if not lines:
         raise InputError("rows", f"{len(rows)} rows", f"some with {what}")
     over = rows[0].over if isinstance(rows[0], SweepRow) else "time"
-    with sheet(
-        (9.5, max(4.8, 0.3 * sum(line.name.count("\n") + 1 for line in lines) + 3))
-    ) as figure:
+    lines_of_legend = sum(line.name.count("\n") + 1 for line in lines)
+    height_in = max(4.8, 0.3 * lines_of_legend + 3)
+    with sheet((9.5, height_in)) as figure:
         axes = figure.subplots()
         logarithmic(axes, "y", *limits([y for line in lines for y in line.y]), 16)
-        ends = min(line.x[0] for line in lines), max(line.x[-1] for line in lines)
+        low = min(line.x[0] for line in lines)
+        high = max(line.x[-1] for line in lines)
         if over == "latitude":
-            axes.set_xlim(*ends)
+            axes.set_xlim(low, high)
             axes.grid(True, axis="x")
         else:
-            logarithmic(axes, "x", *ends)
+            logarithmic(axes, "x", low, high)
         draw(axes, lines)
-        low, high = axes.get_ylim()
-        for name, quantity, height in LIMITS:
-            if quantity == what and low < height < high:
-                axes.axhline(height, **GUIDE)
-                axes.text(
-                    0.995, height, name, transform=axes.get_yaxis_transform(), ha="right", va="bottom", color=FAINT,
-                    fontsize=8,
-                )  # fmt: skip
-        axes.set_xlabel(
-            "time since release, s"
-            if over == "time"
-            else f"{over.replace('_', ' ')}, {UNITS[over]}"
-        )
+        _draw_limits(axes, what)
+        if over == "time":
+            axes.set_xlabel("time since release, s")
+        else:
+            axes.set_xlabel(f"{over.replace('_', ' ')}, {UNITS[over]}")
         axes.set_ylabel(_NAMES[what])
         legend(axes, lines)
         names = ", ".join(line.name.replace("\n", ", ") for line in lines)
-        return svg_text(
-            figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}."
-        )
+        description = f"{_NAMES[what].capitalize()}, against {over}: {names}."
+        return svg_text(figure, f"{over}-{what}", description)
+
+
+def _draw_limits(axes: Any, what: str) -> None:
+    """Draw the limits of a good approximation as guide lines, as far as the axis shows them."""
+    low, high = axes.get_ylim()
+    place = axes.get_yaxis_transform()
+    for name, quantity, limit in LIMITS:
+        if quantity == what and low < limit < high:
+            axes.axhline(limit, **GUIDE)
+            style = {"ha": "right", "va": "bottom", "color": FAINT, "fontsize": 8}
+            axes.text(0.995, limit, name, transform=place, **style)
 
 
 def _lines(rows: Sequence[TimeRow], what: str) -> list[ChartLine]:
     """Return the lines of the rows, the one with the largest last error first."""
-    groups: list[tuple[list[str], Any, Any]] = []
+    groups: list[_Group] = []
     for name in dict.fromkeys(row.approximation for row in rows):
-        mine = [row for row in rows if row.approximation == name and getattr(row, what)]
-        x = np.array([row.value if isinstance(row, SweepRow) else row.t for row in mine])
-        y = np.array([getattr(row, what) for row in mine])
-        same = [
-            names
-            for names, u, v in groups
-            if np.array_equal(u, x) and np.all(np.abs(y / v - 1) < _SAME)
-        ]
-        if same:
-            same[0].append(name)
-        elif mine:
-            groups.append(([name], x, y))
-    groups.sort(key=lambda group: -group[2][-1])
-    return [
-        ChartLine(
-            _wrapped(names), x.tolist(), y.tolist(), line_style(COLOURS[i % len(COLOURS) - 1], i)
-        )  # the darkest first
-        for i, (names, x, y) in enumerate(groups)
-    ]
+        drawn = [row for row in rows if row.approximation == name and getattr(row, what)]
+        if not drawn:
+            continue
+        x = np.array([row.value if isinstance(row, SweepRow) else row.t for row in drawn])
+        y = np.array([getattr(row, what) for row in drawn])
+        group = next((group for group in groups if group.coincides_with(x, y)), None)
+        if group is None:
+            groups.append(_Group([name], x, y))
+        else:
+            group.names.append(name)
+    groups.sort(key=lambda group: -group.y[-1])
+    lines = []
+    for i, group in enumerate(groups):
+        style = line_style(COLOURS[i % len(COLOURS) - 1], i)  # begins with the darkest colour
+        lines.append(ChartLine(_wrapped(group.names), group.x.tolist(), group.y.tolist(), style))
+    return lines
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Approximations whose errors coincide: one line with several names."""
+
+    names: list[str]
+    x: Array
+    y: Array
+
+    def coincides_with(self, x: Array, y: Array) -> bool:
+        """Return whether another line has the same points, up to a difference that nobody sees."""
+        return np.array_equal(self.x, x) and bool(np.all(np.abs(y / self.y - 1) < _SAME))
 
 
 def _wrapped(names: Sequence[str]) -> str:

@@ -166,8 +166,13 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
         text,
         flags=re.DOTALL,
     )
-    targets = set(re.findall(r'#([^")]+)', text))  # other ids would stand in a page more than once
-    text = re.sub(r' id="([^"]+)"', lambda match: match[0] if match[1] in targets else "", text)
+    # ids that nothing refers to would appear in a page more than once
+    targets = set(re.findall(r'#([^")]+)', text))
+
+    def kept_id(match: re.Match[str]) -> str:
+        return match[0] if match[1] in targets else ""
+
+    text = re.sub(r' id="([^"]+)"', kept_id, text)
     width, height = 72 * figure.get_size_inches()
     opening = (
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
@@ -182,23 +187,32 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
 def power_of_ten(value: float) -> str:
     """Return a tick's label: 0.01, 1 or 100 near 1, and 10⁻⁹ farther away."""
     exponent = round(math.log10(value))
-    return f"{value:g}" if -3 < exponent < 4 else "10" + str(exponent).translate(_RAISED)
+    if -3 < exponent < 4:
+        return f"{value:g}"
+    return "10" + str(exponent).translate(_RAISED)
 
 
 def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8) -> None:
-    """Make an axis logarithmic between limits, with at most about `labels` labels, at every decade or every n-th."""
+    """Make an axis logarithmic between limits, with about `labels` labels at most."""
     getattr(axes, f"set_{which}scale")("log")
     getattr(axes, f"set_{which}lim")(low, high)
-    first, last = math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9)
-    each = max(1, math.ceil((last - first + 1) / labels))
-    ticks = [10.0**n for n in range(first, last + 1) if n % each == 0]
+    first = math.ceil(math.log10(low) - 1e-9)
+    last = math.floor(math.log10(high) + 1e-9)
+    every = max(1, math.ceil((last - first + 1) / labels))
+    ticks = [10.0**n for n in range(first, last + 1) if n % every == 0]
     getattr(axes, f"set_{which}ticks")(ticks, list(map(power_of_ten, ticks)))
     axes.minorticks_off()
     axes.grid(True, axis=which)
 
 
 def limits(values: Sequence[float], low: float = 0.6, high: float = 1.8) -> tuple[float, float]:
-    """Return limits of a logarithmic axis around positive values, wider by these factors, or by more on a long axis."""
+    """Return limits of a logarithmic axis around positive values.
+
+    Args:
+        values: what is drawn.
+        low: factor below the smallest; a long axis has a smaller one.
+        high: factor above the largest; a long axis has a larger one.
+    """
     spread = (max(values) / min(values)) ** _ROOM
     return min(values) * min(low, 1 / spread), max(values) * max(high, spread)
 
@@ -221,53 +235,64 @@ class ChartLine:
     style: Mapping[str, Any]
     markers: float = 0.0
 
+    @property
+    def without_markers(self) -> dict[str, Any]:
+        """The style of the line alone."""
+        return {**self.style, "marker": ""}
+
+    @property
+    def without_line(self) -> dict[str, Any]:
+        """The style of the markers alone."""
+        return {**self.style, "linestyle": "none"}
+
 
 def draw(axes: Any, lines: Sequence[ChartLine]) -> None:
     """Draw lines with their markers."""
     for line in lines:
-        axes.plot(line.x, line.y, **{**line.style, "marker": ""}, zorder=3)
+        axes.plot(line.x, line.y, **line.without_markers, zorder=3)
         if line.markers:
-            axes.plot(
-                line.x, line.y, **{**line.style, "linestyle": "none"}, alpha=line.markers, zorder=4
-            )
+            axes.plot(line.x, line.y, **line.without_line, alpha=line.markers, zorder=4)
 
 
 def legend(
     axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0, inside: bool = False
 ) -> None:
-    """Name lines in a legend right of the axes, or inside them where they leave most room."""
+    """Name lines in a legend right of the axes, or inside them where there is most room."""
     from matplotlib.lines import Line2D
 
-    handles = [
-        Line2D(
-            [],
-            [],
-            label=line.name,
-            **(line.style if line.markers else {**line.style, "marker": ""}),
-        )
-        for line in lines
-    ]
+    handles = []
+    for line in lines:
+        style = line.style if line.markers else line.without_markers
+        handles.append(Line2D([], [], label=line.name, **style))
     where = {"loc": "best"} if inside else {"loc": "upper left", "bbox_to_anchor": (1, 1)}
     axes.legend(handles=handles, fontsize=size, labelspacing=0.35, handlelength=3, **where)
 
 
 def name_ends(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> None:
-    """Write the name of each line beside its end: right of it, or left of it where x is below zero."""
+    """Write the name of each line beside its end: to the right, or to the left if x is negative."""
     for line in lines:
-        side = -1 if line.x[-1] < 0 else 1
+        end = (line.x[-1], line.y[-1])
+        on_the_left = end[0] < 0
         axes.annotate(
-            line.name, (line.x[-1], line.y[-1]), (side * _GAP, 0), textcoords="offset points", fontsize=size,
-            color=line.style["color"], ha="left" if side > 0 else "right", va="center_baseline",
-        )  # fmt: skip
+            line.name,
+            end,
+            (-_GAP if on_the_left else _GAP, 0),
+            textcoords="offset points",
+            fontsize=size,
+            color=line.style["color"],
+            ha="right" if on_the_left else "left",
+            va="center_baseline",
+        )
 
 
 def band(axes: Any, bound_m: float) -> None:
-    """Draw a band over errors below the bound of the reference, where the reference itself is not known."""
+    """Draw a band over errors below the bound of the reference, which cannot be measured."""
     low, high = axes.get_ylim()
-    if low < bound_m < high:
-        axes.axhspan(low, bound_m, color=BAND, linewidth=0, zorder=0)
-        inside = math.log(bound_m / low) > _NARROW * math.log(high / low)
-        axes.text(
-            0.005, low if inside else bound_m, f"bound of the reference, {bound_m:.1e} m",
-            transform=axes.get_yaxis_transform(), va="bottom", color=FAINT, fontsize=8,
-        )  # fmt: skip
+    if not low < bound_m < high:
+        return
+    axes.axhspan(low, bound_m, color=BAND, linewidth=0, zorder=0)
+    text_fits_inside = math.log(bound_m / low) > _NARROW * math.log(high / low)
+    height = low if text_fits_inside else bound_m
+    text = f"bound of the reference, {bound_m:.1e} m"
+    place = axes.get_yaxis_transform()
+    axes.text(0.005, height, text, transform=place, va="bottom", color=FAINT, fontsize=8)

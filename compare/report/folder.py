@@ -16,7 +16,8 @@ from reference.system.workspace import replace_file
 
 from .page import MARK, PageTable
 
-CSV, PAGE = "rows.csv", "index.html"
+CSV = "rows.csv"
+PAGE = "index.html"
 _HEAD = 1024  # bytes at the start of a page that hold its mark
 
 

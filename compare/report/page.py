@@ -10,7 +10,7 @@ import csv
 import html
 import io
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -128,13 +128,17 @@ def page(
         styles: further styles.
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))
-    links = "\n".join(
-        f'<a href="#{target}">{heading}</a>' for target, heading in headings if len(headings) > 1
-    )
+    links = [f'<a href="#{target}">{heading}</a>' for target, heading in headings]
     return Template(_source("page.html")).substitute(
-        mark=MARK, policy=f"{_POLICY}\n" if script else "", title=text(title), styles=_source("page.css") + styles,
-        lead=text(lead), links=links, sections=join(sections), script=script,
-    )  # fmt: skip
+        mark=MARK,
+        policy=f"{_POLICY}\n" if script else "",
+        title=text(title),
+        styles=_source("page.css") + styles,
+        lead=text(lead),
+        links="\n".join(links) if len(links) > 1 else "",
+        sections=join(sections),
+        script=script,
+    )
 
 
 @cache
@@ -163,57 +167,65 @@ class PageTable:
     def of_records(cls, names: Iterable[str], records: Iterable[Mapping[str, Any]]) -> PageTable:
         """Return the rows of a JSON document, with these names as columns."""
         names = list(names)
-        return cls(dict.fromkeys(names, ""), [[row.get(name) for name in names] for row in records])
+        rows = [[record.get(name) for name in names] for record in records]
+        return cls(dict.fromkeys(names, ""), rows)
 
     def html(self, caption: str = "") -> Html:
-        """Return HTML that scrolls where it is wider than the screen; with prose, rows are cards on a telephone."""
-        kinds = list(self.columns.values())
-        cards = any(kind in ("prose", "wrapped", "line") for kind in kinds)
-        classes = [f' class="{kind}"' if kind else "" for kind in kinds]
-        names = [
-            f' data-name="{text(title)}"' if cards and i else ""
-            for i, title in enumerate(self.columns)
-        ]
-        head = "".join(
-            f'<th scope="col"{kind}>{text(title)}</th>'
-            for kind, title in zip(classes, self.columns, strict=True)
-        )
-        body = []
-        for i, row in enumerate(self._texts()):
-            cells = "".join(
-                f"<td{a}{b}>{text(cell)}</td>"
-                for a, b, cell in zip(classes, names, row, strict=True)
-            )
-            kind = f' class="{self.kinds[i]}"' if self.kinds and self.kinds[i] else ""
-            anchor = f' id="{text(self.anchors[i])}"' if self.anchors else ""
-            body.append(f"<tr{kind}{anchor}>{cells}</tr>")
-        title = [f"<figcaption>{text(caption)}</figcaption>"] if caption else []
-        inside = [f"<thead><tr>{head}</tr></thead>", "<tbody>", *body, "</tbody>"]
-        around = ("whole" if {*kinds} == {"wrapped"} else "wide") + (" cards" if cards else "")
-        lines = [
-            "<figure>",
-            *title,
-            f'<div class="{around}">',
+        """Return HTML: a wide table scrolls; on a telephone the rows of one with prose are cards."""
+        kinds = set(self.columns.values())
+        cards = not kinds.isdisjoint(("prose", "wrapped", "line"))
+        classes = "whole" if kinds == {"wrapped"} else "wide"
+        if cards:
+            classes += " cards"
+        lines = ["<figure>"]
+        if caption:
+            lines.append(f"<figcaption>{text(caption)}</figcaption>")
+        lines += [
+            f'<div class="{classes}">',
             "<table>",
-            *inside,
+            self._head(),
+            "<tbody>",
+            *self._body(cards),
+            "</tbody>",
             "</table>",
             "</div>",
             "</figure>",
         ]
         return Html("\n".join(lines))
 
+    def _head(self) -> str:
+        """Return the row of titles."""
+        cells = [
+            f'<th scope="col"{_attribute("class", kind)}>{text(title)}</th>'
+            for title, kind in self.columns.items()
+        ]
+        return f"<thead><tr>{''.join(cells)}</tr></thead>"
+
+    def _body(self, cards: bool) -> Iterator[str]:
+        """Yield the rows; on a card each cell but the first is shown with its title."""
+        openings = []
+        for i, (title, kind) in enumerate(self.columns.items()):
+            name = _attribute("data-name", title) if cards and i else ""
+            openings.append(f"<td{_attribute('class', kind)}{name}>")
+        for i, row in enumerate(self._texts()):
+            kind = _attribute("class", self.kinds[i]) if self.kinds else ""
+            anchor = _attribute("id", self.anchors[i]) if self.anchors else ""
+            cells = [
+                f"{opening}{text(cell)}</td>" for opening, cell in zip(openings, row, strict=True)
+            ]
+            yield f"<tr{kind}{anchor}>{''.join(cells)}</tr>"
+
     def lines(self) -> list[str]:
-        """Return lines of text, the titles first: numbers stand to the right, all else to the left."""
+        """Return lines of text, the titles first; numbers are aligned right."""
         rows = [list(self.columns), *self._texts()]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         sides = [">" if kind == "number" else "<" for kind in self.columns.values()]
-        return [
-            "  ".join(
-                f"{cell:{side}{width}}"
-                for cell, side, width in zip(row, sides, widths, strict=True)
-            ).rstrip()
-            for row in rows
-        ]
+        lines = []
+        for row in rows:
+            cells = zip(row, sides, widths, strict=True)
+            padded = [f"{cell:{side}{width}}" for cell, side, width in cells]
+            lines.append("  ".join(padded).rstrip())
+        return lines
 
     def csv(self) -> str:
         """Return CSV: a header line, doubles with all their digits, an empty field where there is no value.
@@ -227,10 +239,21 @@ class PageTable:
         return stream.getvalue()
 
     def _texts(self) -> list[list[str]]:
-        return [
-            ["" if cell is None else cell if isinstance(cell, str) else str(cell) for cell in row]
-            for row in self.rows
-        ]
+        return [list(map(_cell_text, row)) for row in self.rows]
+
+
+def _cell_text(cell: Any) -> str:
+    """Return a cell as text; HTML stays HTML."""
+    if cell is None:
+        return ""
+    return cell if isinstance(cell, str) else str(cell)
+
+
+def _attribute(name: str, value: str) -> str:
+    """Return an attribute of an HTML element; nothing if it has no value."""
+    if not value:
+        return ""
+    return f' {name}="{text(value)}"'
 
 
 def _harmless(value: Any) -> Any:

@@ -1,6 +1,6 @@
-"""Cost and error of a study's rows: the Pareto front, the cost of reaching an error, and sentences about both.
+"""Cost and error of a study's rows: Pareto front, cost of reaching an error, and their summary.
 
-An error below the bound of the reference counts as equal to that bound, because nothing smaller is known.
+An error below the bound of the reference counts as equal to that bound.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from ..studies.row import Row, grouped
 
 # errors for which costs are tabulated and the cheapest method is named
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)
-PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
+PAPER_METHOD = "rk4"
+PAPER_NAME = "the paper's RK4"
 SMALL = 1.5e-3  # numbers below this are written with an exponent
 ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
 
@@ -68,14 +69,16 @@ def curves(rows: Sequence[Row]) -> list[Curve]:
     """Group rows by method and formulation, in order of appearance; a method's first formulation is its usual one."""
     usual = {row.method: row.formulation for row in reversed(rows)}
     result = []
-    for (method, formulation), group in grouped(
-        rows, lambda row: (row.method, row.formulation)
-    ).items():
-        ladder = sorted(
-            group, key=lambda row: row.setting if row.kind == "precision" else -row.setting
-        )
+    by_curve = grouped(rows, lambda row: (row.method, row.formulation))
+    for (method, formulation), group in by_curve.items():
+        ladder = sorted(group, key=_tightness)
         result.append(Curve(method, formulation, usual[method] == formulation, tuple(ladder)))
     return result
+
+
+def _tightness(row: Row) -> float:
+    """Return a number that grows as the setting becomes tighter: bits grow, steps and tolerances shrink."""
+    return row.setting if row.kind == "precision" else -row.setting
 
 
 def error_of(row: Row, bound_m: float) -> float:
@@ -98,10 +101,12 @@ def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
     Returns:
         Rows of increasing cost and decreasing error; the first of equal rows.
     """
-    best, rows_on_front = math.inf, []
+    smallest_error_m = math.inf
+    rows_on_front = []
     for row in sorted(_measured(rows), key=lambda row: (cost_of(row), error_of(row, bound_m))):
-        if error_of(row, bound_m) < best:
-            best = error_of(row, bound_m)
+        error_m = error_of(row, bound_m)
+        if error_m < smallest_error_m:
+            smallest_error_m = error_m
             rows_on_front.append(row)
     return rows_on_front
 
@@ -112,59 +117,77 @@ def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> float | None:
     The cost is interpolated in logarithms between neighbouring settings on both sides of the error, never across a
     failed setting and never beyond the ladder: if the loosest setting is already more accurate, its cost is returned.
     """
-    return None if error_m < bound_m else min(_ways(curve, error_m, bound_m), default=None)
+    if error_m < bound_m:
+        return None
+    costs_s = [
+        *_costs_of_settings(curve, error_m, bound_m),
+        *_costs_between(curve, error_m, bound_m),
+    ]
+    return min(costs_s, default=None)
 
 
-def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[float]:
-    """Yield the CPU seconds of each setting that reaches the error, and of each place between two that does."""
+def _costs_of_settings(curve: Curve, error_m: float, bound_m: float) -> Iterator[float]:
+    """Yield the CPU seconds of each setting that reaches the error."""
     for row in curve.measured:
         if row.cpu_s and error_of(row, bound_m) <= error_m:
             yield row.cpu_s
+
+
+def _costs_between(curve: Curve, error_m: float, bound_m: float) -> Iterator[float]:
+    """Yield the interpolated CPU seconds between neighbouring settings on both sides of the error."""
     for a, b in pairwise(curve.rows):
         if not (a.measured and b.measured and a.cpu_s and b.cpu_s):
             continue
-        e, f = error_of(a, bound_m), error_of(b, bound_m)
-        if 0 < min(e, f) < error_m < max(e, f):
-            part = math.log(error_m / e) / math.log(f / e)
-            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part
+        error_a = error_of(a, bound_m)
+        error_b = error_of(b, bound_m)
+        if 0 < min(error_a, error_b) < error_m < max(error_a, error_b):
+            fraction = math.log(error_m / error_a) / math.log(error_b / error_a)
+            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** fraction
 
 
 def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[Cost]:
     """Return the cost of an error with every method that reaches it, the cheapest first."""
-    costs = ((curve, cost_at(curve, error_m, bound_m)) for curve in curves(rows))
-    return sorted(((curve, cost) for curve, cost in costs if cost is not None), key=itemgetter(1))
+    costs = []
+    for curve in curves(rows):
+        cost_s = cost_at(curve, error_m, bound_m)
+        if cost_s is not None:
+            costs.append((curve, cost_s))
+    return sorted(costs, key=itemgetter(1))
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
-    """Return the main results as sentences: the cheapest method at each error that is reached, and the cost of digits.
+    """Return the main results: the cheapest method at each error reached, and the cost of digits.
 
-    A study of precisions, in which no method has a ladder of steps or tolerances, says nothing about large errors; then
-    only the cost of digits is given: what was measured, the price of a further digit, and the power law.
+    A study of precisions has only the cost of digits: what was measured, the price of a further
+    digit, and the power law.
     """
-    rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
+    rows = rows_of(document)
+    bound_m = float(document["reference"]["bound_m"])
+    t_end = document["t_end"]
     if of_digits(rows, bound_m):
-        prices = [_prices(curve, bound_m, document["t_end"]) for curve in curves(rows)]
+        prices = [_prices(curve, bound_m, t_end) for curve in curves(rows)]
     else:
         prices = list(_cheapest(rows, bound_m))
-    laws = (
-        cost_sentence(label, law, document["t_end"])
-        for label, law in costs_of_digits(rows, bound_m).items()
-    )
-    return [sentence for sentence in (*prices, *laws) if sentence]
+    laws = costs_of_digits(rows, bound_m)
+    fits = [cost_sentence(label, law, t_end) for label, law in laws.items()]
+    return [sentence for sentence in (*prices, *fits) if sentence]
 
 
 def of_digits(rows: Sequence[Row], bound_m: float) -> bool:
-    """Return whether a study says what digits cost, and nothing of large errors: a study of precisions."""
-    by_precision = [curve for curve in curves(rows) if curve.kind == "precision" and curve.measured]
-    ladders = [curve for curve in curves(rows) if curve.kind != "precision" and len(curve.rows) > 1]
-    coarse = any(
-        error_of(row, bound_m) > TARGETS_M[-1] for curve in ladders for row in _measured(curve.rows)
-    )
-    return bool(by_precision) and not coarse
+    """Return whether a study is one of precisions: no ladder of steps or tolerances has large errors."""
+    measured_precisions = False
+    for curve in curves(rows):
+        if curve.kind == "precision":
+            measured_precisions |= bool(curve.measured)
+        elif len(curve.rows) > 1:
+            errors_m = [error_of(row, bound_m) for row in _measured(curve.rows)]
+            if max(errors_m, default=0.0) > TARGETS_M[-1]:
+                return False
+    return measured_precisions
 
 
 def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
-    """Return what each number of digits costs with a method, and a further digit between the last two of them."""
+    """Return what each number of digits costs with a method, and what a further digit costs."""
     measured = [row for row in _measured(curve.rows) if error_of(row, 0.0) < 1 and row.cpu_s]
     costs = sorted((digits_of(row, bound_m), cost_of(row)) for row in measured)
     if not costs:
@@ -181,49 +204,41 @@ def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
 
 
 def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
-    """Yield the cheapest method at each error that is reached; errors at which it is the same run share a sentence."""
-    reached = [
-        (error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))
-    ]
-    for _, group in groupby(reached, key=lambda target: target[1][0]):
-        alike = list(group)
-        (first_m, costs), (last_m, _) = alike[0], alike[-1]
-        if len(alike) > 1 and all(costs_there == costs for _, costs_there in alike):
-            yield _sentence(rows, f"From {tidy(first_m)} m to {tidy(last_m)} m", costs, bound_m)
-        else:
-            yield from (
-                _sentence(rows, f"At {tidy(error_m)} m", costs, bound_m) for error_m, costs in alike
-            )
+    """Yield the cheapest method at each error that is reached; equal results share a sentence."""
+    costs_by_error = {error_m: costs_at(rows, error_m, bound_m) for error_m in TARGETS_M}
+    reached = [(error_m, costs) for error_m, costs in costs_by_error.items() if costs]
+    for costs, group in groupby(reached, key=itemgetter(1)):
+        errors_m = [tidy(error_m) for error_m, _ in group]
+        where = f"At {errors_m[0]} m"
+        if len(errors_m) > 1:
+            where = f"From {errors_m[0]} m to {errors_m[-1]} m"
+        yield _sentence(rows, where, costs, bound_m)
 
 
 def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: float) -> str:
-    first, least_s = costs[0]
-    head = f"{where} the cheapest method is {first.label}, with {seconds(least_s)} of CPU time"
-    paper_s = next((cpu_s for curve, cpu_s in costs if curve.method == PAPER_METHOD), None)
-    if first.method == PAPER_METHOD:
+    """Return the cheapest method, compared with the paper's, or with the next if it is the paper's."""
+    cheapest, least_s = costs[0]
+    head = f"{where} the cheapest method is {cheapest.label}, with {seconds(least_s)} of CPU time"
+    if cheapest.method == PAPER_METHOD:
         if len(costs) == 1:
             return f"{head}."
         second, cpu_s = costs[1]
         return f"{head}: {_times(cpu_s / least_s)} the next, {second.label}."
-    if paper_s is not None:
-        return f"{head}: {_times(paper_s / least_s)} {PAPER_NAME}."
-    best = min(
-        (error_of(row, bound_m) for row in _measured(rows) if row.method == PAPER_METHOD),
-        default=None,
-    )
-    return head + (
-        f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else "."
-    )
+    for curve, cpu_s in costs:
+        if curve.method == PAPER_METHOD:
+            return f"{head}: {_times(cpu_s / least_s)} {PAPER_NAME}."
+    paper_rows = [row for row in _measured(rows) if row.method == PAPER_METHOD]
+    if not paper_rows:
+        return f"{head}."
+    best_m = min(error_of(row, bound_m) for row in paper_rows)
+    return f"{head}; {PAPER_NAME} does not reach it ({best_m:.1e} m at best)."
 
 
 def _times(ratio: float) -> str:
     if ratio < ALIKE:
         return "as cheap as"
-    return (
-        f"{ratio:.2g} times cheaper than"
-        if ratio < 100
-        else f"{float(f'{ratio:.2g}'):.0f} times cheaper than"
-    )
+    two_digits = float(f"{ratio:.2g}")
+    return f"{two_digits:.15g} times cheaper than"
 
 
 def digits_of(row: Row, bound_m: float) -> float:
@@ -234,23 +249,24 @@ def digits_of(row: Row, bound_m: float) -> float:
 def costs_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> dict[str, PowerLaw]:
     """Fit the CPU seconds of each method whose setting is the precision as a power of the digits achieved.
 
-    Rows at or below the bound of the reference are left out, because their true error is not known; so is a method with
-    fewer than three rows to fit.
+    Rows at or below the bound of the reference are left out, because their true error is unknown. A
+    method with too few rows has no law.
 
     Returns:
         The power laws by the labels of their curves.
     """
     laws = {}
     for curve in curves(rows):
-        measured = [
+        if curve.kind != "precision":
+            continue
+        fitted = [
             row
             for row in _measured(curve.rows)
             if row.error_m and bound_m < row.error_m < 1 and row.cpu_s
         ]
-        if curve.kind == "precision" and len({row.error_m for row in measured}) >= LEAST_POINTS:
-            laws[curve.label] = power_law(
-                [digits_of(row, bound_m) for row in measured], map(cost_of, measured)
-            )
+        if len({row.error_m for row in fitted}) >= LEAST_POINTS:
+            digits = [digits_of(row, bound_m) for row in fitted]
+            laws[curve.label] = power_law(digits, map(cost_of, fitted))
     return laws
 
 
@@ -267,13 +283,11 @@ def seconds(cpu_s: float) -> str:
     """Return a CPU time with its unit, to three digits."""
     if cpu_s < 1e-3:
         return f"{cpu_s * 1e6:.3g} µs"
-    return (
-        f"{cpu_s * 1e3:.3g} ms"
-        if cpu_s < 0.1
-        else f"{cpu_s:.3g} s"
-        if cpu_s < 1000
-        else f"{cpu_s:.0f} s"
-    )
+    if cpu_s < 0.1:
+        return f"{cpu_s * 1e3:.3g} ms"
+    if cpu_s < 1000:
+        return f"{cpu_s:.3g} s"
+    return f"{cpu_s:.0f} s"
 
 
 def tidy(value: float) -> str:
@@ -285,7 +299,6 @@ def tidy(value: float) -> str:
 
 
 def _measured(rows: Sequence[Row]) -> list[Row]:
-    """Return rows with a finite cost and error; a NaN must not reach the front because its comparisons are false."""
-    return [
-        row for row in rows if row.measured and math.isfinite(error_of(row, 0.0) + cost_of(row))
-    ]
+    """Return rows with a finite cost and error: a NaN would slip through comparisons."""
+    measured = [row for row in rows if row.measured]
+    return [row for row in measured if math.isfinite(error_of(row, 0.0) + cost_of(row))]

@@ -117,33 +117,26 @@ def error_picture(scores: Sequence[Score], target: Path) -> bytes:
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:
-    bound, tolerance = (
-        max(score.errors.bound_m for score in scores),
-        min(score.tolerance_m for score in scores),
-    )
-    top = max([10 * bound, *(score.errors.max_m for score in scores)])
+    bound_m = max(score.errors.bound_m for score in scores)
+    tolerance_m = min(score.tolerance_m for score in scores)
+    largest_m = max(score.errors.max_m for score in scores)
+    lowest_m = bound_m / 30
+    top_m = max(10 * bound_m, largest_m)
     lines = []
     for i, score in enumerate(scores):
-        t, error = _thinned(score.errors.t, np.maximum(score.errors.position, bound / 30))
+        t, error = _thinned(score.errors.t, np.maximum(score.errors.position, lowest_m))
+        name = shortened(Path(score.candidate.name).name, LONGEST_NAME)
         style = line_style(COLOURS[i % len(COLOURS)], i)
-        lines.append(
-            ChartLine(
-                shortened(Path(score.candidate.name).name, LONGEST_NAME),
-                t.tolist(),
-                error.tolist(),
-                style,
-            )
-        )
+        lines.append(ChartLine(name, t.tolist(), error.tolist(), style))
     end = max(line.x[-1] for line in lines)
-    if tolerance < 100 * top:
-        lines.append(
-            ChartLine(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE)
-        )
-        top = max(top, tolerance)
-    logarithmic(axes, "y", bound / 30, 3 * top, 12)
+    if tolerance_m < 100 * top_m:
+        name = f"tolerance, {tolerance_m:.1e} m"
+        lines.append(ChartLine(name, [0, end], [tolerance_m, tolerance_m], GUIDE))
+        top_m = max(top_m, tolerance_m)
+    logarithmic(axes, "y", lowest_m, 3 * top_m, 12)
     axes.set(xlim=(0, end or 1), xlabel="t in s", ylabel="position error in m")
     axes.set_title(f"{scores[0].scene.id}: error against time")
-    band(axes, bound)
+    band(axes, bound_m)
     draw(axes, lines)
     legend(axes, lines)
 

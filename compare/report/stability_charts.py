@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,8 @@ LETTERS = {
     Status.NOT_INSTALLED: "–",
 }
 _LOUD = Status.SILENTLY_WRONG  # the status that stands out by its colour
-_LOUD_COLOUR, _QUIET_COLOUR = "#D55E00", "#F2C9A8"
+_LOUD_COLOUR = "#D55E00"
+_QUIET_COLOUR = "#F2C9A8"
 _STEPS = (3, 6, 9, 12, 15)  # digits at which the colour changes
 # few to many digits, in grey as well
 _BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")
@@ -54,12 +56,13 @@ _SQUARE = 0.27  # side of a square of the map in inches
 _MARGINS = (2.3, 1.9)  # width and height for the names, in inches
 _LONGEST_NAME = 30  # characters of a scene's name, which may be the path of a file
 _CHARACTER = 0.27  # width of a character in squares
-_LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # squares that the key needs
+_LEAST_COLUMNS = 15  # columns of squares that the key needs
+_KEY_ROWS = 5.5  # rows of squares that it needs
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
-# length of the guide lines, and how far before the line's end they end, as factors of time
-_FAN, _BEFORE = 50.0, 5.0
+_FAN = 50.0  # length of the guide lines as a factor of time
+_BEFORE = 5.0  # they end this factor of time before the lines do
 # distance of the fan from the lines, as a power of the span of errors: room for its names
 _ABOVE = 0.045
 _OVER = 20.0  # room above the lines, as a factor of error
@@ -71,19 +74,14 @@ def heat_map(cells: Sequence[Cell]) -> str:
     columns = list(dict.fromkeys(map(_column, cells)))
     scenes = list(dict.fromkeys(cell.scene for cell in cells))
     wide = max(len(columns), _LEAST_COLUMNS)
-    with sheet(
-        (_MARGINS[0] + _SQUARE * wide, _MARGINS[1] + _SQUARE * (len(scenes) + _KEY_ROWS))
-    ) as figure:
+    high = len(scenes) + _KEY_ROWS
+    with sheet((_MARGINS[0] + _SQUARE * wide, _MARGINS[1] + _SQUARE * high)) as figure:
         axes = figure.subplots()
-        axes.set(xlim=(0, wide), ylim=(len(scenes) + _KEY_ROWS, 0), aspect="equal")
+        axes.set(xlim=(0, wide), ylim=(high, 0), aspect="equal")
         for cell in cells:
-            _square(
-                axes,
-                columns.index(_column(cell)),
-                scenes.index(cell.scene),
-                cell.status,
-                cell.digits,
-            )
+            x = columns.index(_column(cell))
+            y = scenes.index(cell.scene)
+            _square(axes, x, y, cell.status, cell.digits)
         _key(axes, len(scenes) + 0.7, wide, {cell.status for cell in cells})
         axes.set_xticks(
             [i + 0.5 for i in range(len(columns))],
@@ -103,34 +101,61 @@ def heat_map(cells: Sequence[Cell]) -> str:
 
 
 def _column(cell: Cell) -> str:
-    """Return a cell's method, with its number type and formulation where these are not double and a program's own."""
+    """Return a cell's method and formulation, with the number type unless that is double."""
     number, _, formulation = cell.precision.partition(", ")
-    words = {NUMBER: "", "double": formulation}.get(number, f"{number} {formulation}")
-    return f"{cell.method} {words}".strip()
+    if number == NUMBER:  # a program of the user's
+        return cell.method
+    if number == "double":
+        return f"{cell.method} {formulation}".strip()
+    return f"{cell.method} {number} {formulation}".strip()
 
 
 def _square(axes: Any, x: float, y: float, status: Status, digits: float | None = None) -> None:
     """Draw a square with its mark: digits kept, rounded down, or the letter of a status."""
-    shade = sum((digits or 0.0) >= step for step in _STEPS)
-    if status == Status.OK:
-        colour, ink = _BLUES[shade], PAPER if shade >= _DARK_FROM else "#10202c"
-    elif status == Status.NOT_INSTALLED:
-        colour, ink = BAND, FAINT
-    else:
-        colour, ink = (_LOUD_COLOUR, "#000000") if status == _LOUD else (_QUIET_COLOUR, "#3a1c05")
-    mark = LETTERS.get(status) or ("?" if digits is None else f"{int(max(0.0, digits))}")
-    axes.fill([x, x + 0.94, x + 0.94, x], [y, y, y + 0.94, y + 0.94], color=colour, linewidth=0)
-    weight = "bold" if status == _LOUD else "normal"
+    look = _look_of(status, digits)
+    axes.fill(
+        [x, x + 0.94, x + 0.94, x],
+        [y, y, y + 0.94, y + 0.94],
+        color=look.colour,
+        linewidth=0,
+    )
     axes.text(
         x + 0.47,
         y + 0.5,
-        mark,
+        _mark_of(status, digits),
         ha="center",
         va="center_baseline",
         fontsize=7.5,
-        color=ink,
-        weight=weight,
+        color=look.ink,
+        weight="bold" if status == _LOUD else "normal",
     )
+
+
+@dataclass(frozen=True)
+class _Look:
+    """Colours of a square and of its mark."""
+
+    colour: str
+    ink: str
+
+
+def _look_of(status: Status, digits: float | None) -> _Look:
+    if status == Status.OK:
+        shade = sum((digits or 0.0) >= step for step in _STEPS)
+        return _Look(_BLUES[shade], PAPER if shade >= _DARK_FROM else "#10202c")
+    if status == Status.NOT_INSTALLED:
+        return _Look(BAND, FAINT)
+    if status == _LOUD:
+        return _Look(_LOUD_COLOUR, "#000000")
+    return _Look(_QUIET_COLOUR, "#3a1c05")
+
+
+def _mark_of(status: Status, digits: float | None) -> str:
+    if status in LETTERS:
+        return LETTERS[status]
+    if digits is None:
+        return "?"
+    return f"{int(max(0.0, digits))}"
 
 
 def _key(axes: Any, y: float, wide: float, present: set[Status]) -> None:
@@ -149,7 +174,8 @@ def _key(axes: Any, y: float, wide: float, present: set[Status]) -> None:
     for status in [status for status in LETTERS if status in present]:
         needs = 1.7 + _CHARACTER * len(status.words)
         if x == 0.0 or x + needs > wide:
-            x, y = 0.0, y + 1.2
+            x = 0.0
+            y += 1.2
         _square(axes, x, y, status)
         axes.text(x + 1.2, y + 0.5, status.words, fontsize=8, va="center_baseline", color=INK)
         x += needs
@@ -180,23 +206,22 @@ def error_growth(runs: Sequence[LongRun]) -> str:
 
 def _line(run: LongRun, place: int) -> ChartLine:
     """Return the largest error so far of a run as a line, with the exponent in its name."""
-    t, error = np.array(run.t), np.array(run.error_m)
+    t = np.array(run.t)
+    error = np.array(run.error_m)
     positive = (t > 0) & (np.maximum.accumulate(error) > 0)
     t, largest = largest_so_far(t[positive], error[positive], _POINTS)
     name = f"{run.method}, {run.formulation}, t^{run.exponent:.2f}"
-    return ChartLine(
-        name, t.tolist(), largest.tolist(), line_style(COLOURS[place % len(COLOURS)], place)
-    )
+    style = line_style(COLOURS[place % len(COLOURS)], place)
+    return ChartLine(name, t.tolist(), largest.tolist(), style)
 
 
 def _guides(lines: Sequence[ChartLine]) -> list[ChartLine]:
     """Return a fan of guide lines above all lines: slopes are the same everywhere."""
     end = max(line.x[-1] for line in lines) / _BEFORE
-    highest = max(float(np.interp(end / _FAN, line.x, line.y)) for line in lines)
-    low = highest * max(
-        4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE
-    )
+    start = end / _FAN
+    highest = max(float(np.interp(start, line.x, line.y)) for line in lines)
+    span = max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)
+    low = highest * max(4.0, span**_ABOVE)
     return [
-        ChartLine(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE)
-        for slope, name in SLOPES
+        ChartLine(name, [start, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES
     ]

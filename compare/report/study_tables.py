@@ -1,13 +1,12 @@
 """Tables of a study, as HTML for its page and as text for a terminal.
 
-Besides, in short form for all reports of studies: numbers, settings, outcomes, and how busy the machine was.
+Also how all reports of studies write numbers, settings, outcomes, and the load of the machine.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from operator import itemgetter
 from statistics import median
 from textwrap import wrap
 from typing import Any
@@ -24,7 +23,9 @@ from ..studies.users_program import FILE
 from .page import Html, PageTable, strong
 from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, sentences, tidy
 
-FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
+FRONT_MARK = "●"
+PART_MARK = "~"
+ABSENT = "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
 BUSY = 1.0
@@ -35,25 +36,31 @@ TEXTS = texts_of(__file__)  # above the tables
 
 
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
-    """Return the cost of each error with each method, sorted by the cost at the smallest error that is reached."""
-    placed = []
-    least = [
-        next((cpu_s for _, cpu_s in costs_at(rows, error_m, bound_m)), None)
-        for error_m in TARGETS_M
-    ]
+    """Return the cost of each error with each method, cheapest first at the smallest error reached."""
+    costs_by_method = {}
     for curve in curves(rows):
-        reached = [cost_at(curve, error_m, bound_m) for error_m in TARGETS_M]
-        if any(reached):
-            order = [math.inf if cpu_s is None else cpu_s for cpu_s in reversed(reached)]
-            cells = [
-                strong(cpu(cpu_s)) if cpu_s is not None and cpu_s == best else cpu(cpu_s)
-                for cpu_s, best in zip(reached, least, strict=True)
-            ]
-            placed.append((order, [curve.label, *cells]))
+        costs_s = [cost_at(curve, error_m, bound_m) for error_m in TARGETS_M]
+        if any(costs_s):
+            costs_by_method[curve.label] = costs_s
+
+    least = []
+    for error_m in TARGETS_M:
+        cheapest_first = costs_at(rows, error_m, bound_m)
+        least.append(cheapest_first[0][1] if cheapest_first else None)
+
+    def from_the_smallest_error(label: str) -> list[float]:
+        costs_s = reversed(costs_by_method[label])
+        return [math.inf if cpu_s is None else cpu_s for cpu_s in costs_s]
+
+    table = []
+    for label in sorted(costs_by_method, key=from_the_smallest_error):
+        cells: list[str] = []
+        for cpu_s, least_s in zip(costs_by_method[label], least, strict=True):
+            is_cheapest = cpu_s is not None and cpu_s == least_s
+            cells.append(strong(cpu(cpu_s)) if is_cheapest else cpu(cpu_s))
+        table.append([label, *cells])
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return PageTable(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(
-        TEXTS["costs"]
-    )
+    return PageTable(columns, table).html(TEXTS["costs"])
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -70,28 +77,60 @@ def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
     """Return all rows with every measured value, method by method from the loosest setting to the tightest."""
     best = {row.key for row in front(rows, bound_m)}
-    numbers = (
-        "error m", "end error m", "transit error s", "h drift", "CPU s", "spread", "compile s", "evaluations", "steps",
-        "last t, s",
-    )  # fmt: skip
-    texts = ("", "method", "formulation", "setting", "status")
-    columns = {**dict.fromkeys(texts, ""), **dict.fromkeys(numbers, "number"), "reason": "line"}
-    cells, kinds = [], []
+    columns = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, "number") | {"reason": "line"}
+    table = []
+    kinds = []
     for curve in curves(rows):
-        for i, row in enumerate(curve.rows):
-            kinds.append(
-                " ".join(
-                    ["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * row.failed
-                )
-            )
-            cells.append((
-                FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
-                row.status.words, number(row.error_m), number(row.end_error_m), transit_error(row),
-                number(row.h_drift), cost(row), "" if row.cpu_spread is None else f"{100 * row.cpu_spread:.0f} %",
-                cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
-                "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
-            ))  # fmt: skip
-    return PageTable(columns, cells, kinds).html(TEXTS["rows"])
+        for row in curve.rows:
+            on_front = row.key in best
+            classes = []
+            if row is curve.rows[0]:
+                classes.append("first")
+            if on_front:
+                classes.append("front")
+            if row.failed:
+                classes.append("failed")
+            kinds.append(" ".join(classes))
+            cells = _cells_of(row, on_front)
+            table.append([cells[name] for name in columns])
+    return PageTable(columns, table, kinds).html(TEXTS["rows"])
+
+
+_TEXTS = ("", "method", "formulation", "setting", "status")
+_NUMBERS = (
+    "error m",
+    "end error m",
+    "transit error s",
+    "h drift",
+    "CPU s",
+    "spread",
+    "compile s",
+    "evaluations",
+    "steps",
+    "last t, s",
+)
+
+
+def _cells_of(row: Row, on_front: bool) -> dict[str, str]:
+    """Return everything that was measured of a row, by the title of its column."""
+    return {
+        "": FRONT_MARK if on_front else "",
+        "method": row.method,
+        "formulation": row.formulation,
+        "setting": setting(row),
+        "status": row.status.words,
+        "error m": number(row.error_m),
+        "end error m": number(row.end_error_m),
+        "transit error s": transit_error(row),
+        "h drift": number(row.h_drift),
+        "CPU s": cost(row),
+        "spread": "" if row.cpu_spread is None else f"{100 * row.cpu_spread:.0f} %",
+        "compile s": cpu(row.compile_s),
+        "evaluations": count(row.rhs_evaluations),
+        "steps": count(row.steps),
+        "last t, s": "" if row.reached_t is None else f"{row.reached_t:g}",
+        "reason": row.reason,
+    }
 
 
 def failures(rows: Sequence[Row]) -> Html | None:
@@ -129,31 +168,22 @@ def advice(statuses: Collection[Status]) -> list[str]:
 
 def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
-    listed = [
-        METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS
-    ]
-    # in its usual formulation
-    of_method = {order.method: order for order in reversed(orders(rows, bound_m))}
-    body = [
-        (
-            method.id, method.title, method.order or ABSENT, observed(of_method.get(method.id)),
-            method.source, method.licence, method.extra,
-        )
-        for method in listed
-    ]  # fmt: skip
-    yours = [
-        (
-            name,
-            shortened(command, LONGEST_COMMAND),
-            "",
-            observed(of_method.get(name)),
-            "--run",
-            "",
-            "",
-        )
-        for name, command in programs.items()
-    ]
-    yours += [(row.method, "", "", "", "--candidates", "", "") for row in rows if row.kind == FILE]
+    # reversed: the first formulation, which is the usual one, is kept
+    measured = {order.method: order for order in reversed(orders(rows, bound_m))}
+    table = []
+    for name in dict.fromkeys(row.method for row in rows):
+        if name in METHODS:
+            method = METHODS[name]
+            declared = method.order or ABSENT
+            orders_shown = (declared, observed(measured.get(name)))
+            about = (method.source, method.licence, method.extra)
+            table.append((name, method.title, *orders_shown, *about))
+    for name, command in programs.items():
+        shown = shortened(command, LONGEST_COMMAND)
+        table.append((name, shown, "", observed(measured.get(name)), "--run", "", ""))
+    for row in rows:
+        if row.kind == FILE:
+            table.append((row.method, "", "", "", "--candidates", "", ""))
     columns = {
         "method": "",
         "": "prose",
@@ -163,7 +193,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
         "licence": "",
         "extra": "",
     }
-    return PageTable(columns, [*body, *yours]).html(TEXTS["orders"])
+    return PageTable(columns, table).html(TEXTS["orders"])
 
 
 def observed(order: ObservedOrder | None) -> str:
@@ -186,51 +216,60 @@ def _orders_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
 
 def text_table(document: dict[str, Any]) -> str:
     """Return rows, reasons of failures and main results as text for a terminal of 100 columns."""
-    rows, reference = rows_of(document), document["reference"]
+    rows = rows_of(document)
+    reference = document["reference"]
     bound_m = float(reference["bound_m"])
-    best = {row.key for row in front(rows, bound_m)}
-    measured, failed = [], []
-    for curve in curves(rows):
-        for row in curve.rows:
-            if not row.failed:
-                mark = "*" if row.key in best else ""
-                errors = number(row.error_m), transit_error(row), number(row.h_drift)
-                measured.append(
-                    (
-                        mark,
-                        curve.label,
-                        setting(row),
-                        *errors,
-                        cost(row),
-                        count(row.rhs_evaluations),
-                    )
-                )
-            else:
-                failed.append(("", curve.label, setting(row), row.status.words, row.reason))
-    columns = {"": "", "method": ""} | dict.fromkeys(
-        ("setting", "error m", "transits s", "h drift", "CPU s", "calls"), "number"
-    )
+    span = f"{document['scene']}: {document['t_end']:g} s"
     lines = [
-        f"{document['scene']}: {document['t_end']:g} s, reference {reference['level']}, bound {bound_m:.1e} m",
+        f"{span}, reference {reference['level']}, bound {bound_m:.1e} m",
         f"load: {busy(rows)}",
         "",
-        *PageTable(columns, measured).lines(),
+        *_measured_as_text(rows, bound_m),
         "",
-        f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span, so without its error (see --limit)",
+        f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span, so without its "
+        "error (see --limit)",
     ]
-    lost = {row.status for row in rows if row.failed}
+    failed = {row.status for row in rows if row.failed}
     if failed:
-        reasons = PageTable(
-            {"": "", "method": "", "setting": "number", "status": "", "reason": ""}, failed
-        ).lines()
-        lines += ["", "Failed:", *reasons, "", *advice(lost)]
-    return "\n".join([*lines, *_orders_as_text(rows, bound_m), "", *sentences(document)]) + "\n"
+        lines += ["", "Failed:", *_failed_as_text(rows), "", *advice(failed)]
+    lines += [*_orders_as_text(rows, bound_m), "", *sentences(document)]
+    return "\n".join(lines) + "\n"
+
+
+def _measured_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
+    """Return the rows that did not fail as lines of text."""
+    best = {row.key for row in front(rows, bound_m)}
+    table = []
+    for curve in curves(rows):
+        for row in curve.rows:
+            if row.failed:
+                continue
+            mark = "*" if row.key in best else ""
+            errors = (number(row.error_m), transit_error(row), number(row.h_drift))
+            costs_shown = (cost(row), count(row.rhs_evaluations))
+            table.append((mark, curve.label, setting(row), *errors, *costs_shown))
+    numbers = ("setting", "error m", "transits s", "h drift", "CPU s", "calls")
+    columns = {"": "", "method": ""} | dict.fromkeys(numbers, "number")
+    return PageTable(columns, table).lines()
+
+
+def _failed_as_text(rows: Sequence[Row]) -> list[str]:
+    """Return the rows that failed as lines of text, with their reasons."""
+    table = []
+    for curve in curves(rows):
+        for row in curve.rows:
+            if row.failed:
+                table.append(("", curve.label, setting(row), row.status.words, row.reason))
+    columns = {"": "", "method": "", "setting": "number", "status": "", "reason": ""}
+    return PageTable(columns, table).lines()
 
 
 def setting(row: Row | Cell) -> str:
-    """Return a row's setting with its unit; a dash for a file or a program that has none, 0; empty for None."""
-    if not row.setting:
-        return "" if row.setting is None else ABSENT
+    """Return a row's setting with its unit; a dash for a program without one; empty for None."""
+    if row.setting is None:
+        return ""
+    if row.setting == 0:
+        return ABSENT
     return tidy(row.setting) + {"step": " s", "precision": " bits"}.get(row.kind, "")
 
 
@@ -240,7 +279,7 @@ def number(value: float | None) -> str:
 
 
 def transit_error(row: Row) -> str:
-    """Return the error of a row's worst transit in s, or below what it is: not resolved; empty where none was taken."""
+    """Return the error of a row's worst transit in s, or the floor below which it is not resolved."""
     if row.transit_error_s is None and row.transit_floor_s is not None:
         return f"<{row.transit_floor_s:.1e}"
     return number(row.transit_error_s)
@@ -256,7 +295,8 @@ def cpu(value: float | None) -> str:
 
 def cost(row: Row) -> str:
     """Return a row's CPU seconds, marked if they are extrapolated."""
-    return f"{PART_MARK if row.status == Status.EXTRAPOLATED else ''}{cpu(row.cpu_s)}"
+    mark = PART_MARK if row.status == Status.EXTRAPOLATED else ""
+    return f"{mark}{cpu(row.cpu_s)}"
 
 
 def count(value: int | None) -> str:
@@ -265,24 +305,27 @@ def count(value: int | None) -> str:
 
 
 def busy(rows: Sequence[Row | Cell]) -> str:
-    """Return the load while rows were measured, and the spread of repeats; and that the machine was busy if it was.
+    """Return the load while rows were measured, the spread of repeats, and a warning if it is needed.
 
-    Rows that were measured earlier, and taken from a journal, count with the load of their time.
+    Rows from a journal count with the load at the time when they were measured.
     """
     loads = [row.load for row in rows if row.load is not None]
-    spreads = [
-        row.cpu_spread for row in rows if isinstance(row, Row) and row.cpu_spread is not None
-    ]
-    parts = []
+    of_study = [row for row in rows if isinstance(row, Row)]
+    spreads = [row.cpu_spread for row in of_study if row.cpu_spread is not None]
+    load = median(loads) if loads else 0.0
+    spread = median(spreads) if spreads else 0.0
+    measured = []
     if loads:
-        parts.append(
-            f"{median(loads):.1f} processes for each core (median), {max(loads):.1f} at most"
-        )
+        measured.append(f"{load:.1f} processes for each core (median), {max(loads):.1f} at most")
     if spreads:
-        usual, most = (f"{100 * spread:.0f} %" for spread in (median(spreads), max(spreads)))
-        parts.append(f"repeats of a run differ by {usual} (median), {most} at most")
-    text = "; ".join(parts) or "not known"
+        most = max(spreads)
+        measured.append(
+            f"repeats of a run differ by {100 * spread:.0f} % (median), {100 * most:.0f} % at most"
+        )
+    text = "; ".join(measured) or "not known"
     doubt = "ratios of costs drift too, most where vectors are wide (AVX-512)"
-    if loads and median(loads) > BUSY:
+    if load > BUSY:
         return f"{text}. The machine was busy: {doubt}"
-    return f"{text}. Costs were uneven: {doubt}" if spreads and median(spreads) > SPREAD else text
+    if spread > SPREAD:
+        return f"{text}. Costs were uneven: {doubt}"
+    return text

@@ -16,7 +16,7 @@ from string import Template
 from typing import Any
 from xml.etree import ElementTree
 
-from reference.errors import usable
+from reference.errors import counted, usable
 from reference.plain_text import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
@@ -25,14 +25,17 @@ from ..score.verdict import REFUSED, Outcome, percent
 from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files
 from .page import Html, PageTable, findings, page, paragraph, section, text
 
-JSON, BADGE = "suite.json", "badge.svg"
+JSON = "suite.json"
+BADGE = "badge.svg"
 # of rows.csv
 KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")
 SUMMARY = "GITHUB_STEP_SUMMARY"
 SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}  # from best to worst
 LABEL = "Foucault pendulum"
 DISAGREES = 1  # the exit status of what was judged and did not pass
-GOOD, BAD = "#2f7d32", "#b3261e"  # white text on them has a contrast above 5 to 1
+# white text on these has a contrast above 5 to 1
+GOOD = "#2f7d32"
+BAD = "#b3261e"
 _WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
 _MARGIN = 8
 
@@ -57,12 +60,11 @@ def _agreeing(outcomes: Sequence[Outcome]) -> int:
 
 def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
     """Return the least digits of the scenes that agree, rounded down to a tenth; None if none does."""
-    digits = [
-        outcome.score.errors.digits
-        for outcome in outcomes
-        if outcome.score is not None and outcome.score.agrees
-    ]
-    return math.floor(10 * min(digits)) / 10 if digits else None
+    scores = [outcome.score for outcome in outcomes if outcome.score is not None]
+    digits = [score.errors.digits for score in scores if score.agrees]
+    if not digits:
+        return None
+    return math.floor(10 * min(digits)) / 10
 
 
 def check(out: Path) -> None:
@@ -73,21 +75,23 @@ def check(out: Path) -> None:
 def write(outcomes: Sequence[Outcome], out: Path) -> None:
     """Write page, badge, JSON and CSV into a folder."""
     document = suite_document(outcomes)
-    rows = PageTable.of_records(KEYS, document["rows"]).csv()
-    write_files(
-        out,
-        {CSV: rows, JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)},
-    )
+    contents = {
+        CSV: PageTable.of_records(KEYS, document["rows"]).csv(),
+        JSON: json_text(document),
+        BADGE: badge(outcomes),
+        PAGE: page_text(outcomes),
+    }
+    write_files(out, contents)
 
 
 def message(outcomes: Sequence[Outcome]) -> str:
     """Return what the badge says."""
-    scenes = (
-        f"{_agreeing(outcomes)} of {len(outcomes)} {'scene' if len(outcomes) == 1 else 'scenes'}"
-    )
+    facts = [f"{_agreeing(outcomes)} of {counted(len(outcomes), 'scene')}"]
     digits = _fewest_digits(outcomes)
-    middle = "" if digits is None else f" · {digits:.1f} digits"
-    return f"{scenes}{middle} · data {DATA_VERSION}"
+    if digits is not None:
+        facts.append(f"{digits:.1f} digits")
+    facts.append(f"data {DATA_VERSION}")
+    return " · ".join(facts)
 
 
 def badge(outcomes: Sequence[Outcome]) -> str:
@@ -95,15 +99,19 @@ def badge(outcomes: Sequence[Outcome]) -> str:
     right = message(outcomes)
     title = escape(f"{LABEL}: {right}")
     colour = GOOD if _agreeing(outcomes) == len(outcomes) else BAD
-    widths = [round(len(words) * _WIDTH) for words in (LABEL, right)]
-    first, whole = widths[0] + 2 * _MARGIN, sum(widths) + 4 * _MARGIN
-    texts = "".join(
-        f'<text x="{x}" y="14" textLength="{width}">{escape(words)}</text>'
-        for x, width, words in ((_MARGIN, widths[0], LABEL), (first + _MARGIN, widths[1], right))
-    )
-    places = {"first": first, "second": whole - first, "whole": whole}
+    label_width = round(len(LABEL) * _WIDTH)
+    message_width = round(len(right) * _WIDTH)
+    first = label_width + 2 * _MARGIN
+    second = message_width + 2 * _MARGIN
+    texts = _badge_text(_MARGIN, label_width, LABEL)
+    texts += _badge_text(first + _MARGIN, message_width, right)
+    places = {"first": first, "second": second, "whole": first + second}
     drawing = files(__package__).joinpath("badge.svg").read_text(encoding="utf-8")
     return Template(drawing).substitute(places, title=title, colour=colour, texts=texts)
+
+
+def _badge_text(x: int, width: int, words: str) -> str:
+    return f'<text x="{x}" y="14" textLength="{width}">{escape(words)}</text>'
 
 
 def page_text(outcomes: Sequence[Outcome]) -> str:
@@ -143,10 +151,13 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
     score = outcome.score
     if score is None:
         return outcome.scene, outcome.verdict, "", "", "", "", "", outcome.name
-    errors, transits = score.errors, score.transits
+    errors = score.errors
+    transits = score.transits
     matched = ""
     if transits is not None:
-        matched = f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra"
+        missed = len(transits.missed)
+        extra = len(transits.extra)
+        matched = f"{transits.matched} matched, {missed} missed, {extra} extra"
     numbers = (
         percent(score.covered),
         f"{errors.max_m:.2g} m",
@@ -159,11 +170,16 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
 def annotation(outcome: Outcome) -> str:
     """Return the workflow command that shows an outcome, with the verdict and what is known of its reason."""
     passes = outcome.exit_status == 0
-    lines = _main_lines(outcome)[: 1 if passes and outcome.since is None else None]
-    place = f"title={_property(f'foucault {outcome.scene}')}"
-    if os.path.isfile(outcome.name):  # a program has none, to which GitHub could lead
+    kind = "notice" if passes else "error"
+    lines = _main_lines(outcome)
+    if passes and outcome.since is None:
+        lines = lines[:1]
+    title = _property(f"foucault {outcome.scene}")
+    place = f"title={title}"
+    if os.path.isfile(outcome.name):  # not a program: GitHub can link to it
         place = f"file={_property(outcome.name)},{place}"
-    return f"::{'notice' if passes else 'error'} {place}::{_data(chr(10).join(lines))}"
+    content = _data("\n".join(lines))
+    return f"::{kind} {place}::{content}"
 
 
 def _data(text: str) -> str:
@@ -227,18 +243,18 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
     for outcome in outcomes:
         timing = None if outcome.score is None else outcome.score.timing
         fields = {"classname": f"foucault.{outcome.scene}", "name": outcome.name}
-        case = ElementTree.SubElement(
-            suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {})
-        )
+        if timing:
+            fields["time"] = f"{timing.wall_s:.3f}"
+        case = ElementTree.SubElement(suite, "testcase", fields)
         lines = [plain_lines(line) for line in outcome.lines]
         if outcome.exit_status == 0:
             result = ElementTree.SubElement(case, "system-out")
         else:
             word = "failure" if outcome.exit_status == DISAGREES else "error"
-            result = ElementTree.SubElement(
-                case, word, {"message": lines[0 if outcome.since is None else 1]}
-            )
+            message_line = lines[0] if outcome.since is None else lines[1]
+            result = ElementTree.SubElement(case, word, {"message": message_line})
         result.text = "\n".join(lines)
     ElementTree.indent(root)
-    document = f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
+    xml = ElementTree.tostring(root, encoding="unicode")
+    document = f'<?xml version="1.0" encoding="UTF-8"?>\n{xml}\n'
     write_file(path, document, "--junit")

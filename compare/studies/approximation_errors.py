@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cache
 
 import numpy as np
 
@@ -64,12 +64,12 @@ class ReferenceMotion:
     """
 
     def __init__(self, scene: Scene, t_end: float, marks: Iterable[float] = ()) -> None:
-        self.scene, self.gauge = scene, gauge_of(scene)
+        self.scene = scene
+        self.gauge = gauge_of(scene)
         period = t_end / _SWINGS if self.gauge is None else min(self.gauge.period, t_end)
         fine = np.arange(0.0, t_end, max(period / _PER_SWING, t_end / _MOST))
-        self.times: Array = np.unique(
-            np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end]))
-        )
+        within = [t for t in marks if 0 <= t <= t_end]
+        self.times: Array = np.unique(np.concatenate((fine, [t_end], within)))
         self.rows = trajectory(scene, self.times)
         self.plane = self._plane(self.gauge, self.rows)
 
@@ -98,10 +98,11 @@ class ReferenceMotion:
         except FoucaultError as error:
             return [TimeRow(motion.id, t, None, None, *failure(error)) for t in marks]
         places = np.searchsorted(self.times, np.array(marks) * (1 + 1e-12), side="right") - 1
-        rows = zip(marks, *(error[places].tolist() for error in errors.values()), strict=True)
+        positions = errors["error_m"][places].tolist()
+        planes = errors["plane_error_arcsec"][places].tolist()
         return [
             TimeRow(motion.id, t, position, None if np.isnan(plane) else plane)
-            for t, position, plane in rows
+            for t, position, plane in zip(marks, positions, planes, strict=True)
         ]
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
@@ -125,24 +126,20 @@ def error_table(
 
 
 def quantity_table(scene: Scene) -> list[QuantityRow]:
-    """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
-    rows, truths = [], dict[Any, Any]()
+    """Return approximate numbers beside the true ones, to 15 digits: frequency, and so on."""
+    rows = []
+    truth_of = cache(lambda truth: truth(scene))
     for approximation in quantities().values():
+        name = approximation.id
+        unit = approximation.unit
         try:
             value = approximation.value(scene)
-            if approximation.truth not in truths:
-                truths[approximation.truth] = approximation.truth(scene)
+            truth = value.context.mpf(truth_of(approximation.truth))
         except FoucaultError as error:
-            rows.append(
-                QuantityRow(approximation.id, None, None, approximation.unit, None, *failure(error))
-            )
-        else:
-            truth = value.context.mpf(truths[approximation.truth])
-            relative = float(abs(value / truth - 1)) if truth else None
-            printed, printed_truth = (
-                str(value.context.nstr(number, 15)) for number in (value, truth)
-            )
-            rows.append(
-                QuantityRow(approximation.id, printed, printed_truth, approximation.unit, relative)
-            )
+            rows.append(QuantityRow(name, None, None, unit, None, *failure(error)))
+            continue
+        relative_error = float(abs(value / truth - 1)) if truth else None
+        printed = str(value.context.nstr(value, 15))
+        printed_truth = str(value.context.nstr(truth, 15))
+        rows.append(QuantityRow(name, printed, printed_truth, unit, relative_error))
     return rows

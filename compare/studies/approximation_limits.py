@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import groupby
 
 import numpy as np
@@ -25,9 +26,9 @@ SWEEP_S = 3600.0
 LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
 UNITS: dict[str, str] = {"time": "s", "amplitude": "m", "latitude": "degrees", "length": "m"}
 _DIGITS = 40  # of a release as it is written into a scene
-# extra times at which limits over time are looked for, in geometric progression from the first of them in s, so that
-# a limit that is exceeded within the first swing is located inside it
-_FIRST_S, _EXTRA_TIMES = 1e-3, 400
+# Extra times in geometric progression: they locate a limit that is exceeded within the first swing.
+_FIRST_S = 1e-3
+_EXTRA_TIMES = 400
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,9 @@ def sweep_values(scene: Scene, over: str) -> Sequence[float]:
     """Return a sweep's values: amplitudes of 1e-5 to 0.1 l, latitudes every 15°, or lengths of 1 to 200 m."""
     if over == "amplitude":
         return [float(v) for v in np.geomspace(1e-5, 0.1, 9) * float(scene.exact.length)]
-    return [float(v) for v in range(-90, 91, 15)] if over == "latitude" else LENGTHS
+    if over == "latitude":
+        return [float(v) for v in range(-90, 91, 15)]
+    return LENGTHS
 
 
 def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[SweepRow]:
@@ -90,7 +93,8 @@ def limits(
     """
     if over == "time":
         return _time_limits(scene, chosen, t_end)
-    rows, limit_rows = sweep(scene, chosen, over, t_end), []
+    rows = sweep(scene, chosen, over, t_end)
+    limit_rows = []
     if swept is not None:
         swept[over] = rows
     for motion in chosen:
@@ -105,27 +109,20 @@ def limits(
 
 
 def _time_limits(scene: Scene, chosen: Iterable[Motion], t_end: float) -> list[LimitRow]:
-    truth, rows = ReferenceMotion(scene, t_end, np.geomspace(_FIRST_S, t_end, _EXTRA_TIMES)), []
+    truth = ReferenceMotion(scene, t_end, np.geomspace(_FIRST_S, t_end, _EXTRA_TIMES))
+    rows = []
     for motion in chosen:
+        row = partial(LimitRow, motion.id, "time", "s")
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
-            rows += [
-                LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS
-            ]
+            rows += [row(name, (), *failure(error)) for name, _, _ in LIMITS]
             continue
         for name, quantity, limit in LIMITS:
-            # before the first above it
-            last = int(np.logical_and.accumulate(errors[quantity] <= limit).sum()) - 1
-            rows.append(
-                LimitRow(
-                    motion.id,
-                    "time",
-                    "s",
-                    name,
-                    ((0.0, float(truth.times[last])),) if last > 0 else (),
-                )
-            )
+            within = np.logical_and.accumulate(errors[quantity] <= limit)
+            last = int(within.sum()) - 1
+            good = ((0.0, float(truth.times[last])),) if last > 0 else ()
+            rows.append(row(name, good))
     return rows
 
 
@@ -138,20 +135,30 @@ def _below(
 
     def crossing(i: int) -> float:
         """Return the value between values i and i + 1 at which the error equals the limit."""
-        a, b = errors[i], errors[i + 1]
-        if a is None or b is None:
-            return values[i] if a is not None else values[i + 1]
-        first, second = (np.log(max(error, np.finfo(float).tiny)) for error in (a, b))
-        share = (np.log(limit) - first) / (second - first)
-        return float(back(scale(values[i]) + share * (scale(values[i + 1]) - scale(values[i]))))
+        a = errors[i]
+        b = errors[i + 1]
+        if a is None:
+            return values[i + 1]
+        if b is None:
+            return values[i]
+        tiny = np.finfo(float).tiny
+        log_a = np.log(max(a, tiny))
+        log_b = np.log(max(b, tiny))
+        fraction = (np.log(limit) - log_a) / (log_b - log_a)
+        start = scale(values[i])
+        end = scale(values[i + 1])
+        return float(back(start + fraction * (end - start)))
 
     good = []
     for is_good, group in groupby(range(len(values)), inside.__getitem__):
-        if is_good:
-            indices = list(group)
-            low = crossing(indices[0] - 1) if indices[0] > 0 else values[0]
-            high = crossing(indices[-1]) if indices[-1] < len(values) - 1 else values[-1]
-            good.append((low, high))
+        if not is_good:
+            continue
+        indices = list(group)
+        first = indices[0]
+        last = indices[-1]
+        low = crossing(first - 1) if first > 0 else values[0]
+        high = crossing(last) if last < len(values) - 1 else values[-1]
+        good.append((low, high))
     return tuple(good)
 
 
@@ -172,11 +179,14 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
     if over == "latitude" or (over == "length" and scene.exact.position is None):
         return scene.with_values({over: text})
     case = PaperCase.of_scene(scene)
-    (x, y), (vx, vy), target = case.position[:2], case.velocity[:2], case.ctx.mpf(text)
+    x, y = case.position[:2]
+    vx, vy = case.velocity[:2]
+    target = case.ctx.mpf(text)
     document = scene.model_dump(exclude_none=True)
     if over == "length":
         document["pendulum"]["length"] = text
-        centre_y, ratio = 0, target / case.length
+        centre_y = 0
+        ratio = target / case.length
     else:
         centre_y = case.ctx.mpf(case.rest[1]) * case.length
         amplitude = case.ctx.hypot(x, y - centre_y)

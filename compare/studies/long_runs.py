@@ -64,15 +64,22 @@ class LongRun:
     @property
     def exponent(self) -> float | None:
         """The exponent p of error ∝ t^p, fitted to the largest error so far; None if too few errors were measured."""
-        t, error = np.array(self.t), np.maximum.accumulate(np.array(self.error_m or [0.0]))
-        fitted = (t >= FROM * t[-1]) & (error > 0) if len(t) else np.zeros(0, dtype=bool)
-        return power_of_time(t[fitted], error[fitted], PARTS) if fitted.sum() >= PARTS else None
+        if not self.t:
+            return None
+        t = np.array(self.t)
+        largest = np.maximum.accumulate(np.array(self.error_m))
+        fitted = (t >= FROM * t[-1]) & (largest > 0)
+        if fitted.sum() < PARTS:
+            return None
+        return power_of_time(t[fitted], largest[fitted], PARTS)
 
     @property
     def law(self) -> str | None:
         """The law nearest to the exponent."""
         exponent = self.exponent
-        return None if exponent is None else min(LAWS, key=lambda word: abs(LAWS[word] - exponent))
+        if exponent is None:
+            return None
+        return min(LAWS, key=lambda word: abs(LAWS[word] - exponent))
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document."""
@@ -118,19 +125,26 @@ class _LongRuns(OnScene[Item, LongRun]):
 
     def measure(self, item: Item) -> LongRun:
         name, formulation, setting = item
-        run, method, truth = partial(LongRun, *item), METHODS[name], self.truth
+        run = partial(LongRun, *item)
+        method = METHODS[name]
         missing = available(method)
         if missing is not None:
             return run(Status.NOT_INSTALLED, missing)
+        truth = self.truth
         try:
-            outcome, cpu_s = timed(
-                method.prepare(Problem.of(self.scene, formulation, truth.times), setting)
-            )
+            problem = Problem.of(self.scene, formulation, truth.times)
+            outcome, cpu_s = timed(method.prepare(problem, setting))
         except FAILURES as error:
             return run(*failure(error))
-        errors = truth.position_errors(outcome)
-        t, bound_m = truth.times[: len(errors)], float(truth.golden.manifest.bounds.position_m)
-        return run(outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m)
+        errors_m = truth.position_errors(outcome)
+        return run(
+            outcome.status,
+            outcome.reason,
+            t=truth.times[: len(errors_m)].tolist(),
+            error_m=errors_m.tolist(),
+            cpu_s=cpu_s,
+            bound_m=float(truth.golden.manifest.bounds.position_m),
+        )
 
     def failed(self, item: Item, status: Status, reason: str) -> LongRun:
         return LongRun(*item, status, reason)

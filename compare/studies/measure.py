@@ -14,10 +14,10 @@ import math
 import os
 import statistics
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -62,9 +62,14 @@ class Bench:
 
         The formulation may be None: the first of the method's that can describe the motion.
         """
-        inputs, load = self.scene.inputs, load_per_core()
         base = Row(
-            method.id, formulation or "", setting, method.setting, inputs, Status.OK, load=load
+            method.id,
+            formulation or "",
+            setting,
+            method.setting,
+            self.scene.inputs,
+            Status.OK,
+            load=load_per_core(),
         )
         missing = available(method)
         if missing is not None:
@@ -77,51 +82,54 @@ class Bench:
             return replace(base, status=status, reason=reason)
 
     def _measured(self, base: Row, method: Method) -> Row:
+        """Measure a short probe, then a longer part if the whole may be too long, then the whole."""
         times = self.truth.times
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
-        probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
-        base, outcome, costs_s = self._run(
-            base, method, probe_times, repeats=2, budget_s=2 * self.limit_s / PROBE
-        )
-        probe_s = min(costs_s)  # the first run warms up
-        expected_s, rows = probe_s * float(times[-1] / probe_times[-1]), min(len(times), longest)
-        if outcome.status != Status.OK or rows <= len(probe_times) or probe_s > self.limit_s:
-            return self._finished(base, method, outcome, [probe_s], probe_times, expected_s)
+        rows = min(len(times), longest)
+
+        probe_rows = min(longest, max(LEAST_ROWS, len(times) // PROBE))
+        probe = self._run(base, method, probe_rows, repeats=2, budget_s=2 * self.limit_s / PROBE)
+        probe_s = min(probe.costs_s)  # the first run warms up
+        probe = replace(probe, costs_s=[probe_s])
+        expected_s = probe_s * float(times[-1] / probe.times[-1])
+        if not probe.ended or rows <= probe_rows or probe_s > self.limit_s:
+            return self._finished(probe, method, expected_s)
+
+        row = probe.row
         if expected_s > self.limit_s:
-            part = times[
-                : max(2 * len(probe_times), int(self.limit_s / 4 / expected_s * len(times)))
-            ]
-            if len(part) < rows:
-                base, outcome, costs_s = self._run(base, method, part, repeats=1)
-                left = float((times[-1] - part[-1]) / (part[-1] - probe_times[-1]))
-                expected_s = costs_s[0] + max(0.0, costs_s[0] - probe_s) * left
-                if outcome.status != Status.OK or expected_s > self.limit_s:
-                    return self._finished(base, method, outcome, costs_s, part, expected_s)
-        base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
-        share = float(times[-1] / times[rows - 1])
-        return self._finished(
-            base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share
-        )
+            rows_within_limit = int(self.limit_s / 4 / expected_s * len(times))
+            part_rows = max(2 * probe_rows, rows_within_limit)
+            if part_rows < rows:
+                part = self._run(row, method, part_rows, repeats=1)
+                part_s = part.costs_s[0]
+                remaining = float((times[-1] - part.times[-1]) / (part.times[-1] - probe.times[-1]))
+                expected_s = part_s + max(0.0, part_s - probe_s) * remaining
+                if not part.ended or expected_s > self.limit_s:
+                    return self._finished(part, method, expected_s)
+                row = part.row
+
+        run = self._run(row, method, rows, self.repeats)
+        share = float(times[-1] / run.times[-1])
+        return self._finished(run, method, statistics.median(run.costs_s) * share)
 
     def _run(
-        self, base: Row, method: Method, times: Array, repeats: int, budget_s: float = REPEAT_S
-    ) -> tuple[Row, RunOutcome, list[float]]:
-        """Run a method to the end of `times`; return the row with what compiling took, the outcome, and CPU seconds.
+        self, base: Row, method: Method, rows: int, repeats: int, budget_s: float = REPEAT_S
+    ) -> _Run:
+        """Run a method over the first rows of the truth.
 
-        It is repeated while all runs take less than `budget_s`, and if it came to its end.
+        The run is repeated if it reached its end, as long as all runs take less than `budget_s`.
         """
+        times = self.truth.times[:rows]
         started = _spent_s()
         work = method.prepare(Problem.of(self.scene, base.formulation, times), base.setting)
-        base = replace(base, compile_s=(base.compile_s or 0.0) + _spent_s() - started)
+        compile_s = _spent_s() - started
         outcome, cpu_s = timed(work)
         costs_s = [cpu_s]
-        while (
-            outcome.status == Status.OK
-            and len(costs_s) < repeats
-            and sum(costs_s) + cpu_s < budget_s
-        ):
-            costs_s.append(timed(work)[1])
-        return base, outcome, costs_s
+        if outcome.status == Status.OK:
+            while len(costs_s) < repeats and sum(costs_s) + cpu_s < budget_s:
+                costs_s.append(timed(work)[1])
+        row = replace(base, compile_s=(base.compile_s or 0.0) + compile_s)
+        return _Run(row, outcome, costs_s, times)
 
     def _row_of(self, base: Row, outcome: RunOutcome, cpu_s: float) -> Row:
         """Return the row with what a run tells of itself, however far it came."""
@@ -135,45 +143,30 @@ class Bench:
             rhs_evaluations=outcome.rhs_evaluations,
         )
 
-    def _finished(
-        self,
-        base: Row,
-        method: Method,
-        outcome: RunOutcome,
-        costs_s: Sequence[float],
-        times: Array,
-        whole_s: float,
-    ) -> Row:
-        """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span.
-
-        Of one that did not come to that end, it is what the run tells of itself.
-        """
-        if outcome.status != Status.OK:
-            return self._row_of(base, outcome, costs_s[0])
-        whole = len(times) == len(self.truth.times)
-        errors = self.truth.position_errors(outcome)
-        cpu_s = statistics.median(costs_s)
-        reason = (
-            ""
-            if whole
-            else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
-        )
-        row = replace(
-            self._row_of(base, outcome, cpu_s if whole else whole_s),
-            status=Status.OK if whole else Status.EXTRAPOLATED,
-            reason=reason,
-            error_m=float(errors.max()) if whole else None,
-            end_error_m=float(errors[-1]),
-            h_drift=h_drift(self.scene, outcome),
-            cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s
-            if cpu_s and len(costs_s) > 1
-            else None,
-        )
-        return (
-            self._with_transits(row, method)
-            if self.transits and whole and cpu_s <= TRANSIT_S
-            else row
-        )
+    def _finished(self, run: _Run, method: Method, whole_s: float) -> Row:
+        """Return the row of a run; `whole_s` are the CPU seconds expected for the whole span."""
+        if not run.ended:
+            return self._row_of(run.row, run.outcome, run.costs_s[0])
+        cpu_s = statistics.median(run.costs_s)
+        errors_m = self.truth.position_errors(run.outcome)
+        spread = None
+        if cpu_s and len(run.costs_s) > 1:
+            spread = (max(run.costs_s) - min(run.costs_s)) / cpu_s
+        measured: dict[str, Any] = {
+            "end_error_m": float(errors_m[-1]),
+            "h_drift": h_drift(self.scene, run.outcome),
+            "cpu_spread": spread,
+        }
+        end_s = self.truth.times[-1]
+        if len(run.times) < len(self.truth.times):
+            reason = f"measured to t = {run.times[-1]:g} s; the cost is scaled to {end_s:g} s"
+            row = self._row_of(run.row, run.outcome, whole_s)
+            return replace(row, status=Status.EXTRAPOLATED, reason=reason, **measured)
+        row = self._row_of(run.row, run.outcome, cpu_s)
+        row = replace(row, reason="", error_m=float(errors_m.max()), **measured)
+        if self.transits and cpu_s <= TRANSIT_S:
+            return self._with_transits(row, method)
+        return row
 
     def _with_transits(self, row: Row, method: Method) -> Row:
         """Return the row with the largest error of a transit's time, or as failed if a transit is missed."""
@@ -188,13 +181,37 @@ class Bench:
         gaps = np.diff(transits, prepend=0.0, append=np.inf)
         missed = errors_s > MISSED * np.minimum(gaps[1:], gaps[:-1])
         if missed.any():
-            first = float(transits[np.argmax(missed)])
-            text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
+            first_s = float(transits[np.argmax(missed)])
+            text = (
+                f"{int(missed.sum())} of {len(transits)} transits are missed, the first at "
+                f"t = {first_s:.6f} s"
+            )
             return replace(row, status=Status.MISSED_TRANSITS, reason=text)
-        largest = float(errors_s.max())
-        return replace(
-            row, transit_error_s=largest if largest > floor_s else None, transit_floor_s=floor_s
-        )
+        largest_s = float(errors_s.max())
+        resolved_s = largest_s if largest_s > floor_s else None
+        return replace(row, transit_error_s=resolved_s, transit_floor_s=floor_s)
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A run of a method over a part of the span.
+
+    Attributes:
+        row: the row so far, with the CPU seconds of compiling.
+        outcome: of the first run.
+        costs_s: CPU seconds of each repeat.
+        times: grid times of the output, in s.
+    """
+
+    row: Row
+    outcome: RunOutcome
+    costs_s: list[float]
+    times: Array
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run reached the end of its times."""
+        return self.outcome.status == Status.OK
 
 
 @dataclass(frozen=True)

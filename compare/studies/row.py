@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -135,44 +135,44 @@ class GridTruth:
 
     def position_errors(self, outcome: RunOutcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
-        columns = [_column(outcome, name) for name in "xyz"]
-        off = [
-            difference(column, true[: len(column)])
-            for column, true in zip(columns, self.exact, strict=True)
-        ]
-        return np.asarray(np.linalg.norm(off, axis=0))
+        errors = []
+        for name, truth in zip("xyz", self.exact, strict=True):
+            column = _column(outcome, name)
+            errors.append(difference(column, truth[: len(column)]))
+        return np.asarray(np.linalg.norm(errors, axis=0))
 
     def transit_errors(self, scene: Scene, outcome: RunOutcome) -> tuple[Array, float]:
-        """Return the error of each transit's time in s, in any number type, and what is resolved of it in s.
+        """Return the error of each transit's time in s, and the largest floor of these errors in s.
 
-        The error is that of one Newton step from the state at the true time. What is resolved is limited by the
-        rounding of its terms, and by what Newton's step leaves out.
+        The error is estimated by one Newton step from the state at the true time. Its floor is the
+        rounding of its terms, and the second-order term that Newton's step leaves out.
 
         Args:
             scene: its inputs read as the method read them.
             outcome: of a run with output at t = 0 and at `transits`.
         """
-        states, vx = (
-            outcome.states[1:],
-            np.array([float(part) for part in _column(outcome, "vx")[1:]]),
-        )
         k = constants_in_double(scene.exact)
-        n, v = (states[:, parts] / k.length for parts in (slice(0, 3), slice(3, 6)))
+        n = outcome.states[1:, 0:3] / k.length
+        v = outcome.states[1:, 3:6] / k.length
         a = np.array(np.broadcast_arrays(*acceleration(tuple(n.T), tuple(v.T), k))).T
-        nudge = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())  # s, in which little changes
-        ahead, behind = (
-            acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]
-            for dt in (nudge, -nudge)
-        )
-        # of the doubles, in s
-        away = difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])
+
+        # the derivative of the acceleration, by central differences
+        dt_s = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())
+        ahead = acceleration(tuple((n + dt_s * v).T), tuple((v + dt_s * a).T), k)[0]
+        behind = acceleration(tuple((n - dt_s * v).T), tuple((v - dt_s * a).T), k)[0]
+        jerk = (ahead - behind) / (2 * dt_s)
+
+        # how far the doubles at which the method has output are from the transits
+        exact_times = self.golden.transits.exact("t")[: len(self.transits)]
+        offsets_s = difference(self.transits, exact_times)
+        vx = np.array([float(number) for number in _column(outcome, "vx")[1:]])
         with np.errstate(divide="ignore", invalid="ignore"):
-            errors_s = np.abs(away - vx / (a[:, 0] * k.length))
-            curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))
-        floors = _ROUNDINGS * np.finfo(float).eps * np.abs(away) + np.where(
-            np.isfinite(curved), curved, 0.0
-        )
-        return np.where(np.isfinite(errors_s), errors_s, np.inf), float(floors.max())
+            errors_s = np.abs(offsets_s - vx / (a[:, 0] * k.length))
+            second_order_s = offsets_s**2 * np.abs(jerk / (2 * a[:, 0]))
+        second_order_s[~np.isfinite(second_order_s)] = 0.0
+        errors_s[~np.isfinite(errors_s)] = np.inf
+        floors_s = _ROUNDINGS * np.finfo(float).eps * np.abs(offsets_s) + second_order_s
+        return errors_s, float(floors_s.max())
 
 
 def h_drift(scene: Scene, outcome: RunOutcome) -> float | None:
@@ -183,17 +183,23 @@ def h_drift(scene: Scene, outcome: RunOutcome) -> float | None:
     ctx = context(80 if outcome.exact is None else outcome.exact.bits + 64)
     k = constants(scene.exact, ctx)
     columns = [_column(outcome, name) for name in COLUMNS]
-    values, kinetic = [], ctx.mpf(0)
+
+    def number(value: Fraction | float) -> Any:
+        return to_mpf(value, ctx) if isinstance(value, Fraction) else ctx.mpf(float(value))
+
+    values = []
+    largest_kinetic = ctx.mpf(0)
     for i in np.unique(np.linspace(0, len(columns[0]) - 1, H_ROWS).astype(int)):
-        state = [column[i] for column in columns]
-        numbers = [
-            (to_mpf(x, ctx) if isinstance(x, Fraction) else ctx.mpf(float(x))) / k.length
-            for x in state
-        ]
-        n, v = tuple(numbers[:3]), tuple(numbers[3:])
+        state = [number(column[i]) / k.length for column in columns]
+        n = tuple(state[:3])
+        v = tuple(state[3:])
         values.append(invariant(n, v, k))
-        kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
-    return float(max(abs(value - values[0]) for value in values) / kinetic) if kinetic else None
+        kinetic = sum(component**2 for component in v) * k.length**2 / 2
+        largest_kinetic = max(largest_kinetic, kinetic)
+    if not largest_kinetic:
+        return None
+    drift = max(abs(value - values[0]) for value in values)
+    return float(drift / largest_kinetic)
 
 
 def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
@@ -213,8 +219,6 @@ def difference(a: Column, b: Column) -> Array:
 
 def _column(outcome: RunOutcome, name: str) -> Column:
     """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
-    return (
-        outcome.states[:, COLUMNS.index(name)]
-        if outcome.exact is None
-        else outcome.exact.exact(name)
-    )
+    if outcome.exact is None:
+        return outcome.states[:, COLUMNS.index(name)]
+    return outcome.exact.exact(name)

@@ -37,6 +37,7 @@ SWINGS = 64  # longer scenes are cut to this many small swings; `long_runs` cove
 WRONG = 1000  # an error above this multiple of the requested one is a failure
 LOST_BITS = 20  # a method of fixed precision may lose this many bits to rounding
 TRUTH_DIGITS = 34  # six more than are asked of the finest method
+_EXACT = 40.0  # digits of a run without any error
 
 # method or program, formulation and setting as the method declares them, and the scene
 Item = tuple[str, str | None, float, str]
@@ -87,13 +88,14 @@ def cut(scene: Scene) -> Scene:
     strength = math.hypot(float(k.pull[1]), float(k.pull[2]))
     swing = 2 * math.pi / math.sqrt(strength) if strength else math.inf
     scene = on_doubles(scene.with_values(["inputs=binary64", "run.transits=false"]))
-    step, whole = scene.exact.grid_step, int(scene.exact.t_end / scene.exact.grid_step)
-    rows = max(2, min(whole, int(SWINGS * swing / float(step)))) if strength else whole
-    return (
-        scene.with_values([f"run.t_end={Decimal(scene.run.grid_step) * rows}"])
-        if rows < whole
-        else scene
-    )
+    step = scene.exact.grid_step
+    all_rows = int(scene.exact.t_end / step)
+    if not strength:
+        return scene
+    rows = max(2, min(all_rows, int(SWINGS * swing / float(step))))
+    if rows >= all_rows:
+        return scene
+    return scene.with_values([f"run.t_end={Decimal(scene.run.grid_step) * rows}"])
 
 
 def stability(
@@ -120,26 +122,15 @@ def stability(
     Raises:
         InputError: an unknown scene or method, or one that declares no such runs.
     """
+    names = default_scenes() if scenes is None else scenes
+    cuts = {name: cut(load_scene(name)) for name in names}
+    problems, unsolved = _solved(cuts, solving)
+
     commands = dict(programs or {})
     runs = [*declared(methods, "stability"), *((name, None, 1 / STEPS) for name in commands)]
-    cuts = {
-        name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)
-    }
-    problems: Problems = {}
-    unsolved: dict[str, str] = {}
-    for count, (name, scene) in enumerate(cuts.items()):
-        moved = solving and partial(_moved, solving, count, len(cuts), float(scene.exact.t_end))
-        try:
-            golden = golden_of(scene, TRUTH_DIGITS, report=moved, grid=True)
-            times = GridTruth(golden, float(scene.exact.t_end)).times
-            states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
-            problems[name] = scene, golden.path, character(scene, times, states)
-        except UnreachableError as error:
-            unsolved[name] = f"The reference cannot solve it: {error}"
-        if solving is not None:
-            solving(count + 1, len(cuts))
     items: list[Item] = [(*run, name) for run in runs for name in cuts]
     solved = [item for item in items if item[-1] in problems]
+
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
     recipe = [limit_s, SWINGS, orders]  # orders decide the digits asked for
     cells = _Cells(recipe, PATIENCE * limit_s, commands, problems, limit_s)
@@ -151,11 +142,31 @@ def stability(
     ]
 
 
-def _moved(
-    solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float
+def _solved(
+    scenes: Mapping[str, Scene], solving: Callable[[float, int], None] | None
+) -> tuple[Problems, dict[str, str]]:
+    """Return the problems of the scenes that the reference can solve, and why it cannot solve others."""
+    problems: Problems = {}
+    unsolved: dict[str, str] = {}
+    for count, (name, scene) in enumerate(scenes.items()):
+        report = solving and partial(_report_time, solving, count, len(scenes), scene)
+        try:
+            golden = golden_of(scene, TRUTH_DIGITS, report=report, grid=True)
+            times = GridTruth(golden, float(scene.exact.t_end)).times
+            states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
+            problems[name] = scene, golden.path, character(scene, times, states)
+        except UnreachableError as error:
+            unsolved[name] = f"The reference cannot solve it: {error}"
+        if solving is not None:
+            solving(count + 1, len(scenes))
+    return problems, unsolved
+
+
+def _report_time(
+    solving: Callable[[float, int], None], solved: int, scenes: int, scene: Scene, t: float
 ) -> None:
-    """Report how many scenes are solved, and the time in s that the next one has reached."""
-    solving(solved + t / t_end, scenes)
+    """Report how many scenes are solved, the one at work as the fraction that it has reached at t in s."""
+    solving(solved + t / float(scene.exact.t_end), scenes)
 
 
 @dataclass(frozen=True)
@@ -172,34 +183,34 @@ class _Cells(Measurement[Item, Cell]):
         scene, folder, traits = self.problems[scene_id]
         golden = load(folder)
         length = float(scene.exact.length)
-        amplitude = traits.amplitude * length or length
-        step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
-        if name in self.commands:
-            wrong_m = WRONG * 10**-users_program.DIGITS * amplitude
-            row, since = users_program.measured(
-                name, self.commands[name], step, scene, golden, self.limit_s, wrong_m
-            )
-            cell = self._judged(item, row, traits, amplitude)
-            if cell.status != Status.SILENTLY_WRONG or since is None:
-                return cell
-            return replace(
-                cell,
-                reason=f"From t = {since:g} s on it is wrong. {cell.reason}",
-                wrong_from_s=since,
-            )
-        method = METHODS[name]
-        used = step if method.setting == "step" else setting
-        truth = GridTruth(golden, float(scene.exact.t_end))
-        row = Bench(scene, truth, self.limit_s, repeats=1, transits=False).row(
-            method, formulation, used
+        amplitude_m = traits.amplitude * length or length
+        step_s = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
+        if name not in self.commands:
+            method = METHODS[name]
+            truth = GridTruth(golden, float(scene.exact.t_end))
+            bench = Bench(scene, truth, self.limit_s, repeats=1, transits=False)
+            used = step_s if method.setting == "step" else setting
+            row = bench.row(method, formulation, used)
+            return self._judged(item, row, traits, amplitude_m)
+
+        wrong_m = WRONG * 10**-users_program.DIGITS * amplitude_m
+        row, wrong_from_s = users_program.measured(
+            name, self.commands[name], step_s, scene, golden, self.limit_s, wrong_m
         )
-        return self._judged(item, row, traits, amplitude)
+        cell = self._judged(item, row, traits, amplitude_m)
+        if cell.status != Status.SILENTLY_WRONG or wrong_from_s is None:
+            return cell
+        reason = f"From t = {wrong_from_s:g} s on it is wrong. {cell.reason}"
+        return replace(cell, reason=reason, wrong_from_s=wrong_from_s)
 
     def failed(self, item: Item, status: Status, reason: str) -> Cell:
         method, formulation, setting, scene = item
-        kind, number = "step", users_program.NUMBER
         if method in METHODS:
-            kind, number = METHODS[method].setting, METHODS[method].number
+            kind = METHODS[method].setting
+            number = METHODS[method].number
+        else:
+            kind = "step"
+            number = users_program.NUMBER
         precision = f"{number}, {formulation}" if formulation else number
         used = None if kind == "step" else setting  # a step depends on the scene's rates
         requested = digits_requested(method, setting)
@@ -207,26 +218,18 @@ class _Cells(Measurement[Item, Cell]):
             scene, method, precision, status, None, requested, None, reason, setting=used, kind=kind
         )
 
-    def _judged(self, item: Item, row: Row, traits: Character, amplitude: float) -> Cell:
-        """Return the cell of a run, whose error in m is judged as a part of the amplitude in m."""
+    def _judged(self, item: Item, row: Row, traits: Character, amplitude_m: float) -> Cell:
+        """Return the cell of a run; its digits are those of the error relative to the amplitude."""
         requested = digits_requested(item[0], item[2])
-        digits = (
-            None
-            if row.error_m is None
-            else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
-        )
+        digits = _digits_kept(row.error_m, amplitude_m)
         status = row.status
         if status == Status.EXTRAPOLATED:
-            status, digits = Status.OUT_OF_TIME, None
-        elif status == Status.OK and digits is not None and digits < requested - math.log10(WRONG):
-            status = (
-                Status.ILL_CONDITIONED
-                if digits >= requested - traits.digits_lost
-                else Status.SILENTLY_WRONG
-            )
-        cell = self.failed(
-            item, status, reason_of(row, status, traits, digits, requested, self.limit_s)
-        )
+            status = Status.OUT_OF_TIME
+            digits = None
+        if status == Status.OK and digits is not None:
+            status = _status_of(digits, requested, traits.digits_lost)
+        reason = reason_of(row, status, traits, digits, requested, self.limit_s)
+        cell = self.failed(item, status, reason)
         return replace(
             cell,
             digits=digits,
@@ -237,15 +240,38 @@ class _Cells(Measurement[Item, Cell]):
         )
 
 
+def _digits_kept(error_m: float | None, amplitude_m: float) -> float | None:
+    """Return the digits of an error relative to the amplitude; None if there is no error."""
+    if error_m is None:
+        return None
+    if error_m == 0:
+        return _EXACT
+    return -math.log10(error_m / amplitude_m)
+
+
+def _status_of(digits: float, requested: float, lost: float) -> Status:
+    """Return whether a finished run is right, silently wrong, or magnified by the motion.
+
+    Args:
+        digits: that the run kept.
+        requested: that were asked for.
+        lost: that the motion itself may lose of those at the release.
+    """
+    if digits >= requested - math.log10(WRONG):
+        return Status.OK
+    if digits >= requested - lost:
+        return Status.ILL_CONDITIONED
+    return Status.SILENTLY_WRONG
+
+
 def digits_requested(method: str, setting: float) -> float:
-    """Return the digits that a method is asked for by a setting; of a fixed step, those that its order gives."""
+    """Return the digits that a method is asked for by a setting; of a fixed step, those of its order."""
     if method not in METHODS:
         return users_program.DIGITS
-    kind, order = METHODS[method].setting, METHODS[method].order
+    kind = METHODS[method].setting
+    order = METHODS[method].order
     if kind == "precision":
         return (setting - LOST_BITS) * math.log10(2)
-    return (
-        -math.log10(setting)
-        if order is None or kind == "tolerance"
-        else -order * math.log10(2 * math.pi * setting)
-    )
+    if kind == "tolerance" or order is None:
+        return -math.log10(setting)
+    return -order * math.log10(2 * math.pi * setting)

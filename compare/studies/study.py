@@ -97,9 +97,10 @@ class _MethodRuns(OnScene[Item, Row]):
 
     def measure(self, item: Item) -> Row:
         name, formulation, setting = item
-        method = (
-            external(self.commands[name], name=name) if name in self.commands else METHODS[name]
-        )
+        if name in self.commands:
+            method = external(self.commands[name], name=name)
+        else:
+            method = METHODS[name]
         return Bench(self.scene, self.truth, self.limit_s).row(method, formulation, setting)
 
     def failed(self, item: Item, status: Status, reason: str) -> Row:
@@ -145,10 +146,9 @@ def study(
         InputError: an unknown scene or method.
         UnreachableError: the truth cannot be solved for.
     """
-    requested, methods = (
-        as_scene(scene),
-        methods.split(",") if isinstance(methods, str) else methods,
-    )
+    requested = as_scene(scene)
+    if isinstance(methods, str):
+        methods = methods.split(",")
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
@@ -218,9 +218,13 @@ def _count(row: Row) -> float | None:
 
 
 def _laws(rows: Sequence[Row], bound_m: float) -> Iterator[PowerLaw]:
-    """Yield the fit to each run of neighbouring settings over which the error falls and is no rounding."""
-    points = sorted((count, row.error_m) for row in rows if row.status is Status.OK and row.error_m
-                    if (count := _count(row)))  # fmt: skip
+    """Yield the fit to each run of neighbouring settings whose error falls and is above rounding."""
+    points = []
+    for row in rows:
+        count = _count(row)
+        if row.status is Status.OK and row.error_m and count:
+            points.append((count, row.error_m))
+    points.sort()
     least = max(bound_m, min((error for _, error in points), default=0.0))
     above = [point for point in points if point[1] > ABOVE_LEAST * least]
     for first in range(len(above)):

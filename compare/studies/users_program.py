@@ -87,14 +87,7 @@ def files_of(
     Raises:
         InputError: a file cannot be read or has no positions, two have the same name, or the seconds are not as many.
     """
-    words = ["-"] * len(paths) if cpu is None else cpu.split(",")
-    seconds = parsed(words, lambda word: None if word.strip() == "-" else float(word))
-    if len(seconds) != len(paths) or not all(
-        value is None or 0 < value < math.inf for value in seconds
-    ):
-        raise InputError(
-            "--cpu", cpu, f"{len(paths)} positive numbers of seconds, or - where nobody knows"
-        )
+    seconds = _stated_seconds(cpu, len(paths))
     files: dict[str, tuple[Candidate, float | None]] = {}
     for path, cpu_s in zip(paths, seconds, strict=True):
         name = shortened(plain(Path(path).name), LONGEST_NAME)
@@ -109,6 +102,22 @@ def files_of(
             )
         files[name] = candidate, cpu_s
     return files
+
+
+def _stated_seconds(cpu: str | None, count: int) -> Sequence[float | None]:
+    """Return the CPU seconds that a user states for each of his files; None where nobody knows."""
+    if cpu is None:
+        return [None] * count
+    seconds = parsed(cpu.split(","), _seconds_or_unknown)
+    valid = all(value is None or 0 < value < math.inf for value in seconds)
+    if not valid or len(seconds) != count:
+        expected = f"{count} positive numbers of seconds, or - where nobody knows"
+        raise InputError("--cpu", cpu, expected)
+    return seconds
+
+
+def _seconds_or_unknown(word: str) -> float | None:
+    return None if word.strip() == "-" else float(word)
 
 
 def file_row(
@@ -140,25 +149,31 @@ def _against(
     wrong_m: float,
 ) -> tuple[Row, float | None]:
     """Return the row of somebody's output, and the first time in s at which its error exceeds `wrong_m`."""
-    end, step = float(scene.exact.t_end), float(scene.exact.grid_step)
-    kept = candidate.t <= end + step / 2
-    t = candidate.t[kept]
+    end_s = float(scene.exact.t_end)
+    step_s = float(scene.exact.grid_step)
+    within = candidate.t <= end_s + step_s / 2
+    t = candidate.t[within]
     if not len(t) or not t[-1] > 0:
-        raise InputError("its output", "no row after t = 0", f"rows to t = {end:g} s")
+        raise InputError("its output", "no row after t = 0", f"rows to t = {end_s:g} s")
     truth = truth_at(golden, t)
-    places = [i for i, name in enumerate("xyz") if name in candidate.columns]
-    errors = np.linalg.norm(
-        [candidate.columns["xyz"[i]][kept] - truth.states[:, i] for i in places], axis=0
-    )
-    short = t[-1] < end - step
+    differences = [
+        candidate.columns[name][within] - truth.states[:, i]
+        for i, name in enumerate("xyz")
+        if name in candidate.columns
+    ]
+    errors_m = np.linalg.norm(differences, axis=0)
     row = replace(
         base,
-        status=Status.GAVE_UP if short else Status.OK,
-        reason=f"its output ends at t = {t[-1]:g} s of {end:g} s" if short else "",
-        error_m=float(errors.max()),
-        end_error_m=float(errors[-1]),
+        error_m=float(errors_m.max()),
+        end_error_m=float(errors_m[-1]),
         cpu_s=cpu_s,
         reached_t=float(t[-1]),
     )
-    beyond = errors > wrong_m
-    return row, float(t[np.argmax(beyond)]) if beyond.any() else None
+    if t[-1] < end_s - step_s:
+        reason = f"its output ends at t = {t[-1]:g} s of {end_s:g} s"
+        row = replace(row, status=Status.GAVE_UP, reason=reason)
+    else:
+        row = replace(row, status=Status.OK, reason="")
+    wrong = errors_m > wrong_m
+    wrong_from_s = float(t[np.argmax(wrong)]) if wrong.any() else None
+    return row, wrong_from_s

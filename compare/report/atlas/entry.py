@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
 from pathlib import Path
+from typing import Any
 
 from pydantic import TypeAdapter
 
@@ -23,16 +24,26 @@ from ...studies.row import Row
 from ...studies.stability import Cell
 from ..pareto import rows_of
 
-LONGEST_REASON = 160  # characters of what is wrong with a study: every row may lack the same
-# of a cell in docs/studies, where there is none
+LONGEST_REASON = 160  # characters of an error message: pydantic has one line for each row
+# fields that a cell of docs/studies leaves out
 NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}
-# they make no difference to a score
+# fields of a scene that make no difference to a score
 KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}
+# what a file that is not a study may raise
+_UNREADABLE = (
+    InputError,
+    OSError,
+    ValueError,
+    KeyError,
+    TypeError,
+    AttributeError,
+    OverflowError,
+)
 
 
 @dataclass
 class StudyResults:
-    """Results of the kept studies for one scene: runs asked for the same digits, and the least error of each method.
+    """Results of the kept studies for one scene.
 
     Attributes:
         same_digits: runs that were asked for the same digits, by name.
@@ -45,28 +56,29 @@ class StudyResults:
     span_s: float = 0.0
 
     def sentence(self) -> str:
-        """Return it in short; empty if nothing is known."""
+        """Return a summary; empty if nothing is known."""
         if self.same_digits:
-            right = sum(cell.status is Status.OK for cell in self.same_digits.values())
-            wrong = [
-                name
-                for name, cell in self.same_digits.items()
-                if cell.status is Status.SILENTLY_WRONG
-            ]
-            ending = (
-                f"; silently wrong: {', '.join(wrong)}"
-                if wrong
-                else ", and none was silently wrong"
-            )
-            return f"{right} of {len(self.same_digits)} runs of methods kept what was asked for{ending}."
+            return self._summary_of_same_digits()
         if self.least:
             best = self.least[0]
-            return f"{len(self.least)} methods; the most accurate, {run_name(best)}, is {best.error_m:.1e} m off."
+            return (
+                f"{len(self.least)} methods; the most accurate, {run_name(best)}, is "
+                f"{best.error_m:.1e} m off."
+            )
         return ""
+
+    def _summary_of_same_digits(self) -> str:
+        runs = self.same_digits
+        right = sum(cell.status is Status.OK for cell in runs.values())
+        wrong = [name for name, cell in runs.items() if cell.status is Status.SILENTLY_WRONG]
+        ending = ", and none was silently wrong"
+        if wrong:
+            ending = f"; silently wrong: {', '.join(wrong)}"
+        return f"{right} of {len(runs)} runs of methods kept what was asked for{ending}."
 
 
 def run_name(run: Cell | Row) -> str:
-    """Return the method of a run, with its formulation, and its number type where that is not double."""
+    """Return the method of a run with its formulation, and its number type unless that is double."""
     variant = run.formulation if isinstance(run, Row) else run.precision.removeprefix("double, ")
     return f"{run.method} {variant}".strip()
 
@@ -76,8 +88,8 @@ class Entry:
     """A scene of the atlas.
 
     Attributes:
-        golden: its dataset, the one whose inputs are decimals if there are two.
-        judged: the dataset that a dropped file is held against: the one whose inputs are doubles if there are two.
+        golden: its dataset; of two, the one whose inputs are decimals.
+        judged: the dataset that a file is compared with; of two, the one whose inputs are doubles.
         studied: how methods fared on it.
     """
 
@@ -102,25 +114,32 @@ class Entry:
 
     def score_command(self) -> str:
         """Return the command that judges a file as the page does."""
-        scene, words = self.judged.scene, ["foucault score"]
+        scene = self.judged.scene
         if scene.id in scene_ids():
-            words += [scene.id, "mine.csv"]
-            for change in changes(scene, load_scene(scene.id)):
-                field, _, value = change.partition("=")
-                if field == "run.t_end":
-                    words.append(f"--t-end {value}")
-                elif field not in KEPT:
-                    words.append(f"--set {change}")
+            words = ["foucault score", scene.id, "mine.csv"]
+            words += _options_of(changes(scene, load_scene(scene.id)))
         else:
-            words += [f"{scene.id}.toml", "mine.csv"]
-        return " ".join([*words, *(["--inputs decimal"] if scene.inputs == "decimal" else [])])
+            words = ["foucault score", f"{scene.id}.toml", "mine.csv"]
+        if scene.inputs == "decimal":
+            words.append("--inputs decimal")
+        return " ".join(words)
+
+
+def _options_of(assignments: Iterable[str]) -> Iterator[str]:
+    """Yield the options by which `foucault score` changes a scene that ships."""
+    for assignment in assignments:
+        field, _, value = assignment.partition("=")
+        if field == "run.t_end":
+            yield f"--t-end {value}"
+        elif field not in KEPT:
+            yield f"--set {assignment}"
 
 
 def entries(folder: Path, studies: Path | None) -> list[Entry]:
-    """Return the scenes whose datasets stand in a folder, sorted by id.
+    """Return the scenes that have a dataset in a folder, sorted by id.
 
     Args:
-        folder: of the datasets.
+        folder: the folder of the datasets.
         studies: a folder of results of studies, or None.
 
     Raises:
@@ -141,8 +160,9 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
         readings.setdefault(_name(golden), {})[golden.manifest.inputs] = golden
     scenes = []
     for name, by_inputs in sorted(readings.items()):
-        either = next(iter(by_inputs.values()))
-        decimal, binary64 = by_inputs.get("decimal", either), by_inputs.get("binary64", either)
+        first = next(iter(by_inputs.values()))
+        decimal = by_inputs.get("decimal", first)
+        binary64 = by_inputs.get("binary64", first)
         scenes.append(Entry(decimal, binary64, kept.get(name, StudyResults())))
     return scenes
 
@@ -158,51 +178,41 @@ def studies_folder() -> Path | None:
 
 
 def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
-    """Return what the studies in a folder say, by scene; nothing if there is no folder.
+    """Return the results of the studies in a folder, by scene; none if there is no folder.
 
     Raises:
         InputError: there is no such folder, or a file is no study.
     """
     if folder is not None and not folder.is_dir():
-        raise InputError(
-            "--studies",
-            str(folder),
-            "a folder of results",
-            "`foucault study … --out DIR` writes one.",
-        )
-    results: dict[str, StudyResults] = defaultdict(StudyResults)
-    cells = TypeAdapter(list[Cell])
-    for path in sorted(folder.glob("*.json")) if folder is not None else ():
+        advice = "`foucault study … --out DIR` writes one."
+        raise InputError("--studies", str(folder), "a folder of results", advice)
+    results: defaultdict[str, StudyResults] = defaultdict(StudyResults)
+    paths = [] if folder is None else sorted(folder.glob("*.json"))
+    for path in paths:
         try:
-            document = json_document(path, "--studies")
-            scene = document.get("scene")
-            if scene is None:
-                for cell in cells.validate_python([NOT_KEPT | row for row in document["rows"]]):
-                    # the first study that has it
-                    results[cell.scene].same_digits.setdefault(run_name(cell), cell)
-            elif document["t_end"] > results[scene].span_s:
-                results[scene].least, results[scene].span_s = (
-                    _least(rows_of(document)),
-                    float(document["t_end"]),
-                )
-        except (
-            InputError,
-            OSError,
-            ValueError,
-            KeyError,
-            TypeError,
-            AttributeError,
-            OverflowError,
-        ) as error:
-            reason = (
-                error.advice
-                if isinstance(error, InputError)
-                else f"{shortened(str(error), LONGEST_REASON)}."
-            )
-            raise InputError(
-                "--studies", str(path), "a study as `foucault study` writes it", reason
-            ) from None
+            _add_study(json_document(path, "--studies"), results)
+        except _UNREADABLE as error:
+            expected = "a study as `foucault study` writes it"
+            raise InputError("--studies", str(path), expected, _reason(error)) from None
     return results
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, InputError):
+        return error.advice
+    return f"{shortened(str(error), LONGEST_REASON)}."
+
+
+def _add_study(document: dict[str, Any], results: defaultdict[str, StudyResults]) -> None:
+    """Add the results in a study's document: a study of one scene, or runs of the same digits."""
+    scene = document.get("scene")
+    if scene is None:
+        rows = [NOT_KEPT | row for row in document["rows"]]
+        for cell in TypeAdapter(list[Cell]).validate_python(rows):
+            results[cell.scene].same_digits.setdefault(run_name(cell), cell)
+    elif document["t_end"] > results[scene].span_s:
+        results[scene].least = _least(rows_of(document))
+        results[scene].span_s = float(document["t_end"])
 
 
 def _least(rows: Sequence[Row]) -> list[Row]:

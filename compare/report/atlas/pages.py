@@ -81,41 +81,45 @@ def scene_page(
         made: the golden function, None if it has none.
         beside: the file beside the page that holds the function; None if the page itself does.
     """
-    (first, *further), title = entry.datasets, entry.golden.manifest.title.rstrip(".")
-    fared = parts.methods(entry.studied)
-    readings = [
-        Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}")
-        for golden in further
+    motion = [parts.pictures(svgs)]
+    if made:
+        motion.insert(0, Html(source("player.html")))
+    first, *further = entry.datasets
+    datasets = [parts.dataset(first, base)]
+    for golden in further:
+        heading = f"<h3>{text(golden.manifest.id)}</h3>"
+        datasets.append(Html(f"{heading}\n{parts.dataset(golden, base)}"))
+    sections = [
+        section("The motion", *motion),
+        section("Judge your program", _drop(entry, made, beside)),
+        section("The state at the end", parts.state(entry.golden)),
+        section("The dataset", *datasets),
     ]
+    tables = parts.methods(entry.studied)
+    if tables:
+        sentence = paragraph(entry.studied.sentence())
+        sections.append(section("How methods fare", sentence, *tables))
+    units = paragraph("SI units, angles in degrees.")
+    sections.append(section("Inputs", units, parts.inputs(entry.golden)))
+
+    embedded = parts.embedded(entry.judged, None if beside else made, beside)
+    judging = _script("function.mjs", "reading.js", "judging.js", "answering.js", kind="judging")
+    drawing = _script("drawing.js", "dropping.js", "playing.js")
     return page(
         entry.id,
-        [
-            section(
-                "The motion", *([Html(source("player.html"))] if made else []), parts.pictures(svgs)
-            ),
-            section("Judge your program", _drop(entry, made, beside)),
-            section("The state at the end", parts.state(entry.golden)),
-            section("The dataset", parts.dataset(first, base), *readings),
-            *(
-                [section("How methods fare", paragraph(entry.studied.sentence()), *fared)]
-                if fared
-                else []
-            ),
-            section(
-                "Inputs", paragraph("SI units, angles in degrees."), parts.inputs(entry.golden)
-            ),
-        ],
-        lead=Html(
-            f"{paragraph(f'{title}.')}\n{parts.flags(entry)}\n"
-            f'<p><a href="index.html">All scenes</a> · {text(entry.golden.manifest.source)}</p>'
-        ),
-        script=Html(
-            _data(parts.embedded(entry.judged, None if beside else made, beside))
-            + _script("function.mjs", "reading.js", "judging.js", "answering.js", kind="judging")
-            + _script("drawing.js", "dropping.js", "playing.js")
-        ),
+        sections,
+        lead=_lead(entry),
+        script=Html(_data(embedded) + judging + drawing),
         styles=source("atlas.css"),
     )
+
+
+def _lead(entry: Entry) -> Html:
+    """Return what is said of a scene below its name."""
+    manifest = entry.golden.manifest
+    title = paragraph(f"{manifest.title.rstrip('.')}.")
+    links = f'<p><a href="index.html">All scenes</a> · {text(manifest.source)}</p>'
+    return Html(f"{title}\n{parts.flags(entry)}\n{links}")
 
 
 def _card(entry: Entry, thumb: str) -> str:
@@ -219,19 +223,17 @@ def build(
     check_folder(out, [PAGE])
     scenes = entries(data, studies)
     check_folder(out, [f"{entry.id}.html" for entry in scenes])
-    pages, thumbs = {}, []
+    pages = {}
+    thumbs = []
     for count, entry in enumerate(scenes):
         report(count, len(scenes), entry.id)
-        motion, made = PicturedMotion.of_golden(entry.golden), parts.function_made(entry.judged)
-        beside = (
-            f"{entry.id}.function.js"
-            if made and len(made["coefficients"]) > MOST_EMBEDDED
-            else None
-        )
-        if beside:
-            pages[beside] = (
-                f"globalThis.goldenFunction = {json.dumps(made, separators=(',', ':'))};\n"
-            )
+        motion = PicturedMotion.of_golden(entry.golden)
+        made = parts.function_made(entry.judged)
+        beside = None
+        if made and len(made["coefficients"]) > MOST_EMBEDDED:
+            beside = f"{entry.id}.function.js"
+            numbers = json.dumps(made, separators=(",", ":"))
+            pages[beside] = f"globalThis.goldenFunction = {numbers};\n"
         pages[f"{entry.id}.html"] = scene_page(entry, motion_svgs(motion), base, made, beside)
         thumbs.append(thumbnail(motion))
     pages[PAGE] = index_page(scenes, thumbs)

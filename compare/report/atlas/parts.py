@@ -28,6 +28,7 @@ from ...score import judge
 from ...score.errors import swing_rate
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
+from ...studies.stability import Cell
 from ..page import Html, PageTable, facts, text
 from .entry import Entry, StudyResults, run_name
 
@@ -47,25 +48,21 @@ def flags(entry: Entry) -> Html:
         f"<li><b>{text(flag.replace('_', ' '))}</b>: {text(notes[flag])}</li>"
         for flag in entry.flags
     )
-    return Html(f'<ul class="flags">{items}</ul>' if items else "")
+    if not items:
+        return Html("")
+    return Html(f'<ul class="flags">{items}</ul>')
 
 
 def state(golden: Golden) -> Html:
     """Return the state at the end, as printed, with the bound of each number."""
-    manifest, last = golden.manifest, {name: golden.decimals(name)[-1] for name in STATE}
-    units = {name: "m/s" if name.startswith("v") else "m" for name in STATE}
-    rows = [
-        (
-            name,
-            Html(f'<span class="digits">{last[name]}</span>'),
-            units[name],
-            manifest.bounds.grid[name],
-        )
-        for name in STATE
-    ]
-    return PageTable(
-        {"": "", f"state at t = {golden.t[-1]:.15g} s": "value", "in": "", "within": "number"}, rows
-    ).html()
+    bounds = golden.manifest.bounds.grid
+    rows = []
+    for name in STATE:
+        digits = Html(f'<span class="digits">{golden.decimals(name)[-1]}</span>')
+        unit = "m/s" if name.startswith("v") else "m"
+        rows.append((name, digits, unit, bounds[name]))
+    heading = f"state at t = {golden.t[-1]:.15g} s"
+    return PageTable({"": "", heading: "value", "in": "", "within": "number"}, rows).html()
 
 
 def trust(golden: Golden) -> Mapping[str, str]:
@@ -125,35 +122,32 @@ def methods(studied: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
     if studied.same_digits:
-        columns = {
-            "method": "",
-            "outcome": "",
-            **dict.fromkeys(("asked for", "digits kept", "CPU s"), "number"),
-        }
-        rows, kinds = [], []
-        kept = {
-            name: -1.0 if cell.digits is None else cell.digits
-            for name, cell in studied.same_digits.items()
-        }
-        for name in sorted(kept, key=kept.__getitem__, reverse=True):
-            cell = studied.same_digits[name]
-            rows.append(
-                (
-                    name,
-                    cell.status.words,
-                    _tenths(cell.asked),
-                    _tenths(cell.digits),
-                    _cpu(cell.cpu_s),
-                )
-            )
-            kinds.append("" if cell.status is Status.OK else "failed")
-        same_digits = PageTable(columns, rows, kinds)
-        parts.append(same_digits.html("Runs that were asked for the same digits (docs/studies.md)"))
+        parts.append(_same_digits(studied.same_digits))
     if studied.least:
         runs = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
         least = PageTable({"method": "", "least error": "number", "its CPU s": "number"}, runs)
         parts.append(least.html(f"The most accurate run of each method over {studied.span_s:g} s"))
     return parts
+
+
+def _same_digits(cells: Mapping[str, Cell]) -> Html:
+    """Return a table of runs that were asked for the same digits, the most accurate first."""
+    columns = {"method": "", "outcome": ""}
+    columns |= dict.fromkeys(("asked for", "digits kept", "CPU s"), "number")
+
+    def digits(name: str) -> float:
+        kept = cells[name].digits
+        return -1.0 if kept is None else kept
+
+    rows = []
+    kinds = []
+    for name in sorted(cells, key=digits, reverse=True):
+        cell = cells[name]
+        numbers = (_tenths(cell.asked), _tenths(cell.digits), _cpu(cell.cpu_s))
+        rows.append((name, cell.status.words, *numbers))
+        kinds.append("" if cell.status is Status.OK else "failed")
+    caption = "Runs that were asked for the same digits (docs/studies.md)"
+    return PageTable(columns, rows, kinds).html(caption)
 
 
 def _tenths(digits: float | None) -> str:
@@ -179,17 +173,18 @@ def function_made(golden: Golden) -> dict[str, Any] | None:
 def embedded(
     golden: Golden, made: dict[str, Any] | None = None, beside: str | None = None
 ) -> dict[str, Any]:
-    """Return what `judging.js` needs of a dataset: doubles of its grid and transits in base64, bounds, scales, words.
+    """Return what `judging.js` needs of a dataset: grid and transits in base64, bounds, vocabulary.
 
-    Transits come with the weight |ax|/ω in 1/s·m, by which an error of time becomes one of position. The golden
-    function is `made`, or in a file `beside` the page.
+    Each transit has a weight |ax|/ω in m/s, which turns an error of time into one of position. The
+    golden function is `made`, or in a file `beside` the page.
     """
-    inputs, speed = (
-        golden.scene.exact,
-        float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max()),
-    )
-    omega, length = swing_rate(golden.scene, speed), float(inputs.length)
-    reason, transits = unjudged_transits(golden), golden.transits
+    inputs = golden.scene.exact
+    length = float(inputs.length)
+    velocities = (golden.vx, golden.vy, golden.vz)
+    fastest = float(np.linalg.norm(velocities, axis=0).max())
+    omega = swing_rate(golden.scene, fastest)
+    reason = unjudged_transits(golden)
+    transits = golden.transits
     weight = np.abs(transits["ax"]) / omega if omega else np.zeros(len(transits))
     return {
         "id": golden.manifest.id,
@@ -210,11 +205,10 @@ def embedded(
 
 
 def vocabulary() -> dict[str, Any]:
-    """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
-    reading = names, text_reader, header, clock, read, candidate
-    tables = {
-        name: value for module in reading for name, value in vars(module).items() if name.isupper()
-    }
+    """Return the tables, patterns and limits that the page's scripts share with the package."""
+    tables: dict[str, Any] = {}
+    for module in (names, text_reader, header, clock, read, candidate):
+        tables |= {name: value for name, value in vars(module).items() if name.isupper()}
     sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID}
     limits = {
         name: getattr(judge, name)
@@ -225,14 +219,12 @@ def vocabulary() -> dict[str, Any]:
 
 
 def plain(value: object) -> Any:
-    """Return what JSON has for a set, a pattern, a fraction or a deviation of the vocabulary; for `json.dumps`."""
+    """Return a set, pattern, fraction or deviation as `json.dumps` can write it."""
     if isinstance(value, Fraction):
         return [value.numerator, value.denominator]
-    return (
-        sorted(value)
-        if isinstance(value, set)
-        else getattr(value, "pattern", None) or getattr(value, "text", None)
-    )
+    if isinstance(value, set):
+        return sorted(value)
+    return getattr(value, "pattern", None) or getattr(value, "text", None)
 
 
 def _doubles(values: Array) -> str:
