@@ -122,12 +122,12 @@ def stability(
     Raises:
         InputError: an unknown scene or method, or one that declares no such runs.
     """
+    commands = dict(programs or {})
+    runs = [*declared(methods, "stability"), *((name, None, 1 / STEPS) for name in commands)]
     names = default_scenes() if scenes is None else scenes
     cuts = {name: cut(load_scene(name)) for name in names}
     problems, unsolved = _solved(cuts, solving)
 
-    commands = dict(programs or {})
-    runs = [*declared(methods, "stability"), *((name, None, 1 / STEPS) for name in commands)]
     items: list[Item] = [(*run, name) for run in runs for name in cuts]
     solved = [item for item in items if item[-1] in problems]
 
