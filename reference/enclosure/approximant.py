@@ -42,7 +42,7 @@ def _turned_rows(e: TaylorStep, balls: SceneBalls) -> tuple[list[int], ...]:
     m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
     w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
     p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
-    turn, _, _, cm, cw = scaled(balls, e.h, bits).whole
+    turn, _, _, cm, cw = scaled(balls, e.h, bits).integers
     V = [
         f.derivative() + g // unit
         for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)

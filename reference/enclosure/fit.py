@@ -81,7 +81,7 @@ def _stays_deep(balls: SceneBalls) -> bool:
     if not (pull > 0 and balls.release[0][2] < 0):
         return False
     aside = size(add(times(1 / pull, balls.c), balls.turned([arb(0), arb(0), arb(1)], 1)))
-    return bool((balls.w0**2 - balls.below) / pull - aside > SHALLOW)
+    return bool((balls.w0**2 - balls.lambda_minus) / pull - aside > SHALLOW)
 
 
 def on_doubles(steps: Iterable[TaylorStep]) -> Iterator[TaylorStep]:

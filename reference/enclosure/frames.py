@@ -25,9 +25,9 @@ class ColumnSource:
 
     def __init__(self, balls: SceneBalls) -> None:
         """Read the constants as floats."""
-        self.w = np.array([float(x) for x in balls.omega])
+        self.w = np.array([float(x) for x in balls.omega_0])
         self.c = np.array([float(x) for x in balls.c])
-        self.g, self.w0 = float(balls.drag), float(balls.w0)
+        self.g, self.w0 = float(balls.drag_0), float(balls.w0)
         self.end: Any = np.eye(6)
 
     def propose(self, step: TaylorStep, widths: Iterable[float]) -> list[list[list[int]]]:

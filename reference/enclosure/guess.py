@@ -40,5 +40,5 @@ def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
         s = (s - value / rate).mid()
         value = f(s)
     away = MARGIN * (width + abs(value)) / abs(rate)
-    low, high = (slope.centre + (s + way * away) * slope.piece.k.h for way in (-1, 1))
+    low, high = (slope.centre + (s + way * away) * slope.piece.constants.h for way in (-1, 1))
     return low.mid(), high.mid()

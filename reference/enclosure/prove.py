@@ -250,7 +250,12 @@ def plan_for(
     """
     balls = SceneBalls(inputs, LOOK_BITS)
     w, span = float(balls.w0), float(end)
-    loss = span * float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * w) / 0.693
+    loss = (
+        span
+        * float(max(balls.lambda_minus, balls.lambda_plus + balls.S**2, key=float))
+        / (2 * w)
+        / 0.693
+    )
     target = magnitude(inputs.length / radius) + log2(2 + span * w)
     cheap = (
         target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS

@@ -77,7 +77,7 @@ def enclose_box(
         course, latest = windows.course, windows.course.times[-1]
         follower = source = None
         # the rate at which Theorem C's radius grows, in 1/s
-        growth = float(max(balls.below, balls.above + balls.speed**2, key=float)) / (
+        growth = float(max(balls.lambda_minus, balls.lambda_plus + balls.S**2, key=float)) / (
             2 * float(balls.w0)
         )
         if halves and (derivatives or growth * float(latest) > GROWTH):
@@ -110,6 +110,6 @@ def enclose_box(
 def _width(balls: BoxBalls) -> Fraction:
     """Return about how far apart motions of the box are, over the length, after a time of 1/w0."""
     w = balls.w0
-    slow = [balls.pace, *balls.r, *times(1 / w, [*balls.H, *balls.turning, balls.damping])]
+    slow = [balls.pace, *balls.r, *times(1 / w, [*balls.H, *balls.omega, balls.drag])]
     widest = interval(max((arb(x.rad()) for x in slow), key=float)).high
     return max(widest, Fraction(1, 1 << LOOK_BITS // 2))

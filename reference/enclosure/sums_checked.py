@@ -24,7 +24,7 @@ class SumsChecked:
 
 def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
     """Raise ArithmeticError unless a piece's exact sums are those it was proved with, and shortened ones bound them."""
-    table, whole = piece.rows.table, piece.k.whole
+    table, whole = piece.rows.table, piece.constants.integers
     sums = zip(
         piece.norms, norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True
     )

@@ -31,7 +31,7 @@ class TangentSource:
 
     def __init__(self, balls: BoxBalls, ways: list[Way]) -> None:
         """Read the ways as floats."""
-        self.columns, self.w0, self.drag = ColumnSource(balls), float(balls.w0), float(balls.drag)
+        self.columns, self.w0, self.drag = ColumnSource(balls), float(balls.w0), float(balls.drag_0)
         self.turns, self.slows = (
             [np.array([*map(float, way.turn)]) for way in ways],
             [float(way.slow) for way in ways],

@@ -17,6 +17,7 @@ import reference.enclosure.trusted.derivatives
 from reference.enclosure.approximant import pair
 from reference.enclosure.prove import until
 from reference.enclosure.trusted.defect import Piece
+from reference.enclosure.trusted.radius import PhasePoint
 from reference.enclosure.trusted.shapes import Sizes
 from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import EARTH, TaylorStep
@@ -64,11 +65,13 @@ def growth_holds(module):
         ) * rng.choice([0, 1], size=11)
         w, span, p, rate = rng.uniform(0.1, 2, size=4) * (1, 0.2, 1, rng.choice([0, 1]))
         eta += 0.1
-        names = ["w", "speed", "c_size", "drag_size", "omega_size", "below", "above"]
+        names = ["w", "S", "c_size", "drag_size", "omega_size", "lambda_minus", "lambda_plus"]
         sizes = map(arb, map(float, (w, speed, c, drag, omega, below, above - 0.5)))
         k = SimpleNamespace(**dict(zip(names, sizes, strict=True)))
         d = Sizes(*(arb(float(x)) for x in (d1, d2, p, rate, tau, 0)))
-        piece = SimpleNamespace(k=k, step=SimpleNamespace(low=Fraction(0), high=Fraction(span)))
+        piece = SimpleNamespace(
+            constants=k, step=SimpleNamespace(low=Fraction(0), high=Fraction(span))
+        )
         start = eta + jump + span * ((c + rate**2) * tau / (2 * w) + d2 / w + d1)
         least = start
         for _ in range(200):
@@ -77,7 +80,7 @@ def growth_holds(module):
             least = min(start * np.exp(min(span * growth / (2 * w), 50)), 1e9)
         bound = SimpleNamespace(eta=arb(float(eta)))
         try:
-            tube = module.BoxRadius.grown(bound, piece, d, arb(float(jump))).tube
+            tube = module.BoxRadius.grown(bound, piece, module.Widened(d, arb(float(jump)))).tube
         except ArithmeticError:
             continue
         accepted += 1
@@ -112,9 +115,9 @@ def unit(rng):
 def made_up(module, a, b, omega, off, drag, more, rng):
     """Bound of d2 and of a jump; the largest that they are for a member of the box whose Ω is omega ± off."""
     balls = SceneBalls(scene(rotation_rate="0.1"), BITS + 64)
-    balls.omega, balls.drag, balls.c = [arb(x) for x in omega], arb(drag), [arb(0)] * 3
-    balls.turning = [arb(x) + arb(0, abs(y)) for x, y in zip(omega, off, strict=True)]
-    balls.damping = arb(drag) + arb(0, more)
+    balls.omega_0, balls.drag_0, balls.c = [arb(x) for x in omega], arb(drag), [arb(0)] * 3
+    balls.omega = [arb(x) + arb(0, abs(y)) for x, y in zip(omega, off, strict=True)]
+    balls.drag = arb(drag) + arb(0, more)
     rows = tuple([int(x * UNIT), int(y * UNIT)] for x, y in zip(a, b, strict=True))
     step = TaylorStep(
         Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, (*rows, [0, 0]), EARTH
@@ -122,8 +125,9 @@ def made_up(module, a, b, omega, off, drag, more, rng):
     bound = module.BoxRadius(balls)
     gap = rng.normal(size=3) * rng.choice([0, 0.1])
     start = a + gap
-    bound.last = [arb(x) for x in (*start, *cross(start, b + cross(omega, start)))]
-    _, sizes, jump = bound.widened(Piece(balls, step))
+    momentum = cross(start, b + cross(omega, start))
+    bound.last = PhasePoint([arb(x) for x in start], [arb(x) for x in momentum])
+    sizes, jump = bound.widened(Piece(balls, step))
     found, jumped = [], []
     for signs in [(0, 1, 1), (0, 1, -1), (0, -1, 1), (0, -1, -1)]:
         for g in (drag - more, drag + more):

@@ -1,4 +1,14 @@
-"""TRUSTED. Interval arithmetic with FLINT's balls: vectors, norms, endpoints. A name of a size is an upper bound."""
+"""TRUSTED. Interval arithmetic with FLINT's balls: vectors, norms, endpoints.
+
+A ball contains the number that it stands for; every operation rounds outwards, to the bits of `ctx.prec`. What is
+called a bound or a size is an upper bound, rounded upwards.
+
+    code       text
+    add, times  sum of vectors, factor times a vector
+    cross, dot  a × b, a·b
+    size(a)     |a|
+    total(f)    Σ|c_n|, which bounds |f| on |s| <= 1 (section 6)
+"""
 
 from fractions import Fraction
 from typing import Any
@@ -21,7 +31,9 @@ def demand(holds: bool, reason: str) -> None:
 
 def ball(q: Any) -> arb:
     """Return a ball that contains the fraction; a ball, or a series of balls, as it is."""
-    return q if isinstance(q, arb | arb_series) else arb(fmpq(q.numerator, q.denominator))  # type: ignore[return-value]
+    if isinstance(q, arb | arb_series):
+        return q  # type: ignore[return-value]
+    return arb(fmpq(q.numerator, q.denominator))
 
 
 def upper(x: arb) -> arb:
@@ -31,16 +43,23 @@ def upper(x: arb) -> arb:
 
 
 def interval(x: arb) -> Interval:
-    """Return the exact endpoints of a ball."""
+    """Return the exact endpoints of a ball; raise ArithmeticError if they are not finite or not below 2^128."""
     upper(abs(x) / HUGE)
-    return Interval(*(Fraction(int(q.p), int(q.q)) for q in (x.lower().fmpq(), x.upper().fmpq())))
+    low = x.lower().fmpq()
+    high = x.upper().fmpq()
+    return Interval(Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
 
 
 def fixed(values: Vector, bits: int) -> tuple[list[fmpz], arb]:
     """Return integers over 2^bits near the balls, and a bound of the sum of their distances."""
-    whole = [(x * (fmpz(1) << bits)).mid().floor().unique_fmpz() or fmpz(0) for x in values]
-    off = [(x - arb(n) / (fmpz(1) << bits)).abs_upper() for x, n in zip(values, whole, strict=True)]
-    return whole, upper(sum(off, arb(0)))
+    unit = fmpz(1) << bits
+    integers = list[fmpz]()
+    distances = list[arb]()
+    for x in values:
+        n = (x * unit).mid().floor().unique_fmpz() or fmpz(0)
+        integers.append(n)
+        distances.append((x - arb(n) / unit).abs_upper())
+    return integers, upper(sum(distances, arb(0)))
 
 
 def add(*vectors: Vector) -> Vector:
@@ -65,7 +84,8 @@ def dot(a: Vector, b: Vector) -> Any:
 
 def size(a: Vector) -> arb:
     """Return an upper bound of the length."""
-    return upper(upper(sum((x.abs_upper() ** 2 for x in a), arb(0))).sqrt())
+    squares = upper(sum((x.abs_upper() ** 2 for x in a), arb(0)))
+    return upper(squares.sqrt())
 
 
 def total(f: Any, bits: int) -> arb:

@@ -1,7 +1,7 @@
 """TRUSTED. A proof from step to step: bound, output times and zeros are given one piece, in order and without a gap.
 
 Who calls `advance` proposes steps and columns, and can do no harm: an exception closes a run for good, and there is a
-result only for a run that is complete.
+result only for a run that is complete (THEOREM.md, section 9). Times are in s, states in m and m/s.
 """
 
 from fractions import Fraction
@@ -35,7 +35,10 @@ class Course:
         words: tuple[str, ...],
         second_order: bool = False,
     ) -> None:
-        self.balls, self.times, self.states, self.open = balls, tuple(times), list[State](), True
+        self.balls = balls
+        self.times = tuple(times)
+        self.states = list[State]()
+        self.open = True
         self.bound: Any = Columns(balls) if columns else Radius(balls)
         # xdot that is identically zero has no zeros
         sought = [word for word in words if not (word == XDOT and balls.still)]
@@ -47,25 +50,25 @@ class Course:
         demand(self.open, "the run is closed: a step failed")
         self.open = False
         covered = self.bound.advance(Piece(self.balls, step), *proposal)
-        while (
-            len(self.states) < len(self.times) and self.times[len(self.states)] <= covered.piece.end
-        ):
-            self.states.append(output(covered, self.times[len(self.states)]))
+        while len(self.states) < len(self.times):
+            time = self.times[len(self.states)]
+            if time > covered.piece.end:
+                break
+            self.states.append(output(covered, time))
         for follower in (*self.scans.values(), *self.followers):
             follower.advance(covered)
         self.open = True
 
     def finish(self) -> Proved:
         """Return what is proved; only this very object, and no copy of it, counts as the result of a proof."""
-        end, complete = self.times[-1], self.open and len(self.states) == len(self.times)
+        end = self.times[-1]
+        complete = self.open and len(self.states) == len(self.times)
         reached = {part.time for part in (self.bound, *self.scans.values())}
         demand(complete and (not end or reached == {end}), "the steps do not end with the run")
+
         zeros = {word: tuple(scan.finish() if end else ()) for word, scan in self.scans.items()}
-        FINISHED.add(
-            proved := Proved(
-                self.balls.inputs, self.times, tuple(self.states), zeros, self.balls.still
-            )
-        )
+        proved = Proved(self.balls.claim, self.times, tuple(self.states), zeros, self.balls.still)
+        FINISHED.add(proved)
         return proved
 
 

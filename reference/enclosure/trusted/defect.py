@@ -1,22 +1,139 @@
 """TRUSTED. A step's polynomials, and their defects as they are computed (THEOREM.md, sections 2 and 6).
 
-Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
+Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H, and lengths are divided by that of
+the rod, so that all of this has the unit 1. Norms are those on |s| <= 1.
+
+    code                    text
+    p, v                    p, p': components x, m, w, integers over `unit` = 2^B
+    tension                 λ
+    norms                   |d_x|, |d_m|, |d_w|, |τ|, |p'_x|, |p'_m|, |p'_w|, |τ'|
+    P, V, V_rate, K, T      bounds of |p|, |V|, |V'|, |K|, |τ|
+    D, D1, D2, d1_rate      bounds of |d|, |d1|, |d2|, |d1'|
+    N                       N, the largest degree of a component of p, or 1
 """
 
 from fractions import Fraction
-from functools import cached_property, reduce
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, ctx, fmpz, fmpz_poly
 
 from ...numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
-from .balls import SHORT, Vector, add, demand, dot, size, times, total, upper
+from .balls import SHORT, Vector, demand, dot, size, total, upper
 from .shapes import Sizes
 from .system import SceneBalls, scaled
 
 
-def frozen(step: TaylorStep) -> TaylorStep:
+class Norms(NamedTuple):
+    """Bounds on |s| <= 1 of the components of d, of τ, of the components of p', of τ'."""
+
+    d_x: arb
+    d_m: arb
+    d_w: arb
+    tau: arb
+    p_rate_x: arb
+    p_rate_m: arb
+    p_rate_w: arb
+    tau_rate: arb
+
+    @property
+    def p_rate(self) -> arb:
+        """A bound of |p'|."""
+        return size([self.p_rate_x, self.p_rate_m, self.p_rate_w])
+
+
+class Piece:
+    """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s).
+
+    Its `step` is a copy: all that rests on this step rests on the same numbers, whatever its source does afterwards.
+    """
+
+    def __init__(self, balls: SceneBalls, step: TaylorStep) -> None:
+        step = _frozen(step)
+        demand(
+            -1 <= step.low < step.high <= 1 and step.h > 0,
+            "a step must lie in -1 <= s <= 1, where its sizes hold",
+        )
+        rows: Any = step.rows
+        if isinstance(rows, Digits):
+            demand(
+                step.bits == DIGIT_BITS * rows.table.shape[1] - 1,
+                "coefficients have 22 bits a digit, but one",
+            )
+        self.balls = balls
+        self.step = step
+        self.constants = scaled(balls, step.h, step.bits)
+        self.unit = fmpz(1) << step.bits
+        self.rows = rows
+        self.p = polynomials(rows, slice(3))
+        self.v = [f.derivative() for f in self.p]
+        self.begin = step.centre + step.h * step.low
+        self.end = step.centre + step.h * step.high
+
+    def values(self, s: arb, first: int = 0) -> tuple[Vector, Vector]:
+        """Return balls of p(s) and p'(s), of this from a component on."""
+        p = [f(s) / self.unit for f in self.p]
+        v = [f(s) / self.unit for f in self.v[first:]]
+        return p, v
+
+    @cached_property
+    def sizes(self) -> Sizes:
+        """The defects and norms, from integers but for the radii of the constants (section 6)."""
+        constants = self.constants
+        norms = self.norms
+        with ctx.workprec(SHORT):
+            gamma = constants.drag_size
+            Omega = constants.omega_size
+            T = norms.tau
+            T_rate = norms.tau_rate
+            p_rate = norms.p_rate
+            N = max(2, *map(len, self.p)) - 1
+
+            P = upper((1 + T).sqrt())  # (6.2)
+            V = p_rate + Omega * P  # (6.3)
+            V_rate = (N - 1 + Omega) * p_rate  # (6.4)
+            D = size([norms.d_x, norms.d_m, norms.d_w]) + constants.theta * (
+                2 * p_rate + P
+            )  # (6.1)
+            K = P * V  # (6.5)
+            D1 = T * V + T_rate * P / 2  # (6.6)
+            D2 = P * D + gamma * Omega * T  # (6.7)
+            d1_rate = T_rate * V + T * V_rate + (2 * N - 1) * T_rate * P / 2  # (6.8)
+            return Sizes(upper(D1), upper(D2), P, upper(K), upper(T), upper(d1_rate))
+
+    @cached_property
+    def norms(self) -> Norms:
+        """The norms of d, τ, p' and τ': by sums of digits, or by FLINT's polynomials."""
+        if isinstance(self.rows, Digits) and not self.balls.flint_only:
+            from .digits import norms
+
+            return Norms(*norms(self.rows.table, self.constants.integers))
+        return Norms(*(total(f, 2 * self.step.bits) for f in self._exact_polynomials()))
+
+    def _exact_polynomials(self) -> list[fmpz_poly]:
+        """Return d (three components), τ, p' (three components), τ' over 2^(2 bits), with the integers for constants.
+
+        d = p'' + 2 Ω × p' + Ω × (Ω × p) + γ p' − c + λ p, where Ω × p = ω (−m, x, 0).
+        """
+        one = self.unit
+        k = self.constants.integers
+        x, m, w = self.p
+        x1, m1, w1 = self.v
+        x2, m2, w2 = (f.derivative() for f in self.v)
+        (tension,) = polynomials(self.rows, slice(3, 4))
+
+        # λ p + Ω × (Ω × p)
+        lift = tension - k.omega_squared
+        d_x = one * x2 - 2 * k.omega * m1 + lift * x + k.drag * x1
+        d_m = one * m2 + 2 * k.omega * x1 + lift * m + k.drag * m1 - one * k.c_m
+        d_w = one * w2 + tension * w + k.drag * w1 - one * k.c_w
+
+        tau = dot(self.p, self.p) - one * one
+        return [d_x, d_m, d_w, tau, one * x1, one * m1, one * w1, tau.derivative()]
+
+
+def _frozen(step: TaylorStep) -> TaylorStep:
     """Return a copy of a step, whose coefficients are read once."""
     rows: Any = step.coefficients
     if isinstance(rows, Digits):
@@ -28,81 +145,21 @@ def frozen(step: TaylorStep) -> TaylorStep:
     return TaylorStep(centre, h, low, high, int(step.bits), rows, step.columns)
 
 
-class Piece:
-    """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s).
-
-    Its `step` is a copy: all that rests on this step rests on the same numbers, whatever its source does afterwards.
-    """
-
-    def __init__(self, balls: SceneBalls, step: TaylorStep) -> None:
-        step = frozen(step)
-        demand(
-            -1 <= step.low < step.high <= 1 and step.h > 0,
-            "a step must lie in -1 <= s <= 1, where its sizes hold",
-        )
-        rows: Any = step.rows
-        if isinstance(rows, Digits):
-            demand(
-                step.bits == DIGIT_BITS * rows.table.shape[1] - 1,
-                "coefficients have 22 bits a digit, but one",
-            )
-        self.balls, self.step, self.k = balls, step, scaled(balls, step.h, step.bits)
-        self.unit, self.rows, self.p = fmpz(1) << step.bits, rows, polynomials(rows, slice(3))
-        self.v = [f.derivative() for f in self.p]
-        self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
-
-    def values(self, s: arb, first: int = 0) -> tuple[Vector, Vector]:
-        """Return balls of p(s) and p'(s), of this from a component on."""
-        return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v[first:]]
-
-    @cached_property
-    def sizes(self) -> Sizes:
-        """The defects and norms, from integers but for the radii of the constants (section 6)."""
-        k = self.k
-        with ctx.workprec(SHORT):
-            *d, t, x, m, w, t1 = self.norms = self.defects()
-            v1, size_p, n = size([x, m, w]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
-            defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
-            speed, rate = v1 + k.omega_size * size_p, (n - 1 + k.omega_size) * v1
-            first, second = (
-                t * speed + t1 * size_p / 2,
-                t1 * speed + t * rate + (2 * n - 1) * t1 * size_p / 2,
-            )
-            return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
-
-    def defects(self) -> list[arb]:
-        """Return the norms of d (three components), τ, p' (three), τ': by sums of digits, or by FLINT's polynomials."""
-        if isinstance(self.rows, Digits) and not self.balls.flint_only:
-            from .digits import norms
-
-            return norms(self.rows.table, self.k.whole)
-        return [total(f, 2 * self.step.bits) for f in self.measured()]
-
-    def measured(self) -> list[fmpz_poly]:
-        """Return d (three components), τ, p' (three components), τ' over 2^(2 bits)."""
-        k, p, v, unit = self.k, self.p, self.v, self.unit
-        (tension,) = polynomials(self.rows, slice(3, 4))
-        (turn, _, drag, cm, cw), a, lift = (
-            k.whole,
-            [f.derivative() for f in v],
-            tension - k.whole[1],
-        )
-        d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, tension), p, strict=True)]
-        d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
-        tau = dot(p, p) - unit * unit
-        return [*add(d, times(drag, v)), tau, *times(unit, v), tau.derivative()]
-
-
 def polynomials(rows: Any, part: slice) -> list[fmpz_poly]:
     """Return a part of the rows of coefficients as polynomials."""
     if not isinstance(rows, Digits):
         return [fmpz_poly(row) for row in rows[part]]
-    table, odd, unit = (
-        rows.table[part].astype(np.int64),
-        rows.table.shape[1] % 2,
-        fmpz(1) << 2 * DIGIT_BITS,
-    )
-    pairs = np.concatenate(
-        [table[:, :odd], (table[:, odd::2] << DIGIT_BITS) + table[:, odd + 1 :: 2]], 1
-    ).tolist()
-    return [reduce(lambda f, pair: f * unit + fmpz_poly(pair), row, fmpz_poly()) for row in pairs]
+
+    # two digits are one number of 44 bits, which 64 hold: half as many polynomials to add
+    table = rows.table[part].astype(np.int64)
+    odd = table.shape[1] % 2
+    highest = table[:, :odd]
+    joined = (table[:, odd::2] << DIGIT_BITS) + table[:, odd + 1 :: 2]
+    pair_unit = fmpz(1) << 2 * DIGIT_BITS
+    result = list[fmpz_poly]()
+    for pairs in np.concatenate([highest, joined], 1).tolist():
+        polynomial = fmpz_poly()
+        for pair in pairs:
+            polynomial = polynomial * pair_unit + fmpz_poly(pair)
+        result.append(polynomial)
+    return result

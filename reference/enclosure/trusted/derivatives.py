@@ -13,7 +13,7 @@ from typing import Any
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
-from .box import BoxBalls, BoxRadius, Windows, near, on_the_sphere, spread
+from .box import BoxBalls, BoxRadius, Widened, Windows, near, on_the_sphere, spread
 from .course import FINISHED, scan_of
 from .defect import Piece
 from .printed_box import end_of
@@ -25,7 +25,6 @@ from .shapes import (
     Interval,
     Led,
     ProvedDerivatives,
-    Sizes,
     State,
     Tangent,
 )
@@ -47,9 +46,9 @@ class Way:
             balls.varied(name.partition(".")[2], self.scale),
         )
         with ctx.workprec(balls.prec):
-            momentum = cross(self.twin.r, add(self.twin.v, cross(self.twin.turning, self.twin.r)))
+            momentum = cross(self.twin.r, add(self.twin.v, cross(self.twin.omega, self.twin.r)))
             self.last = [first(x) for x in (*self.twin.r, *momentum)]
-            self.turn, self.slow = [first(x) for x in self.twin.turning], first(self.twin.damping)
+            self.turn, self.slow = [first(x) for x in self.twin.omega], first(self.twin.drag)
 
 
 def first(x: Any) -> arb:
@@ -65,25 +64,30 @@ class Tangents(BoxRadius):
     ) -> None:
         super().__init__(balls)
         texts = {name: str(half) for name, half in halves.items()}
-        ends = [end_of(balls.inputs.inputs, texts, side) for side in (-1, 1)]
-        demand(ends == [*balls.inputs[1:]], "a width is missing, or another one")
+        ends = [end_of(balls.inputs, texts, side) for side in (-1, 1)]
+        demand(ends == [balls.claim.low, balls.claim.high], "a width is missing, or another one")
         self.ways = [Way(balls, name, half, scales[name]) for name, half in halves.items()]
         self.point, self.scene = Radius(balls.own), list[Covered]()
         self.plain: BoxRadius | None = BoxRadius(balls)
 
     def advance(self, piece: Piece, proposal: list[Any]) -> Covered:  # type: ignore[override]
         """Carry all over a step: `proposal` has six polynomials of integers, and the bits of their unit, per input."""
-        (whole, d, joined), own = self.widened(piece), Piece(self.balls.own, piece.step)
+        whole, own, widened = piece, Piece(self.balls.own, piece.step), self.widened(piece)
+        d = widened.sizes
         self.scene, sizes, polynomials = [self.point.advance(own)], list[list[arb]](), list[Any]()
         with ctx.workprec(2 * SHORT):
-            omega = times(piece.k.h, self.balls.omega)
+            omega = times(piece.constants.h, self.balls.omega_0)
             p, v = (
                 [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in part]
                 for part in (piece.p, piece.v)
             )
             K = [cut(f, TERMS) for f in cross(p, add(v, cross(omega, p)))]
             for way, (rows, bits) in zip(self.ways, proposal, strict=True):
-                f, unit, inverse = [fmpz_poly(row) for row in rows], fmpz(1) << bits, 1 / piece.k.h
+                f, unit, inverse = (
+                    [fmpz_poly(row) for row in rows],
+                    fmpz(1) << bits,
+                    1 / piece.constants.h,
+                )
                 start, end = (
                     [g(ball(s)) / unit for g in f] for s in (piece.step.low, piece.step.high)
                 )
@@ -101,8 +105,8 @@ class Tangents(BoxRadius):
                     )
                 polynomials.append((f[:3], unit))
         with ctx.workprec(SHORT):
-            k, near_by = whole.k, self.scene[0].tube.eta
-            off, around = size(add(k.omega, times(-1, omega))), (own.k.w + d.k) * near_by
+            k, near_by = whole.constants, self.scene[0].tube.eta
+            off, around = size(add(k.omega, times(-1, omega))), (own.constants.w + d.k) * near_by
 
             def bounds(e: arb, g: arb) -> tuple[arb, arb, list[list[arb]]]:
                 found = [
@@ -114,7 +118,7 @@ class Tangents(BoxRadius):
                 fast = sum((way.half * (x[1] + y[1]) for way, x, y in parts), around)
                 return upper(far), upper(fast), found
 
-            sure = self.by_radius(whole, d, joined, off)
+            sure = self.by_radius(whole, widened, off)
             e, g = (
                 upper(2 * x + TINY).min(y)
                 for x, y in zip(bounds(arb(0), arb(0))[:2], sure, strict=True)
@@ -131,24 +135,27 @@ class Tangents(BoxRadius):
             ]
             return Covered(whole, tube(k, d, self.eta, gamma + d.p**2 * off))
 
-    def by_radius(self, whole: Piece, d: Sizes, jump: arb, off: arb) -> Vector:
+    def by_radius(self, whole: Piece, widened: Widened, off: arb) -> Vector:
         """Return Theorem C's bounds of |r - p| and |H - K| for the box: no bounds from where they fail on."""
         try:
-            eta = self.plain.grown(whole, d, jump).tube.eta if self.plain else arb("inf")
+            eta = self.plain.grown(whole, widened).tube.eta if self.plain else arb("inf")
         except ArithmeticError:
             self.plain, eta = None, arb("inf")
-        return [eta, ((whole.k.w + d.k) * eta + d.p**2 * off).upper()]
+        return [
+            eta,
+            ((whole.constants.w + widened.sizes.k) * eta + widened.sizes.p**2 * off).upper(),
+        ]
 
 
 def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vector) -> list[arb]:
     """Return |P|, |Q|, |R1|, |R2|, |p·P|, |K·P + p·Q| of polynomials (P, Q) for ρ and χ, with the scene's Ω and γ."""
-    k, P, Q, rates = piece.k, W[:3], W[3:], [f.derivative() for f in W]
+    k, P, Q, rates = piece.constants, W[:3], W[3:], [f.derivative() for f in W]
     turn, slow, lean = times(k.h, way.turn), k.h * way.slow, add(K, times(-1, omega))
     r1 = add(rates[:3], cross(p, Q), cross(P, lean), cross(turn, p))
     r2 = add(rates[3:], cross(k.c, P), cross(omega, Q), cross(turn, K))
-    if not k.drag.is_zero():
+    if not k.drag_0.is_zero():
         along = times(dot(turn, p) + dot(omega, P), p)
-        r2 = add(r2, times(k.drag, add(Q, times(-1, turn), along, times(dot(omega, p), P))))
+        r2 = add(r2, times(k.drag_0, add(Q, times(-1, turn), along, times(dot(omega, p), P))))
     if not slow.is_zero():
         r2 = add(r2, times(slow, add(lean, times(dot(omega, p), p))))
     vectors = [P, Q, r1, r2, [dot(p, P)], [dot(K, P) + dot(p, Q)]]
@@ -157,10 +164,10 @@ def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vect
 
 def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g: arb) -> list[arb]:
     """Return bounds of |ρ - P|, |χ - Q|, |ρ' - P'| on a step, where |r - p| <= e and |H - K| <= g (Lemma 12.2)."""
-    k, d, (P, Q, r1, r2, along, across) = piece.k, piece.sizes, sizes
-    w, span, omega = k.w, ball(piece.step.high - piece.step.low), times(k.h, balls.omega)
+    k, d, (P, Q, r1, r2, along, across) = piece.constants, piece.sizes, sizes
+    w, span, omega = k.w, ball(piece.step.high - piece.step.low), times(k.h, balls.omega_0)
     turn, slow = size(times(k.h, way.turn)), upper(abs(k.h * way.slow))
-    off, gap = size(add(k.omega, times(-1, omega))), upper(abs(k.h * balls.damping - k.drag))
+    off, gap = size(add(k.omega, times(-1, omega))), upper(abs(k.drag - k.drag_0))
     W = k.omega_size.max(size(omega))
     s1 = (Q + turn) * e + (g + off) * P
     s2 = Q * off + g * turn + gap * (Q + turn * (1 + d.p**2) + 2 * W * d.p * P)
@@ -168,11 +175,11 @@ def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g
         g + 2 * off + W * e * (1 + d.p)
     )
     aside, tilt = along + e * P, across + g * P + e * Q
-    source = s1 + r1 + (s2 + r2 + aside * k.c_size + tilt * k.speed) / w
-    rate = k.below.max(k.above + k.speed**2) + k.drag_size * k.omega_size
+    source = s1 + r1 + (s2 + r2 + aside * k.c_size + tilt * k.S) / w
+    rate = k.lambda_minus.max(k.lambda_plus + k.S**2) + k.drag_size * k.omega_size
     error = upper((way.error + span * source) * (span * rate / (2 * w)).exp())
-    momentum = upper((w + k.speed) * error + tilt)
-    return [error, momentum, upper(momentum + (k.speed + k.omega_size) * error + s1 + r1)]
+    momentum = upper((w + k.S) * error + tilt)
+    return [error, momentum, upper(momentum + (k.S + k.omega_size) * error + s1 + r1)]
 
 
 class Watched:
@@ -341,7 +348,7 @@ def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) 
 
 def motion(covered: Covered, s: arb) -> list[Vector]:
     """Return balls of r, r', r'' at `s`."""
-    (piece, (eta, u, a)), h = covered, covered.piece.k.h
+    (piece, (eta, u, a)), h = covered, covered.piece.constants.h
     with ctx.workprec(piece.balls.prec):
         forms = zip(
             (piece.p, piece.v, [g.derivative() for g in piece.v]),
@@ -357,7 +364,7 @@ def motion(covered: Covered, s: arb) -> list[Vector]:
 
 def change(covered: Covered, tangent: Tangent, s: arb) -> list[Vector]:
     """Return balls of ρ, ρ' at `s`."""
-    h, rates = covered.piece.k.h, [g.derivative() for g in tangent.rows]
+    h, rates = covered.piece.constants.h, [g.derivative() for g in tangent.rows]
     rho, rate = ([near(f, s) / tangent.unit for f in part] for part in (tangent.rows, rates))
     return [
         [q + arb(0, tangent.error) for q in rho],
@@ -380,7 +387,9 @@ def late_and_turned(
             else -ux / ax
         )
         turned = (x * dy - y * dx + late * (x * vy - y * vx)) / (x**2 + y**2) * 180 / arb.pi()
-        time = first(arb_series([ball(piece.step.centre) + s * piece.k.h, late], 2) / way.twin.pace)
+        time = first(
+            arb_series([ball(piece.step.centre) + s * piece.constants.h, late], 2) / way.twin.pace
+        )
         return [x / way.scale for x in ((time, turned) if apsis else (time,))]
 
 

@@ -1,12 +1,20 @@
-"""TRUSTED. The defects of a step by digits of radix 2^22, as exact sums in 64-bit integers.
+"""TRUSTED. The defects of a step by digits of radix 2^22, as exact sums in 64-bit integers (THEOREM.md, section 6).
 
-Nothing here is a float, and no sum can overflow: `check` refuses what could (THEOREM.md, section 6). A digit of row q
-stands for 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
+Nothing here is a float, and no sum can overflow: `check` refuses what could. A digit of row q stands for
+2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
 `multiply` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, but where FLINT audits.
+
+    code        text
+    count       L, digits of a coefficient
+    orders      O, coefficients of a polynomial
+    p, tension, constant   m, M, C, the largest digits of p, λ and the constants
+    products    L O m (M + 5C + 3m), a bound of all sums of products of digits
+    linear      a bound of the products with 2^B, of c and of the 1 of τ
+    more        rows of a product that are summed beyond L, T - L
 """
 
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, fmpz, fmpz_poly
@@ -15,72 +23,120 @@ from ...numbers.taylor_step import DIGIT_BITS
 from ...system.machine_code import kept
 from .balls import demand
 
-# orders of a factor that are taken at once; rows in which a sum below 2^62 is carried on
-MASK, BLOCK, TOP_ROWS = (1 << DIGIT_BITS) - 1, 8, 3
-# sum, factor, constant and series of a term of `sums`: - ω² p, 2 Ω × p', - c, the - 1 of τ; and γ p', p'
-FEW = (
-    (0, -1, 1, 0),
-    (1, -1, 1, 1),
-    (0, -2, 0, 5),
-    (1, 2, 0, 4),
-    (1, -1, 3, 7),
-    (2, -1, 4, 7),
-    (3, -1, 5, 7),
+MASK = (1 << DIGIT_BITS) - 1
+BLOCK = 8  # orders of a factor that are taken at once
+TOP_ROWS = 3  # rows in which a sum below 2^62 is carried on
+MOST_BITS = 62  # of a sum
+FACTOR_BITS = 31  # of a factor of λ p and of the squares, without its sign
+
+# rows of the series that are multiplied: p, λ, p' and the 1, which is 2^B over 2^B
+X, M, W, TENSION, X_RATE, M_RATE, W_RATE, ONE = range(8)
+# rows of the constants: those of `Integers`, and the 1
+OMEGA, OMEGA_SQUARED, DRAG, C_M, C_W, UNIT = range(6)
+# rows of the results, in the order of `Norms`
+D_X, D_M, D_W, TAU, P_RATE_X, P_RATE_M, P_RATE_W, TAU_RATE = range(8)
+RESULTS = 7  # that are sums of products; τ' comes from τ
+
+
+class Term(NamedTuple):
+    """A small integer times a constant times a series, which is added to a result."""
+
+    result: int
+    factor: int
+    constant: int
+    series: int
+
+
+# d = λ p + p'' + 2 Ω × p' + Ω × (Ω × p) + γ p' − c without λ p and p'', τ = |p|² − 1 without |p|², and p' (section 6)
+LINEAR = (
+    Term(D_X, -1, OMEGA_SQUARED, X),
+    Term(D_M, -1, OMEGA_SQUARED, M),
+    Term(D_X, -2, OMEGA, M_RATE),
+    Term(D_M, 2, OMEGA, X_RATE),
+    Term(D_X, 1, DRAG, X_RATE),
+    Term(D_M, 1, DRAG, M_RATE),
+    Term(D_W, 1, DRAG, W_RATE),
+    Term(D_M, -1, C_M, ONE),
+    Term(D_W, -1, C_W, ONE),
+    Term(TAU, -1, UNIT, ONE),
+    Term(P_RATE_X, 1, UNIT, X_RATE),
+    Term(P_RATE_M, 1, UNIT, M_RATE),
+    Term(P_RATE_W, 1, UNIT, W_RATE),
 )
-LINEAR = FEW + tuple(term for n in range(3) for term in ((n, 1, 2, 4 + n), (4 + n, 1, 5, 4 + n)))
 
 
 def check(rows: Any, constants: Any) -> int:
     """Return a bound of the products' sums in `norms`; raise ArithmeticError if a sum or factor may overflow."""
-    (_, digits, orders), parts = rows.shape, (rows[:3], rows[3], constants)
-    # -x.min() itself may overflow
-    p, tension, constant = (max(int(x.max()), -int(x.min())) for x in parts)
-    most: int = digits * orders * p * (tension + 5 * constant + 3 * p)
-    linear = orders**2 * p + constant + (1 << DIGIT_BITS) << DIGIT_BITS
+    _, count, orders = rows.shape
+    p = _largest(rows[:TENSION])
+    tension = _largest(rows[TENSION])
+    constant = _largest(constants)
+
+    products: int = count * orders * p * (tension + 5 * constant + 3 * p)  # (6.9)
+    linear = (orders**2 * p + constant + (1 << DIGIT_BITS)) << DIGIT_BITS  # (6.10)
+    demand(products + linear < 1 << MOST_BITS, "digits may overflow")  # (6.11)
+    # k c_k, twice a constant or a digit of λ
     demand(
-        most + linear < 1 << 62 and 2 * max(orders * p, tension, constant) < 1 << 31,
-        "digits may overflow",
-    )
-    return most
+        2 * max(orders * p, tension, constant) < 1 << FACTOR_BITS, "digits may overflow"
+    )  # (6.12)
+    return products
+
+
+def _largest(digits: Any) -> int:
+    """Return the size of the largest digit."""
+    # as integers without a limit: -digits.min() itself may overflow
+    return max(int(digits.max()), -int(digits.min()))
 
 
 @kept()
 def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
     """Add the product of two polynomials to the sums `i`, in the rows that these have; `alike`: f is g."""
+    # a kernel: eight orders of f at once are held in registers, and BLOCK zeros stand around those of g
     for r in range(g.shape[0]):
         row = g[r]
         while len(row) > 2 * BLOCK and not row[-BLOCK - 1]:
             row = row[:-1]
         for q in range(min(r + 1 if alike else f.shape[0], len(to) - r)):
+            twice = 2 if alike and q < r else 1
             for k in range(0, f.shape[1] - 2 * BLOCK, BLOCK):
-                s, out = f[q, BLOCK + k : 2 * BLOCK + k], to[q + r, i, k : k + len(row) - BLOCK]
-                # held in registers
+                s = f[q, BLOCK + k : 2 * BLOCK + k]
+                out = to[q + r, i, k : k + len(row) - BLOCK]
                 a, b, c, d, e, u, v, w = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]
                 for j in range(len(out) if a | b | c | d | e | u | v | w else 0):
                     x = a * row[j + 8] + b * row[j + 7] + c * row[j + 6] + d * row[j + 5]
                     x += e * row[j + 4] + u * row[j + 3] + v * row[j + 2] + w * row[j + 1]
-                    out[j] += (2 if alike and q < r else 1) * x
+                    out[j] += twice * x
 
 
 @kept()
 def sums(series: Any, constants: Any, more: int) -> Any:
     """Return the sums over all orders of the digits of |c|, by rows: of d, of τ, of p', and of n |c| of τ."""
+    # a kernel: one array of digits, from the products to their sums
     _, count, width = series.shape
-    digits = np.zeros((TOP_ROWS + count + more, 7, 2 * (width - BLOCK)), np.int64)
-    own, to = np.zeros((8, len(digits)), np.int64), digits[TOP_ROWS:]
+    digits = np.zeros((TOP_ROWS + count + more, RESULTS, 2 * (width - BLOCK)), np.int64)
+    to = digits[TOP_ROWS:]
+
+    # λ p and |p|²
     for i in range(3):
-        multiply(to, i, series[3], series[i], False)
-        multiply(to, 3, series[i], series[i], True)
-    for i, times, constant, factor in LINEAR:
+        multiply(to, D_X + i, series[TENSION], series[X + i], False)
+        multiply(to, TAU, series[X + i], series[X + i], True)
+
+    for result, factor, constant, factor_series in LINEAR:
         for q in range(count):
-            c = times * constants[constant, q]
+            c = factor * constants[constant, q]
             for r in range(min(count, len(to) - q) if c else 0):
                 for n in range(width - 2 * BLOCK):
-                    to[q + r, i, n] += c * series[factor, r, BLOCK + n]
-    for i in range(7):
-        for t in range(count if i < 3 else 0):
+                    to[q + r, result, n] += c * series[factor_series, r, BLOCK + n]
+
+    # p'', the derivative of p' times 2^B
+    for i in range(3):
+        for t in range(count):
             for n in range(width):
-                to[t, i, n] += (n + 1) * to[t, 4 + i, n + 1]  # p''
+                to[t, D_X + i, n] += (n + 1) * to[t, P_RATE_X + i, n + 1]
+
+    absolute = np.zeros((RESULTS + 1, len(digits)), np.int64)
+    for i in range(RESULTS):
+        # carry, from the lowest row up
         for t in range(len(digits) - 1, 0, -1):
             for n in range(digits.shape[2]):
                 digits[t - 1, i, n] += digits[t, i, n] >> DIGIT_BITS
@@ -89,47 +145,49 @@ def sums(series: Any, constants: Any, more: int) -> Any:
             for n in range(digits.shape[2]):
                 # the highest digit, -1 for a negative coefficient, else 0, turns all signs
                 x = (digits[t, i, n] ^ digits[0, i, n]) - digits[0, i, n]
-                own[i, t] += x
-                own[7, t] += n * x if i == 3 else 0
-    return own
+                absolute[i, t] += x
+                if i == TAU:
+                    absolute[TAU_RATE, t] += n * x
+    return absolute
 
 
 @lru_cache(maxsize=64)  # steps of the same length follow each other
-def split(count: int, *whole: fmpz) -> Any:
+def split(count: int, *integers: fmpz) -> Any:
     """Return the digits of integers, the highest first and signed."""
-    low = range(DIGIT_BITS * (count - 2), -1, -DIGIT_BITS)
-    return np.array(
-        [
-            [int(n >> DIGIT_BITS * (count - 1)), *(int(n >> bits) & MASK for bits in low)]
-            for n in whole
-        ]
-    )
+    shifts = range(DIGIT_BITS * (count - 2), -1, -DIGIT_BITS)
+    rows = []
+    for n in integers:
+        highest = int(n >> DIGIT_BITS * (count - 1))
+        rows.append([highest, *(int(n >> bits) & MASK for bits in shifts)])
+    return np.array(rows)
 
 
-def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
+def norms(rows: Any, integers: Any, more: int = 1) -> list[arb]:
     """Return sums of |c| of d (three components), of τ, of p' (three components) and of τ' (n |c|).
 
     Args:
         rows: digits of x, m, w, λ, shape (4, L, orders).
-        whole: ω, ω², γ, c_m, c_w over 2^(22 L - 1).
+        integers: ω, ω², γ, c_m, c_w over 2^(22 L - 1).
         more: rows of a product that are summed beyond L; what is left out is bounded, with L - 1 it is nothing.
     """
-    (_, count, orders), last = rows.shape, 2 - DIGIT_BITS * (rows.shape[1] + 1 + more)
+    _, count, orders = rows.shape
+    constants = split(count, *integers, fmpz(1) << DIGIT_BITS * count - 1)
+    products = check(rows, constants[:UNIT])
+
     series = np.zeros((8, count, orders + 2 * BLOCK), np.int32)
-    constants, inner = (
-        split(count, *whole, fmpz(1) << DIGIT_BITS * count - 1),
-        series[..., BLOCK:-BLOCK],
-    )
-    most = check(rows, constants[:5])
-    inner[:4], inner[4:7, :, :-1], inner[7, :, 0] = (
-        rows,
-        np.arange(1, orders) * rows[:3, :, 1:],
-        constants[5],
-    )
-    # what is left out of at most 2 O coefficients, in units of the last row
-    cut = 0 if more >= count - 1 else (4 * orders * most >> DIGIT_BITS) + 1
-    own = enumerate(sums(series, constants, more)[:, ::-1].tolist())
-    return [
-        arb((fmpz_poly(x)(1 << DIGIT_BITS) + cut * (2 * orders if i == 7 else 1), fmpz(last)))
-        for i, x in own
-    ]
+    inner = series[..., BLOCK:-BLOCK]
+    inner[: TENSION + 1] = rows
+    inner[X_RATE : W_RATE + 1, :, :-1] = np.arange(1, orders) * rows[:TENSION, :, 1:]
+    inner[ONE, :, 0] = constants[UNIT]
+    lowest_first = sums(series, constants, more)[:, ::-1].tolist()
+
+    # (6.13): what is left out of at most 2 O coefficients, in units of the last row
+    cut = 0
+    if more < count - 1:
+        cut = (4 * orders * products >> DIGIT_BITS) + 1
+    exponent = fmpz(2 - DIGIT_BITS * (count + 1 + more))
+    bounds = list[arb]()
+    for i, digit_sums in enumerate(lowest_first):
+        rest = cut * 2 * orders if i == TAU_RATE else cut
+        bounds.append(arb((fmpz_poly(digit_sums)(1 << DIGIT_BITS) + rest, exponent)))
+    return bounds

@@ -101,7 +101,7 @@ class Following:
             )
             row = times(
                 self.balls.length,
-                [tube.eta + cut, arb(0), (tube.u + cut * orders) / piece.k.h, arb(0)],
+                [tube.eta + cut, arb(0), (tube.u + cut * orders) / piece.constants.h, arb(0)],
             )
             off = arb_mat([row] * self.count) + costs(gap.entries(), weights(-1, 0), end - begin)
         self.pieces.append((until, series, 3 if 2 * begin >= end else 7, end - begin, off))

@@ -42,7 +42,7 @@ def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
     if azimuth.endswith("@0"):
         return balls.turned([-sin, cos, arb(0)], 1), zero, arb(0)
     for _ in range(balls.prec):
-        pull = add(balls.c, times(-1, cross(balls.turning, cross(balls.turning, rest))))
+        pull = add(balls.c, times(-1, cross(balls.omega, cross(balls.omega, rest))))
         demand(
             dot(pull, pull) > 0,
             "so fast a rotation singles out no rest position, which the gate goes through",
@@ -75,7 +75,7 @@ class SectionSlope(Slope):
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
         piece = covered.piece
         eta, u, bend = covered.tube
-        h, bits = piece.k.h, piece.step.bits
+        h, bits = piece.constants.h, piece.step.bits
         # integers over 2^bits stand for h a, b and h d; by how much they miss these, the radii of the balls included
         a_whole, a_miss = fixed(times(h, a), bits)
         b_whole, b_miss = fixed(b, bits)
@@ -120,7 +120,7 @@ class SectionSlope(Slope):
     def row(self, s: arb) -> Vector:
         """Return the state over the length."""
         turned, (r, v) = self.piece.balls.turned, state(self.covered, s)
-        return [*turned(r, -1), *turned(times(1 / self.piece.k.h, v), -1)]
+        return [*turned(r, -1), *turned(times(1 / self.piece.constants.h, v), -1)]
 
 
 class Apsis(SectionSlope):
@@ -152,7 +152,10 @@ class Apsis(SectionSlope):
             (arb_poly([s.mid(), 1]), s - s.mid()),
         )
         x = [arb_poly(f)(middle)(off) / piece.unit for f in (*piece.p, *piece.v)]
-        r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
+        r, v = (
+            [q + arb(0, eta) for q in x[:3]],
+            [(q + arb(0, u)) / piece.constants.h for q in x[3:]],
+        )
         return [*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)]
 
 

@@ -23,13 +23,14 @@ class Columns(CarriedState):
     def advance(self, piece: Piece, proposal: Proposal) -> Covered:
         """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
         k, step, d, columns = (
-            piece.k,
+            piece.constants,
             piece.step,
             piece.sizes,
             [[fmpz_poly(f) for f in c] for c in proposal],
         )
         with ctx.workprec(2 * SHORT):
-            slack = add(self.join(piece), self.rest)
+            jump = self.join(piece)
+            slack = add([*jump.p, *jump.K], self.rest)
             inverse = matrix(columns, ball(step.low), k.h).inv()
             moved, self.carried = inverse * self.carried, matrix(columns, ball(step.high), k.h)
             pairs = [
@@ -70,18 +71,19 @@ def cut(f: arb_poly, terms: int = CUT) -> arb_poly:
 
 def residuals(piece: Piece, columns: list[Vector]) -> list[list[arb]]:
     """Return |Wp|, |WK|, |R1|, |R2| for each column."""
-    k, out = piece.k, []
+    k, out = piece.constants, []
     p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit))) for f in part] for part in (piece.p, piece.v))
-    K = [cut(f) for f in cross(p, add(v, cross(k.omega, p)))]
-    turn = add(K, times(-1, k.omega))
+    K = [cut(f) for f in cross(p, add(v, cross(k.omega_0, p)))]
+    turn = add(K, times(-1, k.omega_0))
     for column in columns:
         W = [arb_poly(f) * (1 / arb(fmpz(1) << FINE)) for f in column]
         P, Q, rates = W[:3], W[3:], [f.derivative() for f in W]
         r1 = add(rates[:3], cross(p, Q), cross(P, turn))
-        r2 = add(rates[3:], cross(k.c, P), cross(k.omega, Q))
-        if not k.drag.is_zero():
+        r2 = add(rates[3:], cross(k.c, P), cross(k.omega_0, Q))
+        if not k.drag_0.is_zero():
             r2 = add(
-                r2, times(k.drag, add(Q, times(dot(k.omega, P), p), times(dot(k.omega, p), P)))
+                r2,
+                times(k.drag_0, add(Q, times(dot(k.omega_0, P), p), times(dot(k.omega_0, p), P))),
             )
         out.append([size([f(UNIT) for f in part]) for part in (P, Q, r1, r2)])
     return out

@@ -1,22 +1,38 @@
-"""TRUSTED. The system of THEOREM.md, section 1: the scene's constants and release in balls, and in the time of a step.
+"""TRUSTED. The system of THEOREM.md, section 1: a scene's constants and release in balls, and in the time of a step.
 
-Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
+Lengths are divided by that of the rod. Axes: x east, w along the Earth's axis, m in the meridian; without rotation
+x, y, z. An index 0 marks the scene's constants, with which polynomials and K = p × (p' + Ω₀ × p) are formed. In a proof
+of a point they are the pendulum's own; in a box of inputs (section 11) Ω and γ are balls that hold those of each
+pendulum, while c has one value for all (Lemma 11.1).
+
+    code            text        unit of SceneBalls; of Scaled, in the time of a step, s = (t - centre)/h
+    length          l           m
+    c               c           1/s²; h² c
+    omega, omega_0  Ω, Ω₀       1/s; h Ω
+    drag, drag_0    γ, γ₀       1/s; h γ
+    r, v            r(0), r'(0) 1, 1/s
+    H               H(0)        1/s, with Ω₀
+    w0, w           w₀, w       1/s; w = h w₀
+    S               S >= |H|    1/s; h S
+    lambda_minus    λ−          1/s²; h² λ−
+    lambda_plus     λ+          1/s²; h² λ+
+    c_size, omega_size, drag_size   bounds of |c|, |Ω|, γ
+    theta           ϑ           1, by how much the integers miss the constants (section 6)
 """
 
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpz
 
 from .balls import Vector, add, ball, cross, demand, dot, fixed, size, times, upper
 
 
 class SceneBalls:
-    """The scene's constants and release as balls at `prec` bits, from its exact inputs alone; exact zeros stay exact.
+    """The scene's constants and release as balls at `prec` bits, from its exact inputs alone.
 
-    Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z. `omega` is the scene's Ω, with
-    which K = p × (p' + Ω × p) is formed; `turning` is that of the pendulum itself: the same, but in a box of inputs.
+    Exact zeros of the inputs stay exact.
     """
 
     def __init__(self, inputs: Any, prec: int, flint_only: bool = False) -> None:
@@ -24,54 +40,64 @@ class SceneBalls:
             inputs.drag >= 0 and inputs.length > 0,
             "not a pendulum: the theorems take a length > 0 and a drag >= 0",
         )
-        # the last: without sums of digits
-        self.inputs, self.prec, self.flint_only = inputs, prec, flint_only
+        self.inputs = inputs
+        # what is proved with these balls is proved of this: the inputs, or a box of them
+        self.claim: Any = inputs
+        self.prec = prec
+        self.flint_only = flint_only  # without sums of digits
         with ctx.workprec(prec):
-            (sin, cos), rate = ball(inputs.latitude / 180).sin_cos_pi(), ball(inputs.rotation_rate)
-            f, self.length, self.drag = (
-                ball(inputs.flattening),
-                ball(inputs.length),
-                ball(inputs.drag),
-            )
-            normal = ball(inputs.equatorial_radius) / (1 - f * (2 - f) * sin * sin).sqrt()
-            # the centrifugal force at the pivot, which effective gravity contains
-            push = (
-                arb(0)
-                if inputs.gravity_is == "effective"
-                else rate * rate * (normal + ball(inputs.altitude)) * cos
-            )
-            self.tilt = (arb(1), arb(0)) if rate.is_zero() else (sin, cos)
-            self.omega = [arb(0), arb(0), rate]
-            self.turning = self.omega
-            weight = [arb(0), -sin * push, cos * push - ball(inputs.gravity)]
-            self.release = self._release(inputs)
-            self.c, self.r, v = (
-                self.turned(a, 1) for a in (times(1 / self.length, weight), *self.release)
-            )
-            (x, y, vx), at_rest = (
-                (q.is_zero() for q in (*self.release[0][:2], v[0])),
-                all(q.is_zero() for q in v),
-            )
-            self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
-            # xdot = 0 for ever: in a plane that does not turn, or at rest on the vertical
-            self.still = x and (
-                (vx and rate.is_zero()) or (at_rest and y and (sin * cos * rate).is_zero())
-            )
-            # whether the velocity at the release is exactly horizontal, and c exactly vertical (Lemma 13.2)
-            self.level = horizontal(inputs, self.release[1][2])
-            self.upright = weight[1].is_zero()
-            self.begin(v)
+            self.length = ball(inputs.length)
+            self.drag = ball(inputs.drag)
+            self.drag_0 = self.drag
+            rate = ball(inputs.rotation_rate)
+            self.omega: Vector = [arb(0), arb(0), rate]
+            self.omega_0 = self.omega
 
-    def begin(self, v: Vector) -> None:
-        """Take the velocity at the release: H there, the weight, and what bounds the motion for all times."""
-        self.H = cross(self.r, add(v, cross(self.turning, self.r)))
-        c, w = size(self.c), size(self.turning)
+            sin, cos = ball(inputs.latitude / 180).sin_cos_pi()
+            self.tilt = (arb(1), arb(0)) if rate.is_zero() else (sin, cos)
+            weight = _weight(inputs, sin, cos)
+            self.release = self._release(inputs)
+            position, velocity = self.release
+            self.c = self.turned(times(1 / self.length, weight), 1)
+            self.r = self.turned(position, 1)
+            self.v = self.turned(velocity, 1)
+
+            self._find_exact_zeros((sin * cos * rate).is_zero())
+            # whether the velocity at the release is exactly horizontal, and c exactly vertical (Lemma 13.2)
+            self.level = _horizontal(inputs, velocity[2])
+            self.upright = weight[1].is_zero()
+            self._bound_the_motion()
+
+    def _find_exact_zeros(self, vertical_rest: bool) -> None:
+        """Find out what exact zeros of the inputs say of xdot (section 8, t = 0 and ẋ = 0 for ever).
+
+        `vertical_rest`: at rest on the vertical the pendulum stays, as gravity is vertical too.
+        """
+        x, y, _ = (q.is_zero() for q in self.release[0])
+        vx = self.v[0].is_zero()
+        at_rest = all(q.is_zero() for q in self.v)
+
+        self.slow = vx  # ẋ(0) = 0 exactly
+        self.flat = at_rest and x  # ẍ(0) = 0 exactly as well
+        in_a_fixed_plane = x and vx and self.omega[2].is_zero()
+        on_the_vertical = x and y and at_rest and vertical_rest
+        self.still = in_a_fixed_plane or on_the_vertical  # ẋ = 0 for ever
+
+    def _bound_the_motion(self) -> None:
+        """Take H at the release, the weight w₀, and what the energy bounds for all times (section 4)."""
+        self.H = cross(self.r, add(self.v, cross(self.omega_0, self.r)))
+        H = cross(self.r, add(self.v, cross(self.omega, self.r)))  # the pendulum's own
+        c = size(self.c)
+        omega = size(self.omega)
+
         # any positive number is a valid weight
-        self.w0 = next(pace.mid() for pace in (c.sqrt(), w + size(self.H), arb(1)) if pace > 0)
-        energy = dot(self.H, self.H) / 2 - dot(self.turning, self.H) - dot(self.c, self.r)
-        self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
-        # -+ (c·r - w0²)
-        self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)
+        rates = (c.sqrt(), omega + size(H), arb(1))
+        self.w0 = next(rate.mid() for rate in rates if rate > 0)
+
+        J = dot(H, H) / 2 - dot(self.omega, H) - dot(self.c, self.r)  # (1.1)
+        self.lambda_minus = upper(self.w0**2 + omega**2 / 2 + J)  # (4.5)
+        self.lambda_plus = upper(c - self.w0**2)  # (4.6)
+        self.S = upper(omega + upper(omega**2 + 2 * (J + c)).sqrt())  # (4.7)
 
     def turned(self, a: Vector, way: int) -> Vector:
         """Turn east, north, up to the axes x, m, w; with `way` -1 back."""
@@ -79,20 +105,39 @@ class SceneBalls:
         return [a[0], a[1] * sin - way * a[2] * cos, a[2] * sin + way * a[1] * cos]
 
     def _release(self, inputs: Any) -> tuple[Vector, Vector]:
+        """Return position and velocity at the release over the length, east, north, up."""
         if inputs.position:
             x, y, vx, vy = (ball(q) / self.length for q in inputs.position)
             z = -(1 - x * x - y * y).sqrt()
             return [x, y, z], [vx, vy, -(x * vx + y * vy) / z]
-        angle, azimuth, *rates = (ball(q / 180) for q in inputs.angles)
-        (s, c), (sa, ca), (da, db) = (
-            angle.sin_cos_pi(),
-            azimuth.sin_cos_pi(),
-            times(arb.pi(), rates),
-        )
-        return [s * ca, s * sa, -c], [c * ca * da - s * sa * db, c * sa * da + s * ca * db, s * da]
+
+        # of the angles in half turns
+        angle, azimuth, angle_rate, azimuth_rate = (ball(q / 180) for q in inputs.angles)
+        sin, cos = angle.sin_cos_pi()
+        sin_az, cos_az = azimuth.sin_cos_pi()
+        angle_rate = arb.pi() * angle_rate
+        azimuth_rate = arb.pi() * azimuth_rate
+        position = [sin * cos_az, sin * sin_az, -cos]
+        velocity = [
+            cos * cos_az * angle_rate - sin * sin_az * azimuth_rate,
+            cos * sin_az * angle_rate + sin * cos_az * azimuth_rate,
+            sin * angle_rate,
+        ]
+        return position, velocity
 
 
-def horizontal(inputs: Any, vz: arb) -> bool:
+def _weight(inputs: Any, sin: arb, cos: arb) -> Vector:
+    """Return the pull at the pivot in m/s², east, north, up, from sine and cosine of the latitude."""
+    centrifugal = arb(0)  # which effective gravity contains
+    if inputs.gravity_is != "effective":
+        f = ball(inputs.flattening)
+        normal = ball(inputs.equatorial_radius) / (1 - f * (2 - f) * sin * sin).sqrt()
+        rate = ball(inputs.rotation_rate)
+        centrifugal = rate * rate * (normal + ball(inputs.altitude)) * cos
+    return [arb(0), -sin * centrifugal, cos * centrifugal - ball(inputs.gravity)]
+
+
+def _horizontal(inputs: Any, vz: arb) -> bool:
     """Return whether the velocity at the release is exactly horizontal; `vz` is a ball of its vertical component."""
     if inputs.position and all(isinstance(q, Fraction) for q in inputs.position):
         x, y, vx, vy = inputs.position
@@ -101,30 +146,41 @@ def horizontal(inputs: Any, vz: arb) -> bool:
     return vz.is_zero()
 
 
+class Integers(NamedTuple):
+    """Integers over 2^bits near the scene's constants in the time of a step: ω, ω², γ, c_m, c_w (section 6)."""
+
+    omega: fmpz
+    omega_squared: fmpz
+    drag: fmpz
+    c_m: fmpz
+    c_w: fmpz
+
+
 class Scaled:
-    """Constants in the time of a step: balls, integers over 2^bits that are off by at most `off` in all, and sizes."""
+    """The constants in the time of a step: balls, the integers over 2^bits that stand for them, and sizes."""
 
     def __init__(self, balls: SceneBalls, h: Fraction, bits: int) -> None:
         with ctx.workprec(balls.prec):
-            self.h, self.w = ball(h), balls.w0 * ball(h)
-            self.c, self.omega, self.drag = (
-                times(self.h**2, balls.c),
-                times(self.h, balls.omega),
-                self.h * balls.drag,
-            )
-            self.whole, self.off = fixed(
-                [self.omega[2], self.omega[2] ** 2, self.drag, *self.c[1:]], bits
-            )
-            self.c_size, self.omega_size, self.drag_size = (
-                size(self.c),
-                size(self.omega),
-                upper(self.drag),
-            )
-            self.speed, self.below, self.above = (
-                balls.speed * self.h,
-                balls.below * self.h**2,
-                balls.above * self.h**2,
-            )
+            self.h = ball(h)
+            self.w = balls.w0 * self.h
+            self.c = times(self.h**2, balls.c)
+            self.omega_0 = times(self.h, balls.omega_0)
+            self.drag_0 = self.h * balls.drag_0
+            self.omega = times(self.h, balls.omega)
+            self.drag = self.h * balls.drag
+
+            # (6.1): ω² has an integer of its own, not the square of that of ω
+            _, c_m, c_w = self.c
+            _, _, rate = self.omega_0
+            integers, self.theta = fixed([rate, rate**2, self.drag_0, c_m, c_w], bits)
+            self.integers = Integers(*integers)
+
+            self.c_size = size(self.c)
+            self.omega_size = size(self.omega)
+            self.drag_size = upper(self.drag)
+            self.S = balls.S * self.h
+            self.lambda_minus = balls.lambda_minus * self.h**2
+            self.lambda_plus = balls.lambda_plus * self.h**2
 
 
 scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each other

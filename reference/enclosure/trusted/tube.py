@@ -1,4 +1,14 @@
-"""TRUSTED. The tube about a step that the motion stays in, and the state in it (THEOREM.md, section 7)."""
+"""TRUSTED. The tube about a step that the motion stays in, and the state in it (THEOREM.md, section 7).
+
+In the time of a step, lengths over that of the rod:
+
+    code            text
+    eta, gamma      η >= |e| = |r − p|, Γ >= |g| = |H − K|
+    U, A            bounds of |v − p'|, |r'' − p''|
+    P, K, D1, D2    the sizes of section 6
+    K_rate          K1 >= |K'|
+    g_rate          a bound of |g'| = |H' − K'|, but for K1 η
+"""
 
 from fractions import Fraction
 
@@ -9,32 +19,44 @@ from .shapes import Covered, Sizes, State, Tube
 from .system import Scaled
 
 
-def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
+def tube(constants: Scaled, sizes: Sizes, eta: arb, gamma: arb) -> Tube:
     """Return the bounds of position, velocity and acceleration from |e| <= eta and |g| <= gamma (section 7)."""
     demand(eta < 2, "a bound is as wide as the sphere")
-    turn, gw = d.k + k.omega_size, k.drag_size * k.omega_size
-    u = gamma + turn * eta + d.d1
-    torque = (
-        k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
-    )
-    rate = d.p * k.c_size + d.k * k.omega_size + k.drag_size * d.k + gw * (1 + d.p**2) + d.d2
-    a = torque + rate * eta + gamma * (turn * d.p + d.d1 + u) + turn * u + d.d1_rate
-    return Tube(upper(eta), upper(u), upper(a))
+    c = constants.c_size
+    Omega = constants.omega_size
+    drag = constants.drag_size
+    P = sizes.p
+    K = sizes.k
+    D1 = sizes.d1
+    D2 = sizes.d2
+
+    U = gamma + (K + Omega) * eta + D1  # (7.1)
+    g_rate = c * eta + Omega * gamma + drag * gamma + drag * Omega * (1 + P) * eta + D2  # (7.2)
+    K_rate = P * c + K * Omega + drag * K + drag * Omega * (1 + P**2) + D2  # (7.3)
+    A = (
+        g_rate + K_rate * eta + gamma * ((K + Omega) * P + D1 + U) + (K + Omega) * U + sizes.d1_rate
+    )  # (7.4)
+    return Tube(upper(eta), upper(U), upper(A))
 
 
 def state(covered: Covered, s: arb, first: int = 0) -> tuple[Vector, Vector]:
     """Return balls that contain the true r and r' at `s`, of this from a component on."""
-    (p, v), (eta, u, _) = covered.piece.values(s, first), covered.tube
-    return [x + arb(0, eta) for x in p], [x + arb(0, u) for x in v]
+    p, v = covered.piece.values(s, first)
+    eta = arb(0, covered.tube.eta)
+    U = arb(0, covered.tube.u)
+    return [x + eta for x in p], [x + U for x in v]
 
 
 def output(covered: Covered, time: Fraction) -> State:
     """Return position and velocity at an output time, in m and m/s; at 0 those of the release itself."""
-    piece, balls = covered.piece, covered.piece.balls
+    piece = covered.piece
+    balls = piece.balls
     with ctx.workprec(balls.prec):
         demand(piece.begin <= time <= piece.end, "the tube holds on its own step only")
-        r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
-        moving = [balls.turned(r, -1), balls.turned(times(1 / piece.k.h, v), -1)]
-        return tuple(
-            interval(x * balls.length) for part in (moving if time else balls.release) for x in part
-        )
+        if time:
+            r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
+            position = balls.turned(r, -1)
+            velocity = balls.turned(times(1 / piece.constants.h, v), -1)
+        else:
+            position, velocity = balls.release
+        return tuple(interval(x * balls.length) for x in (*position, *velocity))

@@ -56,16 +56,18 @@ class Slope:
     def push(self, s: arb) -> int:
         """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
         k, bend = (
-            self.piece.k,
+            self.piece.constants,
             [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v],
         )
-        return (
-            sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
-        )
+        return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.S**2) < 1 else 0
 
     def row(self, s: arb) -> Vector:
         """Return x, y, z, vy and ax over the length at a transit; xdot, the velocity's first component, is 0."""
-        turned, h, (r, v) = self.piece.balls.turned, self.piece.k.h, state(self.covered, s, 1)
+        turned, h, (r, v) = (
+            self.piece.balls.turned,
+            self.piece.constants.h,
+            state(self.covered, s, 1),
+        )
         return [*turned(r, -1), turned([0, *v], -1)[1] / h, self.at(1, s) / h**2]
 
 
@@ -137,7 +139,7 @@ class Scan:
         ):
             return
         ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
-        begin, end = (slope.centre + s * slope.piece.k.h for slope, s in ends)
+        begin, end = (slope.centre + s * slope.piece.constants.h for slope, s in ends)
         t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
         parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
         way = leaves[0].bend if steady else right if product < 0 else 0
@@ -150,7 +152,8 @@ class Scan:
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
     """Return the leaves that the time ball `t` may touch, each with the part of `t` in it as s."""
     parts = [
-        (x.slope, (t - x.slope.centre) / x.slope.piece.k.h, x.low.union(x.high)) for x in leaves
+        (x.slope, (t - x.slope.centre) / x.slope.piece.constants.h, x.low.union(x.high))
+        for x in leaves
     ]
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 

@@ -75,7 +75,7 @@ def test_a_scan_takes_the_steps_of_its_own_scene_in_order(word):
 def test_a_tube_as_wide_as_the_sphere_is_refused(eta):
     piece = Piece(SceneBalls(PARIS, 192), next(steps(PARIS, Fraction(5))))
     with pytest.raises(ArithmeticError):
-        tube(piece.k, piece.sizes, arb(eta), arb(0))
+        tube(piece.constants, piece.sizes, arb(eta), arb(0))
 
 
 @pytest.mark.parametrize("widths", [("1.9", "1e3", "1e12"), ("1.9", "1.9e9", "1.6e18")])

@@ -11,7 +11,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
 from reference.enclosure.trusted.balls import ball
 from reference.enclosure.trusted.defect import Piece
-from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.radius import PhasePoint, Radius
 from reference.enclosure.trusted.six_columns import CUT, FINE, Columns, cut, residuals
 from reference.enclosure.trusted.system import Scaled, SceneBalls
 from reference.numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
@@ -77,7 +77,7 @@ def defects(piece, s):
     rows = [
         [Fraction(int(c), 1 << piece.step.bits) for c in row] for row in piece.step.coefficients
     ]
-    k = piece.k
+    k = piece.constants
     W, c, g = [exact(x) for x in k.omega], [exact(x) for x in k.c], exact(k.drag)
     p, p1, p2 = ([poly(row, s, n) for row in rows[:3]] for n in range(3))
     V, V1 = lin((1, p1), (1, cross(W, p))), lin((1, p2), (1, cross(W, p1)))
@@ -142,10 +142,12 @@ def moving(rng):
 def in_doubles(piece):
     """The constants and sizes of a step, as they stand in THEOREM.md."""
     k = {
-        name: float(getattr(piece.k, name))
-        for name in ("c_size", "omega_size", "drag_size", "w", "speed")
+        name: float(getattr(piece.constants, name))
+        for name in ("c_size", "omega_size", "drag_size", "w", "S")
     }
-    k |= {name: float(getattr(piece.k, name)) for name in ("h", "below", "above")}
+    k |= {
+        name: float(getattr(piece.constants, name)) for name in ("h", "lambda_minus", "lambda_plus")
+    }
     return Row(k), Row({name: float(x) for name, x in piece.sizes._asdict().items()})
 
 
@@ -160,8 +162,15 @@ def jumped(rng, piece, bound):
     jump = [10 ** rng.uniform(-4, -2) for _ in range(6)]
     with ctx.workprec(128):
         p, v = piece.values(ball(piece.step.low))
-        start = [*p, *(x / piece.k.h for x in cross(p, lin((1, v), (1, cross(piece.k.omega, p)))))]
-        bound.last = [x + gap * rng.choice((-1, 1)) for x, gap in zip(start, jump, strict=True)]
+        start = [
+            *p,
+            *(
+                x / piece.constants.h
+                for x in cross(p, lin((1, v), (1, cross(piece.constants.omega_0, p))))
+            ),
+        ]
+        last = [x + gap * rng.choice((-1, 1)) for x, gap in zip(start, jump, strict=True)]
+        bound.last = PhasePoint(last[:3], last[3:])
     return jump
 
 
@@ -193,7 +202,7 @@ def test_one_radius_is_carried_as_theorem_c_says():
         source, ck = D.d2 / K.w + D.d1, K.c_size + D.k**2
         far = np.exp(span * section_3(K, D.p)) * (eta * (1 + D.k / K.w) + span * source)
         rate = (
-            max(K.below, K.above + (K.speed + K.w * far) ** 2)
+            max(K.lambda_minus, K.lambda_plus + (K.S + K.w * far) ** 2)
             + ck * far
             + K.drag_size * K.omega_size * D.p
         )
@@ -271,12 +280,22 @@ def test_what_holds_for_the_whole_run_follows_from_the_energy():
         turn, pull, w0 = np.linalg.norm(W), np.linalg.norm(c), float(balls.w0)
         S = turn + np.sqrt(turn**2 + 2 * (J + pull))
         scale = w0**2 + turn**2 + S**2
-        got = [float(x) for x in (balls.speed**2, balls.below, balls.above)]
+        got = [float(x) for x in (balls.S**2, balls.lambda_minus, balls.lambda_plus)]
         assert np.allclose(
             got, [S**2, w0**2 + turn**2 / 2 + J, pull - w0**2], rtol=0, atol=1e-9 * scale
         )
-        got = [float(x) for x in (k.w, k.speed, k.below, k.above, k.drag, k.omega[2], *k.c)]
-        full = [w0, balls.speed, balls.below, balls.above, balls.drag, balls.omega[2], *balls.c]
+        got = [
+            float(x) for x in (k.w, k.S, k.lambda_minus, k.lambda_plus, k.drag, k.omega[2], *k.c)
+        ]
+        full = [
+            w0,
+            balls.S,
+            balls.lambda_minus,
+            balls.lambda_plus,
+            balls.drag,
+            balls.omega[2],
+            *balls.c,
+        ]
         assert np.allclose(
             got, [float(x) / 4**n for x, n in zip(full, (1, 1, 2, 2, 1, 1, 2, 2, 2), strict=True)]
         )
@@ -293,9 +312,9 @@ def test_residuals_bound_what_their_names_say_and_nearly_reach_it(size):
         ]
         (bounds,) = residuals(piece, [[fmpz_poly(f) for f in column]])
         W, c, g = (
-            [exact(x) for x in piece.k.omega],
-            [exact(x) for x in piece.k.c],
-            exact(piece.k.drag),
+            [exact(x) for x in piece.constants.omega_0],
+            [exact(x) for x in piece.constants.c],
+            exact(piece.constants.drag),
         )
         for s in (Fraction(-1), Fraction(0), Fraction(1)):
             _, _, p, K, _, _ = defects(piece, s)

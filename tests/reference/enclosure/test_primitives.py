@@ -10,7 +10,7 @@ from small_scenes import make_scene
 
 from reference.enclosure.trusted.balls import ball, fixed, interval, size, total, upper
 from reference.enclosure.trusted.defect import Piece
-from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.radius import PhasePoint, Radius
 from reference.enclosure.trusted.shapes import Covered, Tube
 from reference.enclosure.trusted.system import SceneBalls
 from reference.enclosure.trusted.tube import output
@@ -75,15 +75,15 @@ def piece_at(balls, x, low=0, high=1):
 def test_a_join_counts_the_gap_and_the_radius_of_what_is_joined():
     balls = SceneBalls(scene(rotation_rate="0.5"), 128)
     bound = Radius(balls)
-    bound.last = [arb(0, 0.25), *[arb(0)] * 5]
+    bound.last = PhasePoint([arb(0, 0.25), arb(0), arb(0)], [arb(0)] * 3)
     with ctx.workprec(128):
-        first, *rest = bound.join(piece_at(balls, ("0.5", 0, 0), 0, "1/2"))
-        assert first >= 0.75
-        assert rest[-1] >= 0.125  # K = p × (Ω × p)
+        jump = bound.join(piece_at(balls, ("0.5", 0, 0), 0, "1/2"))
+        assert jump.p[0] >= 0.75
+        assert jump.K[2] >= 0.125  # K = p × (Ω × p)
         again = bound.join(piece_at(balls, ("0.5", 0, "0.125"), "1/2", 1))
-        assert again[0] <= 1e-18
-        assert again[2] >= 0.125
-        assert again[3] >= 0.03125
+        assert again.p[0] <= 1e-18
+        assert again.p[2] >= 0.125
+        assert again.K[0] >= 0.03125
 
 
 def test_a_tube_is_asked_on_its_own_step_only():

@@ -32,7 +32,7 @@ from reference.enclosure.frames import ColumnSource
 from reference.enclosure.trusted.balls import add, ball, cross
 from reference.enclosure.trusted.course import Course
 from reference.enclosure.trusted.defect import Piece
-from reference.enclosure.trusted.radius import Radius
+from reference.enclosure.trusted.radius import PhasePoint, Radius
 from reference.enclosure.trusted.six_columns import Columns
 from reference.enclosure.trusted.system import SceneBalls
 from reference.enclosure.trusted.tube import output
@@ -91,11 +91,11 @@ def first_piece(true, other, method):
     step = next(pair(Recurrence(beside, 128, 40).chain(Fraction(1, 32))))
     piece = Piece(balls, step)
     with ctx.workprec(192):
-        k, (p, v) = piece.k, piece.values(ball(step.low))
-        here = [*p, *(x / k.h for x in cross(p, add(v, cross(k.omega, p))))]
+        k, (p, v) = piece.constants, piece.values(ball(step.low))
+        here = [*p, *(x / k.h for x in cross(p, add(v, cross(k.omega_0, p))))]
         gap = [a - b for a, b in zip([*balls.r, *balls.H], here, strict=True)]
         bound = method(balls)
-        bound.last = here
+        bound.last = PhasePoint(here[:3], here[3:])
         if method is Columns:
             bound.rest = [x.abs_upper() for x in gap]
             return (
