@@ -26,7 +26,7 @@ def output(covered: Covered, time: Fraction) -> State:
     with ctx.workprec(piece.balls.prec):
         s = ball((time - piece.step.centre) / piece.step.h)
         ax = piece.v[0].derivative()(s) / piece.unit + arb(0, covered.tube.a)
-        return (*_state(covered, time), interval(ax * piece.balls.length / piece.k.h**2))
+        return (*_state(covered, time), interval(ax * piece.balls.length / piece.constants.h**2))
 '''
 # what is done to each file that the recipe names
 EDITS = {
@@ -35,7 +35,7 @@ EDITS = {
     ),
     "reference/enclosure/trusted/tube.py": lambda text: text + BALL,
     "reference/enclosure/trusted/printed.py": lambda text: re.sub(
-        '^GRID, TRANSITS = "t,x.*?vz', r"\g<0>,ax", text, flags=re.M
+        '^GRID = "t,x.*?vz', r"\g<0>,ax", text, flags=re.M
     ),
     "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace(
         '"t,x,y,z,vx,vy,vz"', "its header"

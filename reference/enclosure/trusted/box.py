@@ -78,7 +78,7 @@ class BoxBalls(SceneBalls):
         self.pace = (pull / self.length / (c_m * c_m + c_w * c_w).sqrt()).sqrt()  # (11.1a)
 
         theta_0 = arb.atan2(-c_w, c_m)
-        psi = theta_0 - lean  # (11.1b)
+        psi = theta_0 - lean  # (11.1c)
         self.tilt = psi.sin_cos()
         latitude = ball(wide["latitude"]) * arb.pi() / 180
         sin, cos = (psi - latitude).sin_cos()
@@ -126,7 +126,7 @@ def plumb(wide: dict[str, Any]) -> tuple[Any, Any]:
     if wide["gravity_is"] == "effective":
         push *= 0
 
-    # (11.1c)
+    # (11.1b)
     aside = push * sin / 2
     down = gravity - push * (1 + cos) / 2
     lean: Any = arb.atan2(value(aside), value(down))
@@ -218,7 +218,7 @@ class BoxRadius(Radius):
             curvature = lambda_minus.max(lambda_plus + (S + (w + K) * E) ** 2)
             mu = curvature + (c + K**2) * E + gamma * Omega * P
             self.eta = upper(eta_start * (length * mu / (2 * w)).exp())  # (11.4b)
-            demand(self.eta < E, "a bound has outgrown what it rests on")  # (11.4c)
+            demand(self.eta < E, "a bound has outgrown what it rests on")  # (11.4b)
 
             g_bound = (w + K) * self.eta  # (4.9)
             return Covered(piece, tube(constants, sizes, self.eta, g_bound))
@@ -319,8 +319,8 @@ def on_the_sphere(x: Any, y: Any, z: Any, vx: Any, vy: Any, vz: Any) -> list[Any
     """Return balls, or series of balls, of position and velocity over the length: z, vz also by |r| = 1, r·v = 0."""
     below = 1 - x * x - y * y
     if value(z) < 0 < value(below):
-        z = met(z, -below.sqrt())
-        vz = met(vz, -(x * vx + y * vy) / z)
+        z = met(z, -below.sqrt())  # (11.6)
+        vz = met(vz, -(x * vx + y * vy) / z)  # (11.7)
     return [x, y, z, vx, vy, vz]
 
 
@@ -347,5 +347,5 @@ def spread(piece: Piece, begin: Fraction, end: Fraction) -> list[arb]:
 
 def near(f: Any, s: arb) -> arb:
     """Return a ball that contains a polynomial on `s`, about the middle of this."""
-    x: arb = f(s.mid()) + f.derivative()(s) * (s - s.mid())
+    x: arb = f(s.mid()) + f.derivative()(s) * (s - s.mid())  # (11.5)
     return x

@@ -1,12 +1,18 @@
-"""TRUSTED. A dataset's files, read back as texts and held against what was proved: inputs, times, tables, page.
+"""TRUSTED. A dataset's files, read back as texts and compared with what was proved: inputs, times, tables, page.
 
 So nothing that reads a scene, lays out a grid, hands on, rounds or prints has to be believed (THEOREM.md, section 9).
+A row of a table is a dictionary by column: of texts (`cells`), or of what was proved (`row`): intervals, and exact
+numbers.
+
+    code        text (section 9)
+    q, u        the value of a printed number, and its last digit
+    low, high   the ends of a proven interval
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from json import loads
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...scenes.inputs import Inputs
 from .balls import demand
@@ -19,11 +25,16 @@ RELEASES = {
     "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate"),
 }
 OTHERS = ("digits", "level", "transits", "sections")  # no input of the motion
-GRID, TRANSITS = "t,x,y,z,vx,vy,vz", "k,t,direction,x,y,z,vy,ax,bound"
+GRID = "t,x,y,z,vx,vy,vz"
+TRANSITS = "k,t,direction,x,y,z,vy,ax,bound"
 SECTIONS = "k,t,direction,x,y,z,vx,vy,vz,bound"  # after the section's word
 EXACT = ("k", "direction", "bound")  # columns whose doubles do not stand beside them
-POSITION, VELOCITY = ("x", "y", "z"), ("vx", "vy", "vz")
+POSITION = ("x", "y", "z")
+VELOCITY = ("vx", "vy", "vz")
 DECIMAL = frozenset("+-.0123456789")
+
+Row = dict[str, Any]  # of what was proved, by column
+Cells = dict[str, str]  # of a table's texts, by column
 
 UNITS = {
     "t": "s",
@@ -59,67 +70,93 @@ def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
         proved in FINISHED and asked(manifest) == (proved.inputs, proved.times),
         "the proof is of other inputs",
     )
-    ones, others = single_and_other(proved.zeros.get(XDOT, ()))
-    check_words(manifest, proved, others)
-    check_radii(manifest["enclosure"], proved, ones)
+    zeros = sorted_zeros(proved.zeros.get(XDOT, ()))
+    _check_words(manifest, proved, zeros.possible)
+    _check_radii(manifest["enclosure"], proved, zeros.single)
 
-    bounds, decimals = manifest["bounds"], manifest["decimals"]
+    grid = _check_grid(texts, manifest, proved)
+    transits = _check_transits(texts, manifest, zeros.single)
+    _check_possible(zeros.possible, manifest["possible"], proved.times[-1])
+    counts = {"grid": len(grid), "transits": len(transits), "possible": len(zeros.possible)}
+    demand(manifest["counts"] == counts, "misprint: the counts")
+
+    check_sections(texts, manifest, proved)
+    _check_page(texts["certified.txt"], manifest, grid, transits)
+
+
+def _check_grid(texts: Mapping[str, str], manifest: Any, proved: Proved) -> list[Cells]:
+    """Demand that the tables of the grid have the states that were proved; return the cells."""
+    bounds = manifest["bounds"]
     demand([*bounds["grid"]] == GRID.split(",")[1:], "misprint: the bounds of the grid")
+    # of a component there are two bounds: that of its column and that of its kind
     least = {name: Fraction(bound) for name, bound in bounds["grid"].items()}
-    least |= {name: min(least[name], Fraction(bounds["position_m"])) for name in POSITION}
-    least |= {name: min(least[name], Fraction(bounds["velocity_m_s"])) for name in VELOCITY}
-    states = [[t, *state] for t, state in zip(proved.times, proved.states, strict=True)]
+    for kind, components in (("position_m", POSITION), ("velocity_m_s", VELOCITY)):
+        for name in components:
+            least[name] = min(least[name], Fraction(bounds[kind]))
+
+    names = GRID.split(",")
+    rows = [
+        dict(zip(names, (time, *state), strict=True))
+        for time, state in zip(proved.times, proved.states, strict=True)
+    ]
     if proved.inputs.position:
         # of the release these are given, and known exactly
-        x, y, vx, vy = (Interval(q, q) for q in proved.inputs.position)
-        states[0][1:6] = [x, y, states[0][3], vx, vy]
-    grid = check_rows(texts["grid.csv"], GRID, states, least, decimals["grid"])
-    check_doubles(texts.get("grid.binary64.csv"), GRID, states, grid)
+        for name, q in zip(RELEASES["position"], proved.inputs.position, strict=True):
+            rows[0][name] = Interval(q, q)
+    cells = check_rows(texts["grid.csv"], GRID, rows, least, manifest["decimals"]["grid"])
+    _check_doubles(texts.get("grid.binary64.csv"), GRID, rows, cells)
+    return cells
 
+
+def _check_transits(texts: Mapping[str, str], manifest: Any, zeros: Sequence[Any]) -> list[Cells]:
+    """Demand that the tables of transits have the single zeros that were proved; return the cells."""
+    bounds = manifest["bounds"]
     least = {name: Fraction(bound) for name, bound in bounds["transits"].items()}
-    zeros = [[k, z.t, z.direction, z.x, z.y, z.z, z.vy, z.ax] for k, z in enumerate(ones, 1)]
+    rows = _zero_rows(zeros, TRANSITS)
     table = texts.get("transits.csv", f"{TRANSITS}\n")
-    transits = check_rows(table, TRANSITS, zeros, least, decimals.get("transits", {}))
-    check_doubles(texts.get("transits.binary64.csv"), TRANSITS, zeros, transits)
+    cells = check_rows(table, TRANSITS, rows, least, manifest["decimals"].get("transits", {}))
+    _check_doubles(texts.get("transits.binary64.csv"), TRANSITS, rows, cells)
     demand(
         bounds["transit_s"] == bounds["transits"].get("t"),
         "misprint: the largest bound of the transits",
     )
-
-    check_possible(others, manifest["possible"], proved.times[-1])
-    counts = {"grid": len(grid), "transits": len(transits), "possible": len(others)}
-    demand(manifest["counts"] == counts, "misprint: the counts")
-    check_sections(texts, manifest, proved)
-    check_page(texts["certified.txt"], manifest, grid, transits)
+    return cells
 
 
 def check_sections(texts: Mapping[str, str], manifest: Any, proved: Proved) -> None:
     """Demand that sections.csv and the manifest state the passages that were proved, of just these sections."""
     sections = {word: zeros for word, zeros in proved.zeros.items() if word != XDOT}
-    said, words = manifest.get("sections"), [*sections]
-    demand((said is not None) == bool(words), "misprint: other sections")
-    if said is None:
+    words = [*sections]
+    stated = manifest.get("sections")
+    demand((stated is not None) == bool(words), "misprint: other sections")
+    if stated is None:
         return
     right = "; ".join(words) == manifest["scene"]["run"]["sections"]
-    demand(right and [*said["counts"]] == [*said["possible"]] == words, "misprint: other sections")
+    demand(
+        right and [*stated["counts"]] == [*stated["possible"]] == words, "misprint: other sections"
+    )
 
-    rows, names = list[Any](), list[str]()
+    rows = list[Row]()
+    words_of_rows = list[str]()
     for word, zeros in sections.items():
-        ones, others = single_and_other(zeros)
-        rows += [
-            [k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz] for k, z in enumerate(ones, 1)
-        ]
-        names += [word] * len(ones)
-        check_possible(others, said["possible"][word], proved.times[-1])
-        demand(said["counts"][word] == len(ones), "misprint: the count of passages")
+        of_word = sorted_zeros(zeros)
+        rows += _zero_rows(of_word.single, SECTIONS)
+        words_of_rows += [word] * len(of_word.single)
+        _check_possible(of_word.possible, stated["possible"][word], proved.times[-1])
+        demand(stated["counts"][word] == len(of_word.single), "misprint: the count of passages")
 
     header, *lines = lines_of(texts["sections.csv"])
     demand(
-        [line[0] for line in lines] == names and header[0] == "section", "misprint: other sections"
+        [line[0] for line in lines] == words_of_rows and header[0] == "section",
+        "misprint: other sections",
     )
-    text = "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
-    least = {name: Fraction(bound) for name, bound in said["bounds"].items()}
-    check_rows(text, SECTIONS, rows, least, said["decimals"])
+    least = {name: Fraction(bound) for name, bound in stated["bounds"].items()}
+    check_rows(without_words(header, lines), SECTIONS, rows, least, stated["decimals"])
+
+
+def without_words(header: list[str], lines: list[list[str]]) -> str:
+    """Return the text of a table of passages without its first column, that of the words."""
+    return "".join(",".join(line[1:]) + "\n" for line in (header, *lines))
 
 
 def document(text: str) -> Any:
@@ -132,127 +169,164 @@ def document(text: str) -> Any:
     return loads(text, object_pairs_hook=unique)
 
 
-def single_and_other(found: Iterable[Any]) -> tuple[list[Any], list[Any]]:
-    """Return the zeros that are proved to be single, and the possible ones."""
-    ones, others = ([z for z in found if (z.parity == "one") is single] for single in (True, False))
-    return ones, others
+class SortedZeros(NamedTuple):
+    """Zeros that are proved to be single, and possible ones, both in order."""
+
+    single: list[Any]
+    possible: list[Any]
 
 
-def check_words(manifest: Any, proved: Proved, others: Sequence[Any]) -> None:
+def sorted_zeros(zeros: Iterable[Any]) -> SortedZeros:
+    """Return the single zeros and the possible ones."""
+    result = SortedZeros([], [])
+    for zero in zeros:
+        kind = result.single if zero.parity == "one" else result.possible
+        kind.append(zero)
+    return result
+
+
+def _zero_rows(zeros: Sequence[Any], header: str) -> list[Row]:
+    """Return the rows of a table of zeros, numbered from 1; the bound of a row is not proved, but compared."""
+    names = [name for name in header.split(",") if name not in ("k", "bound")]
+    return [
+        {"k": k} | {name: getattr(zero, name) for name in names} for k, zero in enumerate(zeros, 1)
+    ]
+
+
+def _check_words(manifest: Any, proved: Proved, possible: Sequence[Any]) -> None:
     """Demand that level, units, frame and the word on transits are those of what was proved."""
-    run, up = manifest["scene"]["run"], UP[proved.inputs.gravity_is]
+    run = manifest["scene"]["run"]
+    frame = FRAME.format(UP[proved.inputs.gravity_is])
     demand(manifest["level"] == run["level"] == "enclosed", "misprint: the level")
     demand(
-        manifest["units"] == UNITS and manifest["frame"] == FRAME.format(up),
+        manifest["units"] == UNITS and manifest["frame"] == frame,
         "misprint: the units or the frame",
     )
+
     if run["transits"] == "false":
         word = "not asked for"
     elif proved.still:
         word = "xdot is identically zero"
     else:
-        word = "undecided intervals" if others else "complete"
+        word = "undecided intervals" if possible else "complete"
     sought = word in ("undecided intervals", "complete")
     right = manifest["transits"] == word and sought == (XDOT in proved.zeros)
     demand(right, "misprint: whether all transits are there")
 
 
-def check_radii(said: Any, proved: Proved, ones: Sequence[Any]) -> None:
+def _check_radii(stated: Any, proved: Proved, single: Sequence[Any]) -> None:
     """Demand that no interval is wider than the radii that are told of the proof."""
     positions = [x for state in proved.states for x in state[:3]]
     velocities = [x for state in proved.states for x in state[3:6]]
     kinds = {
         "position_radius_m": positions,
         "velocity_radius_m_s": velocities,
-        "transit_radius_s": [z.t for z in ones],
+        "transit_radius_s": [zero.t for zero in single],
     }
     for name, intervals in kinds.items():
         widest = max((x.high - x.low for x in intervals), default=None)
-        demand((said[name] is None) == (widest is None), f"misprint: {name}")
-        demand(widest is None or 2 * Fraction(said[name]) >= widest, f"misprint: {name}")
+        demand((stated[name] is None) == (widest is None), f"misprint: {name}")
+        demand(widest is None or 2 * Fraction(stated[name]) >= widest, f"misprint: {name}")  # (9.5)
 
 
-def check_possible(others: Sequence[Any], said: Sequence[Any], end: Fraction) -> None:
+def _check_possible(possible: Sequence[Any], stated: Sequence[Any], end: Fraction) -> None:
     """Demand that each zero that may be there lies in its interval, up to the end, and has its parity."""
-    for z, part in zip(others, said, strict=True):
-        low, high = max(z.t.low, Fraction(0)), min(z.t.high, end)
-        inside = Fraction(part["from_s"]) <= low and high <= Fraction(part["to_s"])
-        demand(inside and part["parity"] == z.parity, "misprint: a possible zero")
+    for zero, part in zip(possible, stated, strict=True):
+        low = max(zero.t.low, Fraction(0))
+        high = min(zero.t.high, end)
+        inside = Fraction(part["from_s"]) <= low and high <= Fraction(part["to_s"])  # (9.4)
+        demand(inside and part["parity"] == zero.parity, "misprint: a possible zero")
 
 
-def asked(said: Any) -> tuple[Inputs, tuple[Fraction, ...]]:
+def asked(manifest: Any) -> tuple[Inputs, tuple[Fraction, ...]]:
     """Return the inputs of a manifest's scene, each a decimal or the double nearest to it, and the times to t_end."""
-    kind = "angles" if "angle" in said["scene"]["release"] else "position"
-    given = {name: text for part in said["scene"].values() for name, text in part.items()}
+    scene = manifest["scene"]
+    kind = "angles" if "angle" in scene["release"] else "position"
+    given = {name: text for part in scene.values() for name, text in part.items()}
     demand(
-        len(given) == sum(map(len, said["scene"].values())),
+        len(given) == sum(map(len, scene.values())),
         "misprint: an input in two parts of the scene",
     )
     # rates that are not given are 0
-    texts = dict.fromkeys(RELEASES[kind][2:], "0") | given
+    rates = RELEASES[kind][2:]
+    texts = dict.fromkeys(rates, "0") | given
+    read: Any = {"decimal": str, "binary64": float}[manifest["inputs"]]
 
     def exact(name: str) -> Fraction:
-        return Fraction({"decimal": str, "binary64": float}[said["inputs"]](texts.pop(name)))
+        """Return a number, and take it off the texts."""
+        return Fraction(read(texts.pop(name)))
 
-    numbers: dict[str, Any] = {"position": None, "angles": None} | {
-        name: exact(name) for name in PLAIN.split()
-    }
-    numbers |= {kind: tuple(map(exact, RELEASES[kind])), "gravity_is": texts.pop("gravity_is")}
+    numbers: dict[str, Any] = {name: exact(name) for name in PLAIN.split()}
+    numbers |= {"position": None, "angles": None, kind: tuple(map(exact, RELEASES[kind]))}
+    numbers["gravity_is"] = texts.pop("gravity_is")
     flat = texts["inverse_flattening"] == "inf"
-    inputs = Inputs(**numbers, flattening=Fraction(0) if flat else 1 / exact("inverse_flattening"))
+    numbers["flattening"] = Fraction(0) if flat else 1 / exact("inverse_flattening")
     demand(texts.keys() <= {*OTHERS, "inverse_flattening"}, "misprint: unknown inputs")
+    inputs = Inputs(**numbers)
+    return inputs, _times_of(inputs)
+
+
+def _times_of(inputs: Inputs) -> tuple[Fraction, ...]:
+    """Return the times of the grid: the multiples of its step below t_end, and t_end."""
     count = inputs.t_end // inputs.grid_step + 1
+    last = (count - 1) * inputs.grid_step
     # doubles may miss t_end by their rounding alone
-    count -= 0 < (count - 1) * inputs.grid_step > inputs.t_end - inputs.grid_step / (1 << 30)
-    return inputs, (*(k * inputs.grid_step for k in range(count)), inputs.t_end)
+    rounding = inputs.grid_step / (1 << 30)
+    if last > 0 and last > inputs.t_end - rounding:
+        count -= 1
+    return (*(k * inputs.grid_step for k in range(count)), inputs.t_end)
 
 
 def lines_of(text: str) -> list[list[str]]:
     """Return the cells of a table, line by line; each line ends in a line feed alone."""
-    *lines, rest = text.split("\n")
-    demand(not rest, "misprint: a table without an end")
+    *lines, after_the_last = text.split("\n")
+    demand(not after_the_last, "misprint: a table without an end")
     return [line.split(",") for line in lines]
 
 
 def check_rows(
     text: str,
     header: str,
-    rows: Sequence[Any],
+    rows: Sequence[Row],
     bounds: Mapping[str, Fraction],
     decimals: Mapping[str, int],
-) -> list[list[str]]:
+) -> list[Cells]:
     """Demand that a table has these rows, with so many decimals, and bounds no less than their rounding.
 
     What is known as an interval needs a bound, of its column; a time needs that of its row as well. Returns the cells.
     """
-    names, *cells = lines_of(text)
+    names, *lines = lines_of(text)
     demand(names == header.split(","), f"misprint: the header {names}")
-    for texts, row in zip(cells, rows, strict=True):
-        said = dict(zip(names, texts, strict=True))
-        for name, x in zip(names, row, strict=False):
-            check(said[name], x)
-            places = len(said[name].partition(".")[2])
+    table = [dict(zip(names, line, strict=True)) for line in lines]
+    for cells, row in zip(table, rows, strict=True):
+        for name, x in row.items():
+            _check_number(cells[name], x)
+            places = len(cells[name].partition(".")[2])
             demand(places == decimals.get(name, 0), f"misprint: the decimals of {name}")
             if isinstance(x, Interval):
-                # of a transit's time there are two
-                least = [bounds[name], *([Fraction(said["bound"])] if name == "t" else [])]
-                demand(2 * 10**places * min(least) >= 1, f"misprint: the bound on {name}")
-    return cells
+                bound = bounds[name]
+                if name == "t":
+                    bound = min(bound, Fraction(cells["bound"]))
+                demand(2 * 10**places * bound >= 1, f"misprint: the bound on {name}")  # (9.2)
+    return table
 
 
-def check(number: str, x: Any) -> None:
+def _check_number(text: str, x: Any) -> None:
     """Demand that a decimal is exact, or nearest to all of an interval."""
-    whole, _, part = number.partition(".")
-    n, ten = int(whole + part), 10 ** len(part)
-    ends = [x.low, x.high] if isinstance(x, Interval) else [x]
-    slack = len(ends) - 1
-    # |n/ten - q| <= slack/(2 ten), in integers
-    near = [2 * abs(n * q.denominator - q.numerator * ten) <= slack * q.denominator for q in ends]
-    demand(all(near) and set(number) <= DECIMAL, f"misprint: {number}")
+    before, _, after = text.partition(".")
+    n = int(before + after)
+    ten = 10 ** len(after)
+    # (9.1): |q − n/ten| <= u/2 with u = 1/ten at both ends, or 0 of an exact number, in integers
+    ends = (x.low, x.high) if isinstance(x, Interval) else (x,)
+    slack = 1 if isinstance(x, Interval) else 0
+    near = all(
+        2 * abs(n * q.denominator - q.numerator * ten) <= slack * q.denominator for q in ends
+    )
+    demand(near and set(text) <= DECIMAL, f"misprint: {text}")
 
 
-def check_doubles(
-    text: str | None, header: str, rows: Sequence[Any], cells: Sequence[list[str]]
+def _check_doubles(
+    text: str | None, header: str, rows: Sequence[Row], cells: Sequence[Cells]
 ) -> None:
     """Demand that a table of doubles, if it is there, has the doubles nearest to what was proved, also as hexfloats.
 
@@ -262,74 +336,85 @@ def check_doubles(
         return
     names = header.split(",")
     numbers = [name for name in names if name not in EXACT]
-    first, *lines = lines_of(text)
-    demand(first == [*names, *(f"{name}_hex" for name in numbers)], f"misprint: the header {first}")
+    columns, *lines = lines_of(text)
+    demand(
+        columns == [*names, *(f"{name}_hex" for name in numbers)],
+        f"misprint: the header {columns}",
+    )
     for line, row, texts in zip(lines, rows, cells, strict=True):
-        said = dict(zip(first, line, strict=True))
-        values = dict(zip(names, row, strict=False))
-        for name, text in zip(names, texts, strict=True):
-            if name not in numbers:
-                demand(said[name] == text, f"misprint: {said[name]} beside the doubles")
-                continue
-            x, double = values[name], float(said[name])
-            ends = (
-                (float(x.low), float(x.high)) if isinstance(x, Interval) else (float(x), float(x))
-            )
-            near = ends[0] <= double <= ends[1] or double == float(text) == 0
-            demand(
-                near and said[f"{name}_hex"] == double.hex(),
-                f"misprint: {said[name]} is not the double of {text}",
-            )
+        doubles = dict(zip(columns, line, strict=True))
+        for name, decimal in texts.items():
+            if name in numbers:
+                _check_double(doubles[name], doubles[f"{name}_hex"], decimal, row[name])
+            else:
+                demand(doubles[name] == decimal, f"misprint: {doubles[name]} beside the doubles")
 
 
-def check_page(page: str, manifest: Any, grid: Any, transits: Any) -> None:
+def _check_double(text: str, hexfloat: str, decimal: str, x: Any) -> None:
+    """Demand that a double is that of a number in an interval, or of an exact number, or 0 where its decimal is."""
+    low, high = (x.low, x.high) if isinstance(x, Interval) else (x, x)
+    double = float(text)
+    near = float(low) <= double <= float(high)  # (9.3)
+    zero = double == float(decimal) == 0
+    demand(
+        (near or zero) and hexfloat == double.hex(),
+        f"misprint: {text} is not the double of {decimal}",
+    )
+
+
+def _check_page(page: str, manifest: Any, grid: Sequence[Cells], transits: Sequence[Cells]) -> None:
     """Demand that the page has level and inputs, and then the numbers of the other files, line by line."""
     # what stands before the inputs are words of the scene as well
-    words, _, rest = page.rpartition(INPUTS)
+    words, _, numbers = page.rpartition(INPUTS)
     head = words.split("\n")
     demand(
         LEVEL in head and f"Inputs are read as: {manifest['inputs']}" in head,
         "misprint: certified.txt",
     )
-    said = [line.split() for line in rest.split("\n")]
-    expected = [line.split() for line in page_lines(manifest, grid, transits)]
-    for words_said, words_expected in zip(said, expected, strict=True):
-        demand(words_said == words_expected, f"misprint: certified.txt: {' '.join(words_said)}")
+    stated = [line.split() for line in numbers.split("\n")]
+    expected = [line.split() for line in _page_lines(manifest, grid, transits)]
+    for words_stated, words_expected in zip(stated, expected, strict=True):
+        demand(words_stated == words_expected, f"misprint: certified.txt: {' '.join(words_stated)}")
 
 
-def page_lines(manifest: Any, grid: Any, transits: Any) -> list[str]:
+def _page_lines(manifest: Any, grid: Sequence[Cells], transits: Sequence[Cells]) -> list[str]:
     """Return the lines of the page from the inputs on, but for the spaces in them."""
-    bounds, scene = manifest["bounds"], manifest["scene"]
+    scene = manifest["scene"]
     lines = [
         f"{part}.{name} {text}" for part, table in scene.items() for name, text in table.items()
     ]
     lines += (MODEL + GRAVITY[scene["site"]["gravity_is"]]).split("\n")
-    for word, row in (("State", grid[0]), ("Certified state", grid[-1])):
-        lines += ["", f"{word} at t = {row[0]} s"]
-        lines += [f"{name} {text}" for name, text in zip(GRID.split(",")[1:], row[1:], strict=True)]
-    lines += [
-        "",
-        "Bound on every position {position_m} m, on every velocity {velocity_m_s} m/s".format(
-            **bounds
-        ),
-    ]
-    lines += [
-        "by column: " + ", ".join(f"{name} {bound}" for name, bound in bounds["grid"].items()),
-        "",
-    ]
-    lines += [f"Transits (xdot = 0, t > 0): {len(transits)} ({manifest['transits']})"]
-    for word, row in zip(("first", "last"), transits[:1] + transits[-1:], strict=False):
-        lines += [f"{word} t = {row[1]} s, direction {row[2]}, bound {row[-1]} s"]
+    lines += _lines_of_state("State", grid[0])
+    lines += _lines_of_state("Certified state", grid[-1])
+
+    bounds = manifest["bounds"]
+    words = "Bound on every position {position_m} m, on every velocity {velocity_m_s} m/s"
+    columns = ", ".join(f"{name} {bound}" for name, bound in bounds["grid"].items())
+    lines += ["", words.format(**bounds), f"by column: {columns}", ""]
+
+    lines.append(f"Transits (xdot = 0, t > 0): {len(transits)} ({manifest['transits']})")
     if transits:
-        lines += [f"largest bound on a time {bounds['transit_s']} s"]
-        alone = all(run["transit_s"] is None for run in manifest["cross_checks"])
-        lines += ["the proof alone confirms them"] if alone else []
-    text = "possible transit in [{from_s}, {to_s}] s ({parity} number of zeros): not decided"
-    lines += [text.format(**part) for part in manifest["possible"]]
+        lines.append(_line_of_transit("first", transits[0]))
+        lines.append(_line_of_transit("last", transits[-1]))
+        lines.append(f"largest bound on a time {bounds['transit_s']} s")
+        if all(run["transit_s"] is None for run in manifest["cross_checks"]):
+            lines.append("the proof alone confirms them")
+    undecided = "possible transit in [{from_s}, {to_s}] s ({parity} number of zeros): not decided"
+    lines += [undecided.format(**part) for part in manifest["possible"]]
+
     lines += f"{SCORE}{manifest['inputs']}.".split("\n")
-    counts = manifest["sections"]["counts"] if "sections" in manifest else {}
-    return [
-        *lines,
-        *(f"Passages in sections.csv: {count} of {word}" for word, count in counts.items()),
-        "",
-    ]
+    if "sections" in manifest:
+        for word, count in manifest["sections"]["counts"].items():
+            lines.append(f"Passages in sections.csv: {count} of {word}")
+    return [*lines, ""]
+
+
+def _lines_of_state(word: str, cells: Cells) -> list[str]:
+    """Return the lines of the page on a state."""
+    numbers = [f"{name} {text}" for name, text in cells.items() if name != "t"]
+    return ["", f"{word} at t = {cells['t']} s", *numbers]
+
+
+def _line_of_transit(word: str, cells: Cells) -> str:
+    """Return the line of the page on a transit."""
+    return f"{word} t = {cells['t']} s, direction {cells['direction']}, bound {cells['bound']} s"

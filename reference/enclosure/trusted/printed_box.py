@@ -1,6 +1,10 @@
-"""TRUSTED. The ends of a box of inputs; the files of ranges, read back and compared with what was proved."""
+"""TRUSTED. The ends of a box of inputs; the files of ranges, read back and compared with what was proved.
 
-from collections.abc import Iterable, Mapping
+As in section 9 of THEOREM.md for a point, here for a box (section 11): each printed interval has to contain the proven
+one. A row of a table is a dictionary by column: exact numbers, and the intervals that were proved.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -8,106 +12,150 @@ from typing import Any
 from ...scenes.inputs import Inputs
 from .balls import demand
 from .course import FINISHED
-from .printed import DECIMAL, PLAIN, RELEASES, asked, document, lines_of, single_and_other
+from .printed import (
+    DECIMAL,
+    PLAIN,
+    RELEASES,
+    Row,
+    SortedZeros,
+    asked,
+    document,
+    lines_of,
+    sorted_zeros,
+    without_words,
+)
 from .shapes import XDOT, Interval, ProvedBox
 
-GRID, TRANSITS = ("x", "y", "z", "vx", "vy", "vz"), ("t", "x", "y", "z", "vy", "ax")
+GRID = ("x", "y", "z", "vx", "vy", "vz")
+TRANSITS = ("t", "x", "y", "z", "vy", "ax")
 PASSAGES = ("t", *GRID)
+NUMBERED = ("k", "direction")  # the exact columns of a table of zeros
 
 
 def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
     """Demand that ranges.json and both tables state what was proved, or less, and of just this box."""
-    said = document(texts["ranges.json"])
-    found = proved.zeros.get(XDOT, ())
-    sections = {word: zeros for word, zeros in proved.zeros.items() if word != XDOT}
-    inputs, times = asked(said)
-    ends = (end_of(inputs, said["uncertain"], side) for side in (-1, 1))
+    stated = document(texts["ranges.json"])
+    inputs, times = asked(stated)
+    low = end_of(inputs, stated["uncertain"], -1)
+    high = end_of(inputs, stated["uncertain"], 1)
     demand(
-        proved in FINISHED and (inputs, *ends) == proved.box and times == proved.times,
+        proved in FINISHED and (inputs, low, high) == proved.box and times == proved.times,
         "the proof is of other inputs",
     )
-    demand(said["level"] == said["scene"]["run"]["level"] == "enclosed", "misprint: the level")
-    check_rows(
-        texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True))
-    )
+    run = stated["scene"]["run"]
+    demand(stated["level"] == run["level"] == "enclosed", "misprint: the level")
     # a table without transits is not one of which none was looked for
     looked_for = XDOT in proved.zeros or proved.still
     demand(
-        (said["scene"]["run"]["transits"] == "true") == looked_for,
+        (run["transits"] == "true") == looked_for,
         "misprint: whether transits were looked for",
     )
-    ones, others = check_zeros(texts["transits.csv"], TRANSITS, found, said["possible"], times[-1])
+
+    states = [
+        {"t": time} | dict(zip(GRID, state, strict=True))
+        for time, state in zip(times, proved.states, strict=True)
+    ]
+    _check_rows(texts["grid.csv"], ["t"], GRID, states)
+    transits = sorted_zeros(proved.zeros.get(XDOT, ()))
+    _check_zeros(texts["transits.csv"], TRANSITS, transits, stated["possible"], times[-1])
+    _check_sections(texts, stated, proved)
+
+    if stated["period_s"] is not None:
+        period = _mean_period(transits)
+        low_s, high_s = stated["period_s"]
+        demand(_holds(low_s, high_s, period), "misprint: the period")
+    counts = {
+        "grid": len(times),
+        "transits": len(transits.single),
+        "possible": len(transits.possible),
+    }
+    demand(stated["counts"] == counts, "misprint: the counts")
+
+
+def _check_sections(texts: Mapping[str, str], stated: Any, proved: ProvedBox) -> None:
+    """Demand that the table of passages has those of just these sections, in their order."""
+    sections = {word: zeros for word, zeros in proved.zeros.items() if word != XDOT}
     words = [*sections]
-    header, *parts = lines_of(texts["sections.csv"]) if words else [["section"]]
-    right = header[0] == "section" and sorted(parts, key=lambda part: words.index(part[0])) == parts
-    demand(right and [*said.get("sections", {})] == words, "misprint: other sections")
+    demand([*stated.get("sections", {})] == words, "misprint: other sections")
+    if not sections:
+        return
+    header, *lines = lines_of(texts["sections.csv"])
+    in_order = sorted(lines, key=lambda line: words.index(line[0])) == lines
+    demand(header[0] == "section" and in_order, "misprint: other sections")
+
     for word, zeros in sections.items():
-        own = [header, *(part for part in parts if part[0] == word)]
-        text = "".join(",".join(line[1:]) + "\n" for line in own)
-        check_zeros(text, PASSAGES, zeros, said["sections"][word], times[-1])
-    if said["period_s"] is not None:
-        sure = [z for z in ones if all(z.t.high < x.t.low for x in others)]
-        swings = (len(sure) - 1) // 2
-        demand(swings > 0, "misprint: a period where transits are undecided")
-        first, last = sure[0].t, sure[2 * swings].t
-        mean = Interval((last.low - first.high) / swings, (last.high - first.low) / swings)
-        low, high = said["period_s"]
-        demand(holds(low, high, mean), "misprint: the period")
-    counts = {"grid": len(times), "transits": len(ones), "possible": len(others)}
-    demand(said["counts"] == counts, "misprint: the counts")
-
-
-def check_zeros(
-    text: str, names: tuple[str, ...], found: Any, possible: Any, end: Fraction
-) -> tuple[Any, Any]:
-    """Demand that a table has the single zeros, and that the possible ones are listed; return both."""
-    ones, others = single_and_other(found)
-    rows = ([k, z.direction, *(getattr(z, name) for name in names)] for k, z in enumerate(ones, 1))
-    check_rows(text, ["k", "direction"], names, rows)
-    for z, part in zip(others, possible, strict=True):
-        until = Interval(max(z.t.low, Fraction(0)), min(z.t.high, end))
-        demand(
-            holds(part["from_s"], part["to_s"], until) and part["parity"] == z.parity,
-            "misprint: a possible zero",
+        text = without_words(header, [line for line in lines if line[0] == word])
+        _check_zeros(
+            text, PASSAGES, sorted_zeros(zeros), stated["sections"][word], proved.times[-1]
         )
-    return ones, others
+
+
+def _mean_period(transits: SortedZeros) -> Interval:
+    """Return the mean of the full swings before the first possible transit."""
+    certain = [
+        zero
+        for zero in transits.single
+        if all(zero.t.high < other.t.low for other in transits.possible)
+    ]
+    swings = (len(certain) - 1) // 2
+    demand(swings > 0, "misprint: a period where transits are undecided")
+    first = certain[0].t
+    last = certain[2 * swings].t
+    return Interval((last.low - first.high) / swings, (last.high - first.low) / swings)
+
+
+def _check_zeros(
+    text: str, names: tuple[str, ...], zeros: SortedZeros, stated: Any, end: Fraction
+) -> None:
+    """Demand that a table has the single zeros, and that the possible ones are listed, up to the end."""
+    rows = [
+        {"k": k, "direction": zero.direction} | {name: getattr(zero, name) for name in names}
+        for k, zero in enumerate(zeros.single, 1)
+    ]
+    _check_rows(text, [*NUMBERED], names, rows)
+    for zero, part in zip(zeros.possible, stated, strict=True):
+        until = Interval(max(zero.t.low, Fraction(0)), min(zero.t.high, end))
+        inside = _holds(part["from_s"], part["to_s"], until)  # (9.4)
+        demand(inside and part["parity"] == zero.parity, "misprint: a possible zero")
 
 
 def end_of(inputs: Inputs, uncertain: Mapping[str, str], side: int) -> Inputs:
     """Return inputs with half of a width added to each that is uncertain, or taken from it with `side` -1."""
-    off = {
+    shifts = {
         name.partition(".")[2]: side * Fraction(width.removeprefix("±"))
         for name, width in uncertain.items()
     }
     kind = "position" if inputs.position else "angles"
     release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
-    changes: dict[str, Any] = {kind: tuple(value + off.pop(name, 0) for name, value in release)}
-    if "inverse_flattening" in off:
-        changes["flattening"] = 1 / (1 / inputs.flattening + off.pop("inverse_flattening"))
-    demand(off.keys() <= {*PLAIN.split()[:-2]}, "misprint: unknown inputs")
-    return replace(
-        inputs, **changes, **{name: getattr(inputs, name) + half for name, half in off.items()}
-    )
+    changes: dict[str, Any] = {kind: tuple(q + shifts.pop(name, 0) for name, q in release)}
+    if "inverse_flattening" in shifts:
+        changes["flattening"] = 1 / (1 / inputs.flattening + shifts.pop("inverse_flattening"))
+
+    # the times of a run are no inputs of the motion
+    *plain, _, _ = PLAIN.split()
+    demand(shifts.keys() <= {*plain}, "misprint: unknown inputs")
+    for name, shift in shifts.items():
+        changes[name] = getattr(inputs, name) + shift
+    return replace(inputs, **changes)
 
 
-def check_rows(
-    text: str, plain: list[str], names: tuple[str, ...], rows: Iterable[list[Any]]
-) -> None:
+def _check_rows(text: str, exact: list[str], names: Sequence[str], rows: Iterable[Row]) -> None:
     """Demand that a table has these rows: exact numbers, then intervals within those that are printed."""
     header, *lines = lines_of(text)
-    demand(
-        header == [*plain, *(f"{name}_{end}" for name in names for end in ("low", "high"))],
-        "misprint: the header",
-    )
-    for cells, row in zip(lines, rows, strict=True):
-        exact, ends = cells[: len(plain)], cells[len(plain) :]
-        right = DECIMAL.issuperset("".join(exact)) and [*map(Fraction, exact)] == row[: len(plain)]
-        demand(right, f"misprint: {exact}")
-        for low, high, x in zip(ends[::2], ends[1::2], row[len(plain) :], strict=True):
-            demand(holds(low, high, x), f"misprint: {low} to {high}")
+    ends = [f"{name}_{end}" for name in names for end in ("low", "high")]
+    demand(header == [*exact, *ends], "misprint: the header")
+    for line, row in zip(lines, rows, strict=True):
+        cells = dict(zip(header, line, strict=True))
+        for name in exact:
+            right = DECIMAL.issuperset(cells[name]) and Fraction(cells[name]) == row[name]
+            demand(right, f"misprint: {cells[name]}")
+        for name in names:
+            low = cells[f"{name}_low"]
+            high = cells[f"{name}_high"]
+            demand(_holds(low, high, row[name]), f"misprint: {low} to {high}")
 
 
-def holds(low: str, high: str, x: Interval) -> bool:
+def _holds(low: str, high: str, x: Interval) -> bool:
     """Return whether two decimals enclose an interval."""
     demand(DECIMAL.issuperset(low + high), f"misprint: {low} to {high}")
     return Fraction(low) <= x.low <= x.high <= Fraction(high)

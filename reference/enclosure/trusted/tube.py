@@ -7,7 +7,7 @@ In the time of a step, lengths over that of the rod:
     U, A            bounds of |v − p'|, |r'' − p''|
     P, K, D1, D2    the sizes of section 6
     K_rate          K1 >= |K'|
-    g_rate          a bound of |g'| = |H' − K'|, but for K1 η
+    g_rate          Γ1 >= |g'| = |H' − K'|
 """
 
 from fractions import Fraction

@@ -1,14 +1,17 @@
 """The code that has to be read to believe a proof: it says so, imports little, and nothing in it rounds on its own."""
 
 import ast
+import re
 import subprocess
 import sys
 
 import pytest
 from places import ROOT
 
-TRUSTED = ROOT / "reference/enclosure/trusted"
+TRUSTED = ROOT / "reference/enclosure/trusted"  # all that a proof rests on, and nothing else
 FILES = sorted(path.stem for path in TRUSTED.glob("*.py") if path.stem != "__init__")
+THEOREM = (ROOT / "reference/enclosure/THEOREM.md").read_text(encoding="utf-8")
+TEXT, _, TABLE = THEOREM.partition("## 14. From the text to the code")
 LIBRARY = {
     "array",
     "bisect",
@@ -20,7 +23,6 @@ LIBRARY = {
     "functools",
     "itertools",
 }
-LIBRARY |= {"json", "typing", "weakref"}
 LIBRARY |= {"json", "typing", "weakref"}
 # declarations; the compiler of the sums of digits, which an audit checks; proposals of where a zero may be
 OUTSIDE = {"numbers.taylor_step", "scenes.inputs", "system.machine_code", "guess"}
@@ -62,6 +64,47 @@ def test_a_trusted_file_imports_trusted_files_and_little_else(name):
     allowed = LIBRARY | {"__future__"} | ({"numpy"} if name in ARRAYS else set())
     for module, ours in imports_of(name):
         assert module in ({*FILES, *OUTSIDE} if ours else allowed), module
+
+
+def defined_in(name):
+    """Yield the functions of a trusted file, those of a class with its name."""
+    for node in tree_of(name).body:
+        if isinstance(node, ast.FunctionDef):
+            yield node.name
+        elif isinstance(node, ast.ClassDef):
+            yield from (
+                f"{node.name}.{x.name}" for x in node.body if isinstance(x, ast.FunctionDef)
+            )
+
+
+def test_every_function_of_the_theorems_table_exists():
+    named = re.findall(r"`(\w+)\.([\w.]+)`", TABLE)
+    assert len(named) > 30
+    for file, function in named:
+        assert function in {*defined_in(file)}, f"{file}.{function}"
+
+
+def test_every_lemma_and_theorem_is_in_the_table():
+    stated = re.findall(r"^(?:\*\*|## \d+\. )((?:Lemma|Theorem) [\dA-Z.]*[\dA-Z])", TEXT, re.M)
+    in_table = re.findall(r"^\| ((?:Lemma|Theorem) [\dA-Z.]+) \|", TABLE, re.M)
+    assert {"Theorem C", "Lemma 0", "Lemma 11.4", "Lemma 12.2"} <= set(stated)
+    assert sorted(in_table) == sorted(stated)
+
+
+def numbers_in(text):
+    """Return the numbers of equations in brackets: (4.2), (11.2a), and both of (12.4a, b)."""
+    numbers = set()
+    for number, letter, more in re.findall(r"\((\d+\.\d+)([a-z]?)((?:, [a-z])*)[);]", text):
+        numbers.add(number + letter)
+        numbers |= {number + other for other in more.split(", ")[1:]}
+    return numbers
+
+
+def test_an_equation_that_the_code_names_is_one_of_the_text():
+    for name in FILES:
+        code = (TRUSTED / f"{name}.py").read_text(encoding="utf-8")
+        comments = "\n".join(re.findall("#.*", code))
+        assert numbers_in(comments) <= numbers_in(TEXT), name
 
 
 def test_a_lower_level_imports_nothing_of_a_proof_and_a_proof_of_a_point_only_what_it_is_asked_for():
