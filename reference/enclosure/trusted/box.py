@@ -10,7 +10,8 @@ same size. What is left of the box is in Ω, γ and the release. A proof of a po
     delta_omega, delta_drag     |δΩ|, |δγ|                              in the time of a step
     E                           E, a bound of η that η₁ has to confirm  1
     length                      ℓ, the length of the step in s          1
-    eta_start, eta, mu, b       η(a), η, μ, b, as in radius.py
+    eta_start, eta, b           η(a), η, b, as in radius.py
+    mu_0, two_w_mu              μ for E = 0, 2 w μ
 """
 
 from copy import copy
@@ -206,18 +207,18 @@ class BoxRadius(Radius):
             lambda_plus = constants.lambda_plus
             length = ball(piece.step.high - piece.step.low)
 
-            # η(a) + ℓ b, with η(a) after the jump
+            eta_start = self.eta + widened.jump  # (4.8)
             b = (c + K**2) * sizes.tau / (2 * w) + sizes.d2 / w + sizes.d1  # (4.4)
-            eta_start = upper(self.eta + widened.jump + length * b)
+            driven = upper(eta_start + length * b)  # η(a) + ℓ b
 
             # E is twice what follows for E = 0
             mu_0 = (lambda_minus.max(lambda_plus + S**2) + gamma * Omega * P) / (2 * w)
-            E = upper(2 * eta_start * (length * mu_0).exp())
+            E = upper(2 * driven * (length * mu_0).exp())
 
-            # (11.4a), times 2 w
+            # (11.4a)
             curvature = lambda_minus.max(lambda_plus + (S + (w + K) * E) ** 2)
-            mu = curvature + (c + K**2) * E + gamma * Omega * P
-            self.eta = upper(eta_start * (length * mu / (2 * w)).exp())  # (11.4b)
+            two_w_mu = curvature + (c + K**2) * E + gamma * Omega * P
+            self.eta = upper(driven * (length * two_w_mu / (2 * w)).exp())  # (11.4b)
             demand(self.eta < E, "a bound has outgrown what it rests on")  # (11.4b)
 
             g_bound = (w + K) * self.eta  # (4.9)
