@@ -3,11 +3,12 @@
 A ball contains the number that it stands for; every operation rounds outwards, to the bits of `ctx.prec`. What is
 called a bound or a size is an upper bound, rounded upwards.
 
-    code       text
-    add, times  sum of vectors, factor times a vector
-    cross, dot  a × b, a·b
-    size(a)     |a|
-    total(f)    Σ|c_n|, which bounds |f| on |s| <= 1 (section 6)
+| name           | symbol                                           |
+|----------------|--------------------------------------------------|
+| `add`, `times` | a + b, factor times a                            |
+| `cross`, `dot` | a × b, a·b                                       |
+| `size(a)`      | |a|                                              |
+| `total(f)`     | Σ|c_n|, which bounds |f| on |s| <= 1 (section 6) |
 """
 
 from fractions import Fraction

@@ -3,15 +3,18 @@
 The motion of each is turned, so that its c has the direction of the scene's, and its time is scaled, so that c has the
 same size. What is left of the box is in Ω, γ and the release. A proof of a point imports none of this.
 
-    code                        text                                    unit
-    pace                        s, the pendulum's time is the scene's over s    1
-    omega, drag                 Ω, γ: balls that hold those of each pendulum    1/s; in a step, of the step
-    omega_0, drag_0             Ω₀, γ₀ of the scene                     likewise
-    delta_omega, delta_drag     |δΩ|, |δγ|                              in the time of a step
-    E                           E, a bound of η that η₁ has to confirm  1
-    length                      ℓ, the length of the step in s          1
-    eta_start, eta, b           η(a), η, b, as in radius.py
-    mu_0, two_w_mu              μ for E = 0, 2 w μ
+| name                        | symbol                                               | unit             |
+|-----------------------------|------------------------------------------------------|------------------|
+| `pace`                      | s: the scene's time is s times a pendulum's own      | 1                |
+| `omega`, `drag`             | Ω, γ: balls that hold those of each pendulum         | 1/s; of a step 1 |
+| `omega_0`, `drag_0`         | Ω₀, γ₀ of the scene                                  | 1/s; of a step 1 |
+| `delta_omega`, `delta_drag` | |δΩ|, |δγ|                                           | 1                |
+| `lean`, `theta_0`, `psi`    | β, θ₀, ψ                                             | radians          |
+| `delta_p`, `delta_K`        | |Δp|, |ΔK| with each Ω                               | 1, 1/s           |
+| `length`                    | l in `BoxBalls`; ℓ, the length of a step, in `grown` | m; 1             |
+| `eta_start`, `eta`, `b`     | η(a), η, b                                           | 1                |
+| `E`                         | E, a bound of η that η₁ has to confirm               | 1                |
+| `mu_0`, `two_w_mu`          | μ for E = 0; 2 w μ                                   | 1                |
 """
 
 from copy import copy

@@ -3,13 +3,17 @@
 Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H, and lengths are divided by that of
 the rod, so that all of this has the unit 1. Norms are those on |s| <= 1.
 
-    code                    text
-    p, v                    p, p': components x, m, w, integers over `unit` = 2^B
-    tension                 λ
-    norms                   |d_x|, |d_m|, |d_w|, |τ|, |p'_x|, |p'_m|, |p'_w|, |τ'|
-    P, V, V_rate, K, T      bounds of |p|, |V|, |V'|, |K|, |τ|
-    D, D1, D2, d1_rate      bounds of |d|, |d1|, |d2|, |d1'|
-    N                       N, the largest degree of a component of p, or 1
+| name               | symbol                                                 | unit |
+|--------------------|--------------------------------------------------------|------|
+| `p`, `v`           | p, p': components x, m, w, integers over `unit` = 2^B  | 1    |
+| `tension`          | λ, likewise                                            | 1    |
+| `Norms`            | |d_x|, |d_m|, |d_w|, |τ|, |p'_x|, |p'_m|, |p'_w|, |τ'| | 1    |
+| `P`, `K`, `T`      | P, K, T: bounds of |p|, |K|, |τ|                       | 1    |
+| `V`, `V_rate`      | bounds of |V|, |V'|                                    | 1    |
+| `p_rate`, `T_rate` | bounds of |p'|, |τ'|                                   | 1    |
+| `D`, `D1`, `D2`    | D, D1, D2: bounds of |d|, |d1|, |d2|                   | 1    |
+| `d1_rate`          | a bound of |d1'|                                       | 1    |
+| `N`                | N, the largest degree of a component of p, or 1        |      |
 """
 
 from fractions import Fraction

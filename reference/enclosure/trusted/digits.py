@@ -4,13 +4,14 @@ Nothing here is a float, and no sum can overflow: `check` refuses what could. A 
 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
 `multiply` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, but where FLINT audits.
 
-    code        text
-    count       L, digits of a coefficient
-    orders      O, coefficients of a polynomial
-    p, tension, constant   m, M, C, the largest digits of p, λ and the constants
-    products    L O m (M + 5C + 3m), a bound of all sums of products of digits
-    linear      a bound of the products with 2^B, of c and of the 1 of τ
-    more        rows of a product that are summed beyond L, T - L
+| name                       | symbol                                                         |
+|----------------------------|----------------------------------------------------------------|
+| `count`                    | L, digits of a coefficient                                     |
+| `orders`                   | O, coefficients of a polynomial                                |
+| `p`, `tension`, `constant` | m, M, C: the largest digits of p, λ and the constants          |
+| `products`                 | L O m (M + 5C + 3m), a bound of all sums of products of digits |
+| `linear`                   | a bound of the products with 2^B, of c and of the 1 of τ       |
+| `more`                     | T − L, rows of a product that are summed beyond L              |
 """
 
 from functools import lru_cache

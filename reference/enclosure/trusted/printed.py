@@ -4,9 +4,10 @@ So nothing that reads a scene, lays out a grid, hands on, rounds or prints has t
 A row of a table is a dictionary by column: of texts (`cells`), or of what was proved (`row`): intervals, and exact
 numbers.
 
-    code        text (section 9)
-    q, u        the value of a printed number, and its last digit
-    low, high   the ends of a proven interval
+| name          | symbol                                              | unit               |
+|---------------|-----------------------------------------------------|--------------------|
+| `n`, `ten`    | q = n/ten, the value of a printed number; u = 1/ten | that of the column |
+| `low`, `high` | the ends of a proven interval                       | likewise           |
 """
 
 from collections.abc import Iterable, Mapping, Sequence

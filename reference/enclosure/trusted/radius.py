@@ -2,14 +2,18 @@
 
 In the time of a step, lengths over that of the rod; η is the same in physical time.
 
-    code                    text
-    length                  ℓ, the length of the step in s
-    eta, eta_start          η(s) at the end of the step, η(a) at its start
-    e_bar                   ē >= |e|
-    nu, mu                  ν, μ, the rates of Theorems N and C
-    b                       b, what the defects add to η in a unit of s
-    c, Omega, gamma, w, S   |c|, |Ω|, γ, w, S >= |H|
-    P, K, T, D1, D2         the sizes of section 6
+| name                       | symbol                                      | unit   |
+|----------------------------|---------------------------------------------|--------|
+| `length`                   | ℓ, the length of a step in s                | 1      |
+| `eta_start`, `eta`         | η(a), η(s)                                  | 1      |
+| `e_bar`                    | ē >= |e|                                    | 1      |
+| `nu`, `mu`                 | ν, μ, the rates of Theorems N and C         | 1      |
+| `b`                        | b, what the defects add to η in a unit of s | 1      |
+| `c`, `Omega`, `gamma`, `w` | |c|, |Ω|, γ, w                              | 1      |
+| `S`                        | S >= |H|                                    | 1      |
+| `P`, `K`, `T`, `D1`, `D2`  | the sizes of section 6                      | 1      |
+| `g_bound`                  | Γ >= |g|                                    | 1      |
+| `Jump`                     | |Δp|, |ΔK|                                  | 1, 1/s |
 """
 
 from fractions import Fraction

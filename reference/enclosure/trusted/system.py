@@ -5,19 +5,22 @@ x, y, z. An index 0 marks the scene's constants, with which polynomials and K = 
 of a point they are the pendulum's own; in a box of inputs (section 11) Ω and γ are balls that hold those of each
 pendulum, while c has one value for all (Lemma 11.1).
 
-    code            text        unit of SceneBalls; of Scaled, in the time of a step, s = (t - centre)/h
-    length          l           m
-    c               c           1/s²; h² c
-    omega, omega_0  Ω, Ω₀       1/s; h Ω
-    drag, drag_0    γ, γ₀       1/s; h γ
-    r, v            r(0), r'(0) 1, 1/s
-    H               H(0)        1/s, with Ω₀
-    w0, w           w₀, w       1/s; w = h w₀
-    S               S >= |H|    1/s; h S
-    lambda_minus    λ−          1/s²; h² λ−
-    lambda_plus     λ+          1/s²; h² λ+
-    c_size, omega_size, drag_size   bounds of |c|, |Ω|, γ
-    theta           ϑ           1, by how much the integers miss the constants (section 6)
+| name                   | symbol                                | unit                 |
+|------------------------|---------------------------------------|----------------------|
+| `length`               | l                                     | m                    |
+| `c`                    | c                                     | 1/s²; h² c in a step |
+| `omega`, `omega_0`     | Ω, Ω₀                                 | 1/s; h Ω             |
+| `drag`, `drag_0`       | γ, γ₀                                 | 1/s; h γ             |
+| `r`, `v`               | r(0), r'(0)                           | 1, 1/s               |
+| `H`                    | H(0), with Ω₀                         | 1/s                  |
+| `w0`, `w`              | w₀, w = h w₀                          | 1/s, 1               |
+| `S`                    | S >= |H| at all times                 | 1/s; h S             |
+| `lambda_minus`         | λ−                                    | 1/s²; h² λ−          |
+| `lambda_plus`          | λ+                                    | 1/s²; h² λ+          |
+| `J`                    | J(0)                                  | 1/s²                 |
+| `c_size`, `omega_size` | bounds of |c|, |Ω|                    | 1, of a step         |
+| `drag_size`            | a bound of γ                          | 1, of a step         |
+| `theta`                | ϑ, what the integers miss (section 6) | 1, of a step         |
 """
 
 from fractions import Fraction
@@ -58,14 +61,16 @@ class SceneBalls:
             weight = _weight(inputs, sin, cos)
             self.release = self._release(inputs)
             position, velocity = self.release
+            _, north, _ = weight
+            _, _, vz = velocity
             self.c = self.turned(times(1 / self.length, weight), 1)
             self.r = self.turned(position, 1)
             self.v = self.turned(velocity, 1)
 
             self._find_exact_zeros((sin * cos * rate).is_zero())
             # whether the velocity at the release is exactly horizontal, and c exactly vertical (Lemma 13.2)
-            self.level = _horizontal(inputs, velocity[2])
-            self.upright = weight[1].is_zero()
+            self.level = _horizontal(inputs, vz)
+            self.upright = north.is_zero()
             self._bound_the_motion()
 
     def _find_exact_zeros(self, vertical_rest: bool) -> None:
@@ -73,13 +78,15 @@ class SceneBalls:
 
         `vertical_rest`: at rest on the vertical the pendulum stays, as gravity is vertical too.
         """
-        x, y, _ = (q.is_zero() for q in self.release[0])
-        vx = self.v[0].is_zero()
-        at_rest = all(q.is_zero() for q in self.v)
+        position, _ = self.release
+        x, y, _ = (q.is_zero() for q in position)
+        vx, vm, vw = (q.is_zero() for q in self.v)
+        at_rest = vx and vm and vw
+        _, _, rate = self.omega
 
         self.slow = vx  # ẋ(0) = 0 exactly
         self.flat = at_rest and x  # ẍ(0) = 0 exactly as well
-        in_a_fixed_plane = x and vx and self.omega[2].is_zero()
+        in_a_fixed_plane = x and vx and rate.is_zero()
         on_the_vertical = x and y and at_rest and vertical_rest
         self.still = in_a_fixed_plane or on_the_vertical  # ẋ = 0 for ever
 

@@ -2,12 +2,14 @@
 
 In the time of a step, lengths over that of the rod:
 
-    code            text
-    eta, gamma      η >= |e| = |r − p|, Γ >= |g| = |H − K|
-    U, A            bounds of |v − p'|, |r'' − p''|
-    P, K, D1, D2    the sizes of section 6
-    K_rate          K1 >= |K'|
-    g_rate          Γ1 >= |g'| = |H' − K'|
+| name                 | symbol                                 | unit |
+|----------------------|----------------------------------------|------|
+| `eta`, `gamma`       | η >= |e| = |r − p|, Γ >= |g| = |H − K| | 1    |
+| `U`, `A`             | bounds of |v − p'|, |r'' − p''|        | 1    |
+| `P`, `K`, `D1`, `D2` | the sizes of section 6                 | 1    |
+| `K_rate`             | K1 >= |K'|                             | 1    |
+| `g_rate`             | Γ1 >= |g'| = |H' − K'|                 | 1    |
+| `c`, `Omega`, `drag` | |c|, |Ω|, γ                            | 1    |
 """
 
 from fractions import Fraction
