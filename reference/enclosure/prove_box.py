@@ -85,7 +85,7 @@ def enclose_box(
             from .trusted.derivatives import Derivatives
 
             follower = Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
-            source = TangentSource(windows.balls, follower.bound.ways)
+            source = TangentSource(windows.balls, follower.bound.sensitivities)
         cpu_s = process_time() - begun
         for step in until(approximant(bits, latest), latest):
             begun = process_time()

@@ -49,12 +49,14 @@ def residuals_hold(module):
         omega, turn, c = rng.normal(size=(3, 3)) * rng.choice([0, 1], size=(3, 1))
         drag, slow, h = rng.choice([0, 0.5]), rng.choice([0, 0.25]), rng.choice([1, 0.5, 3])
         k = SimpleNamespace(h=arb(h), c=balls(c), drag=arb(drag))
-        way = SimpleNamespace(turn=balls(turn), slow=arb(slow))
+        sensitivity = SimpleNamespace(omega_q=balls(turn), drag_q=arb(slow))
         poly = [[arb_poly(balls(column)) for column in rows.T] for rows in (p, K, P, Q)]
         with ctx.workprec(128):
-            found = module.residuals(
-                SimpleNamespace(k=k), balls(omega), *poly[:2], way, [*poly[2], *poly[3]]
-            )
+            scene_motion = module.SceneMotion(balls(omega), *poly[:2])
+            norms = module.residuals(k, scene_motion, sensitivity, [*poly[2], *poly[3]])
+            found = (
+                norms.P, norms.Q, norms.R1, norms.R2, norms.off_sphere, norms.off_momentum
+            )  # fmt: skip
         turn, slow = h * turn, h * slow
         for s in (-1.0, -0.3, 0.4, 1.0):
             x, y, u, v = (rows[0] + rows[1] * s for rows in (p, K, P, Q))
@@ -108,31 +110,31 @@ def sources_hold(module):
             omega=[arb(float(lo + hi) / 2, float(abs(hi - lo)) / 2) for lo, hi in box],
             omega_size=arb(float(size(W0) + size(off))), below=arb(0.3), above=arb(0.2),
         )  # fmt: skip
-        d = Sizes(arb(0), arb(0), arb(float(size(p))), arb(2), arb(0), arb(0))
         piece = SimpleNamespace(
-            k=k, sizes=d, step=SimpleNamespace(low=Fraction(0), high=Fraction(1, 1 << 30))
+            k=k, step=SimpleNamespace(low=Fraction(0), high=Fraction(1, 1 << 30))
         )
         owner = SimpleNamespace(omega=balls(W0), damping=arb(gamma + gap))
-        way = SimpleNamespace(turn=balls(turn), slow=arb(float(slow)), error=arb(0))
+        sensitivity = SimpleNamespace(omega_q=balls(turn), drag_q=arb(float(slow)), epsilon=arb(0))
         parts = [size(P), size(Q), 0.1, 0.2, abs(p @ P), abs(K @ P + p @ Q)]
-        error, momentum, rate = module.carried(
-            owner, piece, way, balls(parts), arb(float(size(e))), arb(float(size(g)))
-        )
+        norms = module.Norms(*balls(parts))
+        assumed = module.Distance(arb(float(size(e))), arb(float(size(g))))
+        step = module.box_step(owner, piece, arb(float(size(p))))
+        bounds = module.carried(step, sensitivity, norms, assumed)
         tilt = abs(H @ P + r @ Q)
         needed = 0.1 + s1 + (0.2 + s2 + 3 * abs(r @ P) + 1.5 * tilt) / w
-        assert needed <= float(error) * (1 << 30) * (1 + 1e-6), kind
-        assert tilt <= float(momentum) * SLACK
-        assert tilt + s1 + 0.1 <= float(rate) * SLACK
+        assert needed <= float(bounds.a) * (1 << 30) * (1 + 1e-6), kind
+        assert tilt <= float(bounds.b) * SLACK
+        assert tilt + s1 + 0.1 <= float(bounds.a_rate) * SLACK
         if kind % 100 == 0:  # growth, and what bounds have of the radius itself
-            way.error, piece.step.high = arb(1), Fraction(1)
-            error, momentum, rate = module.carried(owner, piece, way, balls(parts), arb(0), arb(0))
+            sensitivity.epsilon, piece.step.high = arb(1), Fraction(1)
+            step = module.box_step(owner, piece, arb(float(size(p))))
+            bounds = module.carried(step, sensitivity, norms, module.Distance(arb(0), arb(0)))
             grown = np.exp((max(0.3, 0.2 + 1.5**2) + (gamma + gap) * size(W)) / (2 * w))
-            assert float(error) >= (1 + 0.1 + (0.2 + 3 * parts[4] + 1.5 * parts[5]) / w) * grown * (
-                1 - 1e-9
-            )
-            assert float(momentum) >= (w + 1.5) * float(error) + parts[5] - 1e-9
-            least = float(momentum) + (1.5 + size(W)) * float(error)
-            assert float(rate) >= least - 1e-9
+            source = 0.1 + (0.2 + 3 * parts[4] + 1.5 * parts[5]) / w
+            assert float(bounds.a) >= (1 + source) * grown * (1 - 1e-9)
+            assert float(bounds.b) >= (w + 1.5) * float(bounds.a) + parts[5] - 1e-9
+            least = float(bounds.b) + (1.5 + size(W)) * float(bounds.a)
+            assert float(bounds.a_rate) >= least - 1e-9
 
 
 # output times that are spread over several steps
@@ -174,8 +176,8 @@ TRUTHS = {}
 class Poor:
     """Proposals that say nothing: the radius alone counts."""
 
-    def __init__(self, ways):
-        self.nothing = [([[0]] * 6, 0) for _ in ways]
+    def __init__(self, sensitivities):
+        self.nothing = [([[0]] * 6, 0) for _ in sensitivities]
 
     def propose(self, step):
         return self.nothing
@@ -184,8 +186,8 @@ class Poor:
 class Jumping:
     """Proposals that do not join: every other one is larger by a thousandth."""
 
-    def __init__(self, balls, ways):
-        self.source, self.larger = TangentSource(balls, ways), False
+    def __init__(self, balls, sensitivities):
+        self.source, self.larger = TangentSource(balls, sensitivities), False
 
     def propose(self, step):
         self.larger = not self.larger
@@ -256,12 +258,13 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             bits = COARSE if kind == "coarse" else BITS
             windows = windows_of(here, BITS + 64, times[:rows], WORDS)
             follower = module.Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
-            ways = follower.bound.ways
-            source = (
-                Poor(ways)
-                if poor
-                else (Jumping if kind == "jumping" else TangentSource)(windows.balls, ways)
-            )
+            sensitivities = follower.bound.sensitivities
+            if poor:
+                source = Poor(sensitivities)
+            elif kind == "jumping":
+                source = Jumping(windows.balls, sensitivities)
+            else:
+                source = TangentSource(windows.balls, sensitivities)
             chain = pair(
                 Recurrence(SceneBalls(box.inputs, BITS + 64), bits, 24).chain(Fraction(1, 16))
             )
@@ -290,14 +293,14 @@ def slopes_hold(found, j, truths, case):
         "derivatives in other axes would be false for other sections"
     )
     for (word, name), slopes in zeros.items():
-        for z, led in zip(found.proved.zeros[word], found.zeros[word], strict=True):
+        for z, derived in zip(found.proved.zeros[word], found.zeros[word], strict=True):
             near = [
                 slope
                 for t, slope in slopes
                 if z.t.low - Fraction(1, 10**6) <= t <= z.t.high + Fraction(1, 10**6)
             ]
-            made = getattr(led, name)
-            assert bool(made) == (bool(led.times) and (word, name) != ("xdot", "azimuths"))
+            made = getattr(derived, name)
+            assert bool(made) == (bool(derived.times) and (word, name) != ("xdot", "azimuths"))
             if made and len(near) == 1:
                 slack, interval = abs(near[0]) / 10**15, made[j]
                 assert interval.low - slack <= near[0] <= interval.high + slack, (*case, word, name)
@@ -310,9 +313,10 @@ def radius_holds(module):
         kept = SimpleNamespace(
             grown=lambda *_, eta=eta: Covered(None, Tube(arb(eta), arb(0), arb(0)))
         )
-        bound = SimpleNamespace(plain=kept)
-        found = module.Tangents.by_radius(bound, SimpleNamespace(k=k), d, arb(0), arb(off))
-        assert [float(x) for x in found] == pytest.approx([eta, 2.7 * eta + 1.5**2 * off])
+        bound = SimpleNamespace(box_radius=kept, box_radius_holds=True)
+        found = module.Tangents.by_theorem_c(bound, SimpleNamespace(k=k), d, arb(0), arb(off))
+        assert float(found.r) == pytest.approx(eta)
+        assert float(found.H) == pytest.approx(2.7 * eta + 1.5**2 * off)
 
 
 def widths_hold(module):
@@ -331,21 +335,21 @@ def widths_hold(module):
 
 def intervals_hold(module):
     """What follows for all inputs is near the scene's own number, and in the wide interval."""
-    ways, ends = (
+    sensitivities, ends = (
         [
-            SimpleNamespace(half=arb(0.5), scale=arb(4)),
-            SimpleNamespace(half=arb(0.25), scale=arb(2)),
+            SimpleNamespace(half_width=arb(0.5), scale=arb(4)),
+            SimpleNamespace(half_width=arb(0.25), scale=arb(2)),
         ],
         (1, 2),
     )
     own, derivatives = Interval(*map(Fraction, ends)), [arb(2), arb(-3)]
     for wide, found in (((-90, 90), (-4.5, 7.5)), ((0, 90), (0, 7.5)), ((-90, 3), (-4.5, 3))):
-        got = module.within(Interval(*map(Fraction, wide)), own, ways, derivatives)
+        got = module.within(Interval(*map(Fraction, wide)), own, sensitivities, derivatives)
         assert (got.low, got.high) == found
     wide = Interval(Fraction(-90), Fraction(90))
-    assert module.within(wide, own, ways, [arb(2), arb("nan")]) == wide
+    assert module.within(wide, own, sensitivities, [arb(2), arb("nan")]) == wide
     with pytest.raises(ArithmeticError, match="contradict"):
-        module.within(Interval(Fraction(8), Fraction(9)), own, ways, derivatives)
+        module.within(Interval(Fraction(8), Fraction(9)), own, sensitivities, derivatives)
 
 
 def own_zeros_hold(module):
@@ -355,7 +359,7 @@ def own_zeros_hold(module):
         return SimpleNamespace(t=Interval(Fraction(low), Fraction(high)), parity=parity)
 
     own = [zero(0, 1), zero(2, 3), zero(4, 5, "odd"), zero(6, 7), zero(8, 9)]
-    watched = SimpleNamespace(own=SimpleNamespace(found=own))
+    watched = SimpleNamespace(own_scan=SimpleNamespace(found=own))
     for low, high, n in (
         (1.5, 3.5, 1),
         (2.5, 3.5, 1),
@@ -364,9 +368,11 @@ def own_zeros_hold(module):
         (3.5, 5.5, None),
         (1.5, 7, None),
     ):
-        assert module.Watched.centre(watched, zero(low, high)) is (None if n is None else own[n])
+        assert module.WatchedZeros.own_zero(watched, zero(low, high)) is (
+            None if n is None else own[n]
+        )
     for low, high in ((3.25, 3.75), (5.5, 9), (0, 2), (9.5, 10)):
-        assert module.Watched.centre(watched, zero(low, high)) is None
+        assert module.WatchedZeros.own_zero(watched, zero(low, high)) is None
 
 
 def all_hold(module, long):

@@ -1,10 +1,29 @@
-"""TRUSTED. Derivatives to inputs, for every pendulum of a box, and what follows from them (THEOREM.md, section 12).
+"""TRUSTED. Derivatives of the motion to inputs, for every pendulum of a box (THEOREM.md, section 12).
 
-A derivative is scaled by a power of two, its `scale`, so that proposals are of the size of 1.
+Time on a step is s = (t - centre)/h; Ω, γ, H and χ are scaled with it, as in section 1. A derivative
+to an input q is computed as that to q / 2^n, so that proposals are of the size of 1. The input over
+2^n is called the scaled input here, and x, the variable of series, is added to it.
+
+| name             | symbol                              | unit                                 |
+|------------------|-------------------------------------|--------------------------------------|
+| `omega_q`        | Ω_q = ∂Ω/∂q                         | 1/s per scaled input                 |
+| `drag_q`         | γ_q = ∂γ/∂q                         | 1/s per scaled input                 |
+| `P`, `Q`         | P and Q, near ρ and χ = ∂(r, H)/∂q  | per scaled input; Q in a step's time |
+| `epsilon`        | ε                                   | per scaled input                     |
+| `half_width`     | δ_j                                 | scaled input                         |
+| `omega_0`, `K_0` | Ω₀ and K₀, those of the scene       | a step's time                        |
+| `Distance`       | bounds of |r - p| and |H - K₀|      | 1, and a step's time                 |
+| `assumed`        | E and G                             | likewise                             |
+| `Reached`        | E₁ and G₁                           | likewise                             |
+| `of_scene`       | η₀ and G₀                           | likewise                             |
+| `theorem_c`      | η_C and what (12.4e) makes of it    | likewise                             |
+| `ell`            | ℓ, the length of a step             | a step's time                        |
+| `p_size`         | |p|, at most P of section 2         | 1                                    |
 """
 
 from bisect import bisect_left, bisect_right
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
@@ -13,7 +32,7 @@ from typing import Any
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
-from .box import BoxBalls, BoxRadius, Widened, Windows, near, on_the_sphere, spread
+from .box import BoxBalls, BoxRadius, Windows, near, on_the_sphere, spread
 from .course import FINISHED, scan_of
 from .defect import Piece
 from .printed_box import end_of
@@ -21,387 +40,786 @@ from .radius import Radius
 from .shapes import (
     XDOT,
     Covered,
+    DerivedZero,
     EnclosedZero,
     Interval,
-    Led,
     ProvedDerivatives,
+    Sizes,
     State,
     Tangent,
 )
 from .six_columns import cut
+from .system import Scaled
 from .tube import output, tube
 from .zeros import Scan
 
 TINY = arb(2) ** -4096  # more than nothing
-TERMS = 32  # of p and K in the residuals, which are compared with proposals in doubles
+TERMS = 32  # orders of p and K₀ in the residuals, which are compared with proposals in doubles
 
 
-class Way:
-    """The derivative to one input: at the release, of Ω and of γ; then where proposals have led it, with its radius."""
-
-    def __init__(self, balls: BoxBalls, name: str, half: Fraction, scale: int) -> None:
-        self.scale, self.error = arb((fmpz(1), fmpz(scale))), arb(0)
-        self.half, self.twin = (
-            ball(half) / self.scale,
-            balls.varied(name.partition(".")[2], self.scale),
-        )
-        with ctx.workprec(balls.prec):
-            momentum = cross(self.twin.r, add(self.twin.v, cross(self.twin.omega, self.twin.r)))
-            self.last = [first(x) for x in (*self.twin.r, *momentum)]
-            self.turn, self.slow = [first(x) for x in self.twin.omega], first(self.twin.drag)
-
-
-def first(x: Any) -> arb:
+def derivative_of(x: Any) -> arb:
     """Return the first coefficient of a series; 0 of a ball, which does not depend on the input."""
     return x[1] if isinstance(x, arb_series) else arb(0)
 
 
-class Tangents(BoxRadius):
-    """Lemmas 12.2 and 12.4 for all inputs of a box, and Theorem C for the scene's own: they bound all motions."""
+# ------------------------------------------------- the bounds: Lemmas 12.2 and 12.4
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """The polynomials P and Q that are proposed for a step: integers over `unit`, and so exact."""
+
+    rows: list[fmpz_poly]
+    unit: fmpz
+
+    def at(self, s: Fraction, h: arb) -> Vector:
+        """Return balls of P(s), and of Q(s) in 1/s."""
+        values = [f(ball(s)) / self.unit for f in self.rows]
+        return [*values[:3], *times(1 / h, values[3:])]
+
+    def polynomials(self) -> list[arb_poly]:
+        """Return P and Q, three polynomials each, with balls for coefficients."""
+        return [arb_poly(f) * (1 / arb(self.unit)) for f in self.rows]
+
+
+class Sensitivity:
+    """How the motion depends on one input: what drives its derivative, and the radius of this.
+
+    `varied` has length, pace, axes, Ω, γ and release as series in x. `end` has P, and Q in 1/s, at
+    the end of the last step; at t = 0 it has balls of ρ and χ. Their first coefficients are those of
+    every pendulum of the box.
+    """
+
+    def __init__(self, balls: BoxBalls, name: str, half_width: Fraction, scale: int) -> None:
+        self.w0 = balls.w0
+        self.scale = arb((fmpz(1), fmpz(scale)))
+        self.half_width = ball(half_width) / self.scale
+        self.varied = balls.varied(name.partition(".")[2], self.scale)
+        self.epsilon = arb(0)
+        with ctx.workprec(balls.prec):
+            r = self.varied.r
+            v = self.varied.v
+            omega = self.varied.turning
+            H = cross(r, add(v, cross(omega, r)))
+            self.end = [derivative_of(x) for x in (*r, *H)]
+            self.omega_q = [derivative_of(x) for x in omega]
+            self.drag_q = derivative_of(self.varied.damping)
+
+    def join(self, candidate: Candidate, piece: Piece) -> None:
+        """Add to ε by how much the proposals of a step do not join those of the one before."""
+        h = piece.k.h
+        start = candidate.at(piece.step.low, h)
+        end = candidate.at(piece.step.high, h)
+        jump = [(after - before).abs_upper() for after, before in zip(start, self.end, strict=True)]
+        # (12.2l)
+        self.epsilon = self.epsilon + size(jump[:3]) + size(jump[3:]) / self.w0
+        self.end = end
+
+
+@dataclass(frozen=True)
+class SceneMotion:
+    """Ω₀, p and K₀ of the scene on a step, in few bits and orders; p and K₀ are polynomials."""
+
+    omega_0: Vector
+    p: Vector
+    K_0: Vector
+
+
+@dataclass(frozen=True)
+class Norms:
+    """Sup norms on a step; `off_sphere` is that of p·P, `off_momentum` that of K₀·P + p·Q."""
+
+    P: arb
+    Q: arb
+    R1: arb
+    R2: arb
+    off_sphere: arb
+    off_momentum: arb
+
+
+@dataclass(frozen=True)
+class BoxStep:
+    """What Lemma 12.2 needs of a step, for all pendulums of the box, in the step's time.
+
+    `delta_omega` and `delta_drag` are |δΩ| and |δγ|; `W` bounds |Ω| and |Ω₀|.
+    """
+
+    k: Scaled
+    p_size: arb
+    ell: arb
+    delta_omega: arb
+    delta_drag: arb
+    W: arb
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Bounds of |r - p| and |H - K₀| on a step, of one pendulum or of all of the box."""
+
+    r: arb
+    H: arb
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Bounds of |a| = |ρ - P|, of |b| = |χ - Q| and of |a'| on a step."""
+
+    a: arb
+    b: arb
+    a_rate: arb
+
+
+@dataclass(frozen=True)
+class Reached:
+    """How far all of the box reaches from the scene, by derivatives with these bounds."""
+
+    distance: Distance
+    bounds: list[Carried]
+
+
+def scene_motion(piece: Piece, omega: Vector) -> SceneMotion:
+    """Return what the residuals have of the scene's motion, cut as section 5 cuts p and K."""
+    omega_0 = times(piece.k.h, omega)
+    p = [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in piece.p]
+    p_rate = [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in piece.v]
+    V = add(p_rate, cross(omega_0, p))
+    K_0 = [cut(f, TERMS) for f in cross(p, V)]
+    return SceneMotion(omega_0, p, K_0)
+
+
+def residuals(
+    k: Scaled, scene: SceneMotion, sensitivity: Sensitivity, rows: list[arb_poly]
+) -> Norms:
+    """Return the norms of P and Q, of their residuals in (12.1), and of (12.1c) of p, K₀, P, Q.
+
+    Args:
+        k: the scene's γ₀ and c, and the step's h.
+        scene: its motion on the step.
+        sensitivity: Ω_q and γ_q.
+        rows: P and Q.
+    """
+    omega_0, p, K_0 = scene.omega_0, scene.p, scene.K_0
+    P, Q = rows[:3], rows[3:]
+    P_rate = [f.derivative() for f in P]
+    Q_rate = [f.derivative() for f in Q]
+    omega_q = times(k.h, sensitivity.omega_q)
+    drag_q = k.h * sensitivity.drag_q
+    K_less_omega = add(K_0, times(-1, omega_0))
+
+    # (12.2a)
+    R1 = add(P_rate, cross(p, Q), cross(P, K_less_omega), cross(omega_q, p))
+
+    # (12.2b)
+    R2 = add(Q_rate, cross(k.c, P), cross(omega_0, Q), cross(omega_q, K_0))
+    if not k.drag.is_zero():
+        along_p = times(dot(omega_q, p) + dot(omega_0, P), p)
+        along_P = times(dot(omega_0, p), P)
+        R2 = add(R2, times(k.drag, add(Q, times(-1, omega_q), along_p, along_P)))
+    if not drag_q.is_zero():
+        R2 = add(R2, times(drag_q, add(K_less_omega, times(dot(omega_0, p), p))))
+
+    return Norms(
+        P=sup_norm(P),
+        Q=sup_norm(Q),
+        R1=sup_norm(R1),
+        R2=sup_norm(R2),
+        off_sphere=sup_norm([dot(p, P)]),
+        off_momentum=sup_norm([dot(K_0, P) + dot(p, Q)]),
+    )
+
+
+def sup_norm(polynomials: Vector) -> arb:
+    """Return an upper bound of the length of a vector of polynomials on |s| <= 1."""
+    return size([f(UNIT) for f in polynomials])
+
+
+def box_step(balls: BoxBalls, whole: Piece, p_size: arb) -> BoxStep:
+    """Return what Lemma 12.2 needs of a step, `whole` with the constants of the box."""
+    k = whole.k
+    omega_0 = times(k.h, balls.omega)
+    return BoxStep(
+        k=k,
+        p_size=p_size,
+        ell=ball(whole.step.high - whole.step.low),
+        delta_omega=size(add(k.omega, times(-1, omega_0))),
+        delta_drag=upper(abs(k.h * balls.damping - k.drag)),
+        W=k.omega_size.max(size(omega_0)),
+    )
+
+
+def carried(step: BoxStep, sensitivity: Sensitivity, norms: Norms, assumed: Distance) -> Carried:
+    """Return the bounds of Lemma 12.2, where all of the box is as near to p and K₀ as is assumed."""
+    k, p, W = step.k, step.p_size, step.W
+    w, S = k.w, k.speed
+    eta, G = assumed.r, assumed.H
+    P, Q = norms.P, norms.Q
+    delta_omega = step.delta_omega
+    omega_q = size(times(k.h, sensitivity.omega_q))
+    drag_q = upper(abs(k.h * sensitivity.drag_q))
+
+    # (12.2e)
+    S1 = (Q + omega_q) * eta + (G + delta_omega) * P
+
+    # (12.2f): what differs by Ω and H, by δγ, and in the terms of γ and γ_q
+    S2 = Q * delta_omega + G * omega_q
+    S2 = S2 + step.delta_drag * (Q + omega_q * (1 + p**2) + 2 * W * p * P)
+    of_drag = k.drag_size * (omega_q * eta * (1 + p) + 2 * P * (delta_omega + W * eta))
+    of_drag_q = drag_q * (G + 2 * delta_omega + W * eta * (1 + p))
+    S2 = S2 + (of_drag + of_drag_q)
+
+    # (12.2g, h)
+    A = norms.off_sphere + eta * P
+    B = norms.off_momentum + G * P + eta * Q
+
+    # (12.2d)
+    two_w_mu = k.below.max(k.above + S**2) + k.drag_size * k.omega_size
+
+    # (12.2c, i)
+    source = S1 + norms.R1 + (S2 + norms.R2 + A * k.c_size + B * S) / w
+    growth = (step.ell * two_w_mu / (2 * w)).exp()
+    a = upper((sensitivity.epsilon + step.ell * source) * growth)
+
+    # (12.2j, k)
+    b = upper((w + S) * a + B)
+    a_rate = upper(b + (S + k.omega_size) * a + S1 + norms.R1)
+    return Carried(a, b, a_rate)
+
+
+class Tangents:
+    """Bounds the motions of a box by their derivatives (Lemma 12.4), and these (Lemma 12.2).
+
+    After a step, `scene` is the tube of the scene's own motion, by Theorem C, and `tangents` has the
+    derivatives of the position to the inputs.
+    """
+
+    scene: Covered
+    tangents: list[Tangent]
 
     def __init__(
-        self, balls: BoxBalls, halves: dict[str, Fraction], scales: dict[str, int]
+        self, balls: BoxBalls, half_widths: dict[str, Fraction], scales: dict[str, int]
     ) -> None:
-        super().__init__(balls)
-        texts = {name: str(half) for name, half in halves.items()}
-        ends = [end_of(balls.inputs, texts, side) for side in (-1, 1)]
-        demand(ends == [balls.claim.low, balls.claim.high], "a width is missing, or another one")
-        self.ways = [Way(balls, name, half, scales[name]) for name, half in halves.items()]
-        self.point, self.scene = Radius(balls.own), list[Covered]()
-        self.plain: BoxRadius | None = BoxRadius(balls)
+        self.balls = balls
+        texts = {name: str(half_width) for name, half_width in half_widths.items()}
+        ends = [end_of(balls.inputs.inputs, texts, side) for side in (-1, 1)]
+        # Lemma 12.4 takes a box that is symmetric about the scene
+        demand(ends == [*balls.inputs[1:]], "a width is missing, or another one")
+        self.sensitivities = [
+            Sensitivity(balls, name, half_width, scales[name])
+            for name, half_width in half_widths.items()
+        ]
+        self.eta = arb(0)
+        self.point = Radius(balls.own)
+        self.box_radius = BoxRadius(balls)
+        self.box_radius_holds = True
 
-    def advance(self, piece: Piece, proposal: list[Any]) -> Covered:  # type: ignore[override]
-        """Carry all over a step: `proposal` has six polynomials of integers, and the bits of their unit, per input."""
-        whole, own, widened = piece, Piece(self.balls.own, piece.step), self.widened(piece)
-        d = widened.sizes
-        self.scene, sizes, polynomials = [self.point.advance(own)], list[list[arb]](), list[Any]()
-        with ctx.workprec(2 * SHORT):
-            omega = times(piece.constants.h, self.balls.omega_0)
-            p, v = (
-                [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in part]
-                for part in (piece.p, piece.v)
-            )
-            K = [cut(f, TERMS) for f in cross(p, add(v, cross(omega, p)))]
-            for way, (rows, bits) in zip(self.ways, proposal, strict=True):
-                f, unit, inverse = (
-                    [fmpz_poly(row) for row in rows],
-                    fmpz(1) << bits,
-                    1 / piece.constants.h,
-                )
-                start, end = (
-                    [g(ball(s)) / unit for g in f] for s in (piece.step.low, piece.step.high)
-                )
-                start, end = ([*x[:3], *times(inverse, x[3:])] for x in (start, end))
-                jump = [(a - b).abs_upper() for a, b in zip(start, way.last, strict=True)]
-                way.error, way.last = (
-                    way.error + size(jump[:3]) + size(jump[3:]) / self.balls.w0,
-                    end,
-                )
-                with ctx.workprec(SHORT):
-                    sizes.append(
-                        residuals(
-                            whole, omega, p, K, way, [arb_poly(g) * (1 / arb(unit)) for g in f]
-                        )
-                    )
-                polynomials.append((f[:3], unit))
-        with ctx.workprec(SHORT):
-            k, near_by = whole.constants, self.scene[0].tube.eta
-            off, around = size(add(k.omega, times(-1, omega))), (own.constants.w + d.k) * near_by
+    @property
+    def time(self) -> Fraction:
+        """The time up to which the steps go."""
+        return self.box_radius.time
 
-            def bounds(e: arb, g: arb) -> tuple[arb, arb, list[list[arb]]]:
-                found = [
-                    carried(self.balls, whole, way, part, e, g)
-                    for way, part in zip(self.ways, sizes, strict=True)
-                ]
-                parts = list(zip(self.ways, sizes, found, strict=True))
-                far = sum((way.half * (x[0] + y[0]) for way, x, y in parts), near_by)
-                fast = sum((way.half * (x[1] + y[1]) for way, x, y in parts), around)
-                return upper(far), upper(fast), found
+    def advance(self, piece: Piece, proposal: list[Any]) -> Covered:
+        """Carry all bounds over a step.
 
-            sure = self.by_radius(whole, widened, off)
-            e, g = (
-                upper(2 * x + TINY).min(y)
-                for x, y in zip(bounds(arb(0), arb(0))[:2], sure, strict=True)
-            )
-            eta, gamma, found = bounds(e, g)
-            holds = (eta < e or e == sure[0]) and (gamma < g or g == sure[1])
-            demand(holds, "a bound has outgrown what it rests on")
-            self.eta, gamma = eta.min(sure[0]), gamma.min(sure[1])
-            for way, part in zip(self.ways, found, strict=True):
-                way.error = part[0]
-            self.tangents = [
-                Tangent(f, unit, x[0], x[2])
-                for (f, unit), x in zip(polynomials, found, strict=True)
-            ]
-            return Covered(whole, tube(k, d, self.eta, gamma + d.p**2 * off))
-
-    def by_radius(self, whole: Piece, widened: Widened, off: arb) -> Vector:
-        """Return Theorem C's bounds of |r - p| and |H - K| for the box: no bounds from where they fail on."""
-        try:
-            eta = self.plain.grown(whole, widened).tube.eta if self.plain else arb("inf")
-        except ArithmeticError:
-            self.plain, eta = None, arb("inf")
-        return [
-            eta,
-            ((whole.constants.w + widened.sizes.k) * eta + widened.sizes.p**2 * off).upper(),
+        Args:
+            piece: the step.
+            proposal: six polynomials of integers, and the bits of their unit, for each input.
+        """
+        # Lemmas 11.2 and 11.3: constants, sizes and jump for all of the box
+        whole, sizes, jump = self.box_radius.widened(piece)
+        # the same polynomials, read once, bound the scene's own motion
+        self.scene = self.point.advance(Piece(self.balls.own, piece.step))
+        candidates = [
+            Candidate([fmpz_poly(row) for row in rows], fmpz(1) << bits) for rows, bits in proposal
         ]
 
+        with ctx.workprec(2 * SHORT):
+            scene = scene_motion(piece, self.balls.omega)
+            norms = []
+            for sensitivity, candidate in zip(self.sensitivities, candidates, strict=True):
+                sensitivity.join(candidate, piece)
+                with ctx.workprec(SHORT):
+                    rows = candidate.polynomials()
+                    norms.append(residuals(whole.k, scene, sensitivity, rows))
 
-def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vector) -> list[arb]:
-    """Return |P|, |Q|, |R1|, |R2|, |p·P|, |K·P + p·Q| of polynomials (P, Q) for ρ and χ, with the scene's Ω and γ."""
-    k, P, Q, rates = piece.constants, W[:3], W[3:], [f.derivative() for f in W]
-    turn, slow, lean = times(k.h, way.turn), k.h * way.slow, add(K, times(-1, omega))
-    r1 = add(rates[:3], cross(p, Q), cross(P, lean), cross(turn, p))
-    r2 = add(rates[3:], cross(k.c, P), cross(omega, Q), cross(turn, K))
-    if not k.drag_0.is_zero():
-        along = times(dot(turn, p) + dot(omega, P), p)
-        r2 = add(r2, times(k.drag_0, add(Q, times(-1, turn), along, times(dot(omega, p), P))))
-    if not slow.is_zero():
-        r2 = add(r2, times(slow, add(lean, times(dot(omega, p), p))))
-    vectors = [P, Q, r1, r2, [dot(p, P)], [dot(K, P) + dot(p, Q)]]
-    return [size([f(UNIT) for f in part]) for part in vectors]
+        with ctx.workprec(SHORT):
+            delta_omega = size(add(whole.k.omega, times(-1, scene.omega_0)))
+            theorem_c = self.by_theorem_c(whole, sizes, jump, delta_omega)
+            reached = self.confirmed(box_step(self.balls, whole, sizes.p), sizes, norms, theorem_c)
+
+            self.eta = reached.distance.r.min(theorem_c.r)
+            gamma = reached.distance.H.min(theorem_c.H)
+            self.tangents = []
+            for sensitivity, candidate, bound in zip(
+                self.sensitivities, candidates, reached.bounds, strict=True
+            ):
+                sensitivity.epsilon = bound.a
+                self.tangents.append(
+                    Tangent(candidate.rows[:3], candidate.unit, bound.a, bound.a_rate)
+                )
+            # (12.4f)
+            return Covered(whole, tube(whole.k, sizes, self.eta, gamma + sizes.p**2 * delta_omega))
+
+    def by_theorem_c(self, whole: Piece, sizes: Sizes, jump: arb, delta_omega: arb) -> Distance:
+        """Return (12.4d, e), for all of the box; no bounds from where Lemma 11.4 fails on."""
+        eta = arb("inf")
+        if self.box_radius_holds:
+            try:
+                eta = self.box_radius.grown(whole, sizes, jump).tube.eta
+            except ArithmeticError:
+                self.box_radius_holds = False
+        H = ((whole.k.w + sizes.k) * eta + sizes.p**2 * delta_omega).upper()
+        return Distance(eta, H)
+
+    def confirmed(
+        self, step: BoxStep, sizes: Sizes, norms: list[Norms], theorem_c: Distance
+    ) -> Reached:
+        """Return the bounds of Lemma 12.4, with E and G twice what follows from none.
+
+        Raises ArithmeticError if they are not confirmed, and not Theorem C's either.
+        """
+        eta_0 = self.scene.tube.eta
+        # (12.4g)
+        of_scene = Distance(eta_0, (self.scene.piece.k.w + sizes.k) * eta_0)
+
+        least = self.reached(step, norms, Distance(arb(0), arb(0)), of_scene).distance
+        assumed = Distance(
+            upper(2 * least.r + TINY).min(theorem_c.r), upper(2 * least.H + TINY).min(theorem_c.H)
+        )
+        reached = self.reached(step, norms, assumed, of_scene)
+
+        # (12.4a, b); what Theorem C gives holds without
+        r_holds = reached.distance.r < assumed.r or assumed.r == theorem_c.r
+        H_holds = reached.distance.H < assumed.H or assumed.H == theorem_c.H
+        demand(r_holds and H_holds, "a bound has outgrown what it rests on")
+        return reached
+
+    def reached(
+        self, step: BoxStep, norms: list[Norms], assumed: Distance, of_scene: Distance
+    ) -> Reached:
+        """Return E₁ and G₁ of Lemma 12.4, and the bounds they are made of, from E and G."""
+        r, H, bounds = of_scene.r, of_scene.H, list[Carried]()
+        for sensitivity, norm in zip(self.sensitivities, norms, strict=True):
+            bound = carried(step, sensitivity, norm, assumed)
+            # (12.4a, b)
+            r = r + sensitivity.half_width * (norm.P + bound.a)
+            H = H + sensitivity.half_width * (norm.Q + bound.b)
+            bounds.append(bound)
+        return Reached(Distance(upper(r), upper(H)), bounds)
 
 
-def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g: arb) -> list[arb]:
-    """Return bounds of |ρ - P|, |χ - Q|, |ρ' - P'| on a step, where |r - p| <= e and |H - K| <= g (Lemma 12.2)."""
-    k, d, (P, Q, r1, r2, along, across) = piece.constants, piece.sizes, sizes
-    w, span, omega = k.w, ball(piece.step.high - piece.step.low), times(k.h, balls.omega_0)
-    turn, slow = size(times(k.h, way.turn)), upper(abs(k.h * way.slow))
-    off, gap = size(add(k.omega, times(-1, omega))), upper(abs(k.drag - k.drag_0))
-    W = k.omega_size.max(size(omega))
-    s1 = (Q + turn) * e + (g + off) * P
-    s2 = Q * off + g * turn + gap * (Q + turn * (1 + d.p**2) + 2 * W * d.p * P)
-    s2 += k.drag_size * (turn * e * (1 + d.p) + 2 * P * (off + W * e)) + slow * (
-        g + 2 * off + W * e * (1 + d.p)
+# ------------------------------------------------- what is delivered: Lemmas 12.3 and 12.5
+
+
+@dataclass(frozen=True)
+class MotionBalls:
+    """Balls of r, r' and r'' of all of the box at a place of a step, in 1, 1/s and 1/s²."""
+
+    r: Vector
+    v: Vector
+    a: Vector
+
+
+@dataclass(frozen=True)
+class VariationBalls:
+    """Balls of ρ and ρ' of all of the box at a place of a step, in 1 and 1/s per scaled input."""
+
+    rho: Vector
+    rate: Vector
+
+
+@dataclass(frozen=True)
+class Horizontal:
+    """The part of a vector across c: along x, and along y = up × x."""
+
+    x: arb
+    y: arb
+
+
+@dataclass(frozen=True)
+class ZeroDerivative:
+    """Derivatives of a zero's time and, of highest and lowest points, of its azimuth in degrees."""
+
+    time: arb
+    azimuth: arb | None
+
+
+def motion_at(covered: Covered, s: arb) -> MotionBalls:
+    """Return balls of r, r', r'' on the ball `s`: those of section 7."""
+    piece, bounds = covered.piece, covered.tube
+    h = piece.k.h
+
+    def enclosed(polynomials: list[fmpz_poly], radius: arb, time: Any) -> Vector:
+        return [(near(f, s) / piece.unit + arb(0, radius)) / time for f in polynomials]
+
+    with ctx.workprec(piece.balls.prec):
+        return MotionBalls(
+            r=enclosed(piece.p, bounds.eta, 1),
+            v=enclosed(piece.v, bounds.u, h),
+            a=enclosed([f.derivative() for f in piece.v], bounds.a, h**2),
+        )
+
+
+def variation_at(covered: Covered, tangent: Tangent, s: arb) -> VariationBalls:
+    """Return balls of ρ and ρ' on the ball `s`: P and P' with (12.2i) and (12.2k)."""
+    h = covered.piece.k.h
+    rates = [f.derivative() for f in tangent.rows]
+    return VariationBalls(
+        rho=[near(f, s) / tangent.unit + arb(0, tangent.error) for f in tangent.rows],
+        rate=[(near(f, s) / tangent.unit + arb(0, tangent.rate)) / h for f in rates],
     )
-    aside, tilt = along + e * P, across + g * P + e * Q
-    source = s1 + r1 + (s2 + r2 + aside * k.c_size + tilt * k.S) / w
-    rate = k.lambda_minus.max(k.lambda_plus + k.S**2) + k.drag_size * k.omega_size
-    error = upper((way.error + span * source) * (span * rate / (2 * w)).exp())
-    momentum = upper((w + k.S) * error + tilt)
-    return [error, momentum, upper(momentum + (k.S + k.omega_size) * error + s1 + r1)]
 
 
-class Watched:
-    """A scan of a box, the same of the scene alone, and steps since its cluster began; derivatives of its zeros."""
+def horizontal(vector: Vector, c: Vector) -> Horizontal:
+    """Return the part of a vector across c, which has no x component."""
+    _, m, w = c
+    y = times(1 / (m * m + w * w).sqrt(), [arb(0), -w, m])
+    return Horizontal(vector[0], dot(vector, y))
 
-    def __init__(self, scan: Scan, own: Scan, apsis: bool) -> None:
-        self.scan, self.own, self.apsis = scan, own, apsis
-        self.kept, self.zeros = list[tuple[Covered, list[Tangent]]](), list[list[Vector]]()
 
-    def advance(
-        self, covered: Covered, tangents: list[Tangent], scene: Covered, ways: list[Way]
-    ) -> None:
+def state_derivative(
+    motion: MotionBalls, variation: VariationBalls, sensitivity: Sensitivity, time: arb
+) -> Vector:
+    """Return balls of the derivatives of position and velocity, in m and m/s per unit of the input.
+
+    They are those at `time`, by the pendulum's own clock (Lemma 12.3).
+    """
+    varied = sensitivity.varied
+    # s_q t
+    later = derivative_of(varied.pace) * time
+    # (12.3a)
+    r = [
+        arb_series([r, v * later + rho], 2)
+        for r, v, rho in zip(motion.r, motion.v, variation.rho, strict=True)
+    ]
+    # (12.3b)
+    v = [
+        arb_series([v, a * later + rate], 2)
+        for v, a, rate in zip(motion.v, motion.a, variation.rate, strict=True)
+    ]
+    # (12.3c)
+    state = on_the_sphere(*varied.turned(r, -1), *varied.turned(v, -1))
+    position = times(varied.length, state[:3])
+    velocity = times(varied.length * varied.pace, state[3:])
+    return [derivative_of(x) / sensitivity.scale for x in (*position, *velocity)]
+
+
+def zero_derivative(
+    covered: Covered,
+    motion: MotionBalls,
+    variation: VariationBalls,
+    sensitivity: Sensitivity,
+    s: arb,
+    apsis: bool,
+) -> ZeroDerivative:
+    """Return the derivatives of a zero that lies in the ball `s` of a step.
+
+    It is one of xdot (Lemma 12.3) or, with `apsis`, of the velocity along c (Lemma 12.5).
+    """
+    piece = covered.piece
+    if apsis:
+        c = piece.balls.c
+        r, v, a = (horizontal(q, c) for q in (motion.r, motion.v, motion.a))
+        rho, rate = (horizontal(q, c) for q in (variation.rho, variation.rate))
+        # (12.5a)
+        late = -(rho.x * v.x + rho.y * v.y + r.x * rate.x + r.y * rate.y) / (
+            v.x**2 + v.y**2 + r.x * a.x + r.y * a.y
+        )
+        # (12.5b)
+        turned = (r.x * rho.y - r.y * rho.x + late * (r.x * v.y - r.y * v.x)) / (r.x**2 + r.y**2)
+        azimuth = turned * 180 / arb.pi() / sensitivity.scale
+    else:
+        # (12.3d)
+        late = -variation.rate[0] / motion.a[0]
+        azimuth = None
+
+    # (12.3e)
+    theta = arb_series([ball(piece.step.centre) + s * piece.k.h, late], 2)
+    own_time = derivative_of(theta / sensitivity.varied.pace)
+    return ZeroDerivative(own_time / sensitivity.scale, azimuth)
+
+
+def hull_of(vectors: Sequence[Vector]) -> Vector:
+    """Return balls that contain those of all the vectors, component by component."""
+    return [reduce(arb.union, column) for column in zip(*vectors, strict=True)]
+
+
+@dataclass(frozen=True)
+class CoveredStep:
+    """A step's tube for all of the box, and its derivatives to the inputs."""
+
+    covered: Covered
+    tangents: list[Tangent]
+
+
+class WatchedZeros:
+    """The derivatives of a scan's zeros; `kept` are the steps since its open cluster began.
+
+    `own_scan` is the same scan of the scene's own motion. `derivatives` has a list for each zero
+    that the scan has closed: one for each input if it is single and all are finite, else none.
+    """
+
+    def __init__(self, scan: Scan, own_scan: Scan, apsis: bool) -> None:
+        self.scan = scan
+        self.own_scan = own_scan
+        self.apsis = apsis
+        self.kept = list[CoveredStep]()
+        self.derivatives = list[list[ZeroDerivative]]()
+
+    def advance(self, step: CoveredStep, scene: Covered, sensitivities: list[Sensitivity]) -> None:
         """Take the next step."""
-        self.kept.append((covered, tangents))
-        self.close(ways)
-        self.own.advance(scene)
-        self.kept = self.kept if self.scan.cluster else []
+        self.kept.append(step)
+        self.take_closed(sensitivities)
+        self.own_scan.advance(scene)
+        if not self.scan.cluster:
+            self.kept = []
 
-    def close(self, ways: list[Way]) -> None:
-        """Take the derivatives of the zeros that were found since."""
-        for z in self.scan.found[len(self.zeros) :]:
-            self.zeros.append(self.of_zero(z, ways) if z.parity == "one" else [])
+    def take_closed(self, sensitivities: list[Sensitivity]) -> None:
+        """Take the derivatives of the zeros that were closed since the last call."""
+        for zero in self.scan.found[len(self.derivatives) :]:
+            derivatives = self.of_zero(zero, sensitivities) if zero.parity == "one" else []
+            self.derivatives.append(derivatives if all_finite(derivatives) else [])
 
-    def of_zero(self, z: EnclosedZero, ways: list[Way]) -> list[Vector]:
-        """Return the derivatives of a zero's time and of its azimuth, in degrees, over all times that it may have."""
-        begun, ended = self.kept[0][0].piece.begin, self.kept[-1][0].piece.end
+    def of_zero(self, zero: EnclosedZero, sensitivities: list[Sensitivity]) -> list[ZeroDerivative]:
+        """Return the derivatives of a zero to each input, over all times that it may have."""
+        begin = self.kept[0].covered.piece.begin
+        end = self.kept[-1].covered.piece.end
         # it lies in leaves of steps that are kept, whatever rounding adds to its interval
-        demand(z.t.low < ended and begun < z.t.high, "a zero is not covered")
-        found: list[list[Vector]] = [[] for _ in ways]
-        for covered, tangents in self.kept:
-            begin, end = max(z.t.low, covered.piece.begin), min(z.t.high, covered.piece.end)
-            for s in spread(covered.piece, begin, end) if begin <= end else ():
-                own = motion(covered, s)
-                for way, tangent, parts in zip(ways, tangents, found, strict=True):
-                    parts.append(late_and_turned(covered, own, tangent, way, s, self.apsis))
-        return [[reduce(arb.union, x) for x in zip(*parts, strict=True)] for parts in found]
+        demand(zero.t.low < end and begin < zero.t.high, "a zero is not covered")
 
-    def centre(self, z: Any) -> Any:
-        """Return the scene's own zero in the interval of a single one of the box, where each has one; or None."""
-        found = self.own.found
-        first = bisect_left(found, z.t.low, key=lambda y: y.t.high)
-        near = found[first : bisect_right(found, z.t.high, key=lambda y: y.t.low)]
-        return near[0] if len(near) == 1 and near[0].parity == "one" else None
+        at_places = [
+            self.at_place(step, s, sensitivities)
+            for step in self.kept
+            for s in places(step.covered.piece, zero.t.low, zero.t.high)
+        ]
+        return [hull_of_zeros(of_input) for of_input in zip(*at_places, strict=True)]
+
+    def at_place(
+        self, step: CoveredStep, s: arb, sensitivities: list[Sensitivity]
+    ) -> list[ZeroDerivative]:
+        """Return the derivatives of a zero that lies in the ball `s` of a step, to each input."""
+        covered = step.covered
+        motion = motion_at(covered, s)
+        derivatives = []
+        with ctx.workprec(covered.piece.balls.prec):
+            for sensitivity, tangent in zip(sensitivities, step.tangents, strict=True):
+                variation = variation_at(covered, tangent, s)
+                derivatives.append(
+                    zero_derivative(covered, motion, variation, sensitivity, s, self.apsis)
+                )
+        return derivatives
+
+    def own_zero(self, zero: EnclosedZero) -> EnclosedZero | None:
+        """Return the scene's own zero in the interval of a single one of the box, or None.
+
+        Each pendulum of the box has one there, so that of the scene is the only one that touches it.
+        """
+        found = self.own_scan.found
+        first = bisect_left(found, zero.t.low, key=lambda z: z.t.high)
+        last = bisect_right(found, zero.t.high, key=lambda z: z.t.low)
+        touching = found[first:last]
+        if len(touching) == 1 and touching[0].parity == "one":
+            return touching[0]
+        return None
+
+
+def places(piece: Piece, begin: Fraction, end: Fraction) -> list[arb]:
+    """Return balls of s that cover the part of a step from one time to another; none if it has none."""
+    low = max(begin, piece.begin)
+    high = min(end, piece.end)
+    return spread(piece, low, high) if low <= high else []
+
+
+def hull_of_zeros(derivatives: Sequence[ZeroDerivative]) -> ZeroDerivative:
+    """Return balls that contain all these derivatives."""
+    time = reduce(arb.union, [x.time for x in derivatives])
+    azimuths = [x.azimuth for x in derivatives if x.azimuth is not None]
+    return ZeroDerivative(time, reduce(arb.union, azimuths) if azimuths else None)
+
+
+@dataclass(frozen=True)
+class Narrowed:
+    """Zeros of a word in each pendulum's own time, and their derivatives."""
+
+    zeros: tuple[EnclosedZero, ...]
+    derived: tuple[DerivedZero, ...]
 
 
 class Derivatives:
-    """Follows a box's windows: derivatives of states at their times; of transits, highest and lowest points."""
+    """Follows a box's windows: derivatives of states at output times, and of zeros.
+
+    The zeros are transits, highest and lowest points.
+    """
 
     def __init__(
-        self, windows: Windows, halves: dict[str, Fraction], scales: dict[str, int]
+        self, windows: Windows, half_widths: dict[str, Fraction], scales: dict[str, int]
     ) -> None:
-        self.windows, self.balls, self.course, self.names = (
-            windows,
-            windows.balls,
-            windows.course,
-            tuple(halves),
-        )
-        self.bound = self.course.bound = Tangents(self.balls, halves, scales)
-        self.done, self.hulls, self.states, self.watched = (
-            0,
-            list[list[Vector]](),
-            list[State](),
-            dict[str, Watched](),
-        )
+        self.windows = windows
+        self.balls = windows.balls
+        self.course = windows.course
+        self.names = tuple(half_widths)
+        self.bound = Tangents(self.balls, half_widths, scales)
+        self.course.bound = self.bound
+        # how many output times all pendulums of the box have passed
+        self.done = 0
+        # of the derivatives of a state, by output time and input
+        self.hulls = list[list[Vector]]()
+        # of the scene's own motion
+        self.states = list[State]()
+        self.watched = dict[str, WatchedZeros]()
         for word, scan in self.course.scans.items():
-            # these in axes in which the plumb line is the same for all
+            # their forms are the same for all, in axes in which the plumb line is the same for all
             if word in (XDOT, "highest", "lowest"):
-                own = scan_of(self.balls.own, word, second_order=True)
-                self.watched[word] = Watched(scan, own, word != XDOT)
+                own_scan = scan_of(self.balls.own, word, second_order=True)
+                self.watched[word] = WatchedZeros(scan, own_scan, word != XDOT)
         self.course.followers.append(self)
 
     def advance(self, covered: Covered) -> None:
-        """Take the next step: what it may hold of output times, and the zeros that are closed with it."""
+        """Take the next step: what it may hold of output times, and the zeros closed with it."""
         demand(not self.course.open, "a tube comes from the course alone, while it takes a step")
-        (scene,), windows, tangents = self.bound.scene, self.windows, self.bound.tangents
-        for n in range(self.done, len(windows.times)):
-            time = windows.times[n]
-            low, high = windows.pace.low * time, windows.pace.high * time
-            if low > covered.piece.end:
-                break
-            parts = spread(
-                covered.piece, max(low, covered.piece.begin), min(high, covered.piece.end)
-            )
-            motions = [(s, motion(covered, s)) for s in parts]
-            rows = [
-                [values(covered, own, tangent, way, s, ball(time)) for s, own in motions]
-                for tangent, way in zip(tangents, self.bound.ways, strict=True)
-            ]
-            before = self.hulls[n] if n < len(self.hulls) else [[] for _ in rows]
-            together = [[x, *row] if x else row for x, row in zip(before, rows, strict=True)]
-            self.hulls[n : n + 1] = [
-                [[reduce(arb.union, x) for x in zip(*row, strict=True)] for row in together]
-            ]
-            self.done += high <= covered.piece.end
-        while (
-            len(self.states) < len(windows.times)
-            and windows.times[len(self.states)] <= scene.piece.end
-        ):
-            self.states.append(output(scene, windows.times[len(self.states)]))
+        step = CoveredStep(covered, self.bound.tangents)
+        self.take_output_times(step)
+        self.take_own_states(self.bound.scene)
         for watched in self.watched.values():
-            watched.advance(covered, tangents, scene, self.bound.ways)
+            watched.advance(step, self.bound.scene, self.bound.sensitivities)
+
+    def take_output_times(self, step: CoveredStep) -> None:
+        """Take the derivatives of states at output times that some pendulum has in this step."""
+        piece, pace = step.covered.piece, self.windows.pace
+        for n in range(self.done, len(self.windows.times)):
+            time = self.windows.times[n]
+            low = pace.low * time
+            high = pace.high * time
+            if low > piece.end:
+                break
+            self.take_output_time(n, step, places(piece, low, high))
+            if high <= piece.end:
+                self.done += 1
+
+    def take_output_time(self, n: int, step: CoveredStep, at: list[arb]) -> None:
+        """Add the derivatives of the state at output time `n`, on the balls `at` of a step."""
+        time = ball(self.windows.times[n])
+        at_places = [self.at_place(step, s, time) for s in at]
+        # what the steps before have of this time
+        before = self.hulls[n : n + 1]
+        of_inputs = zip(*before, *at_places, strict=True)
+        self.hulls[n : n + 1] = [[hull_of(states) for states in of_inputs]]
+
+    def at_place(self, step: CoveredStep, s: arb, time: arb) -> list[Vector]:
+        """Return the derivatives of the state at `time`, which lies in the ball `s`, to each input."""
+        covered = step.covered
+        motion = motion_at(covered, s)
+        derivatives = []
+        with ctx.workprec(self.balls.prec):
+            for sensitivity, tangent in zip(self.bound.sensitivities, step.tangents, strict=True):
+                variation = variation_at(covered, tangent, s)
+                derivatives.append(state_derivative(motion, variation, sensitivity, time))
+        return derivatives
+
+    def take_own_states(self, scene: Covered) -> None:
+        """Take the states of the scene's own motion at output times in this step."""
+        for time in self.windows.times[len(self.states) :]:
+            if time > scene.piece.end:
+                break
+            self.states.append(output(scene, time))
 
     def finish(self) -> ProvedDerivatives:
-        """Return what is proved, with states and zeros that are as narrow as the derivatives make them."""
-        proved, ways = self.windows.finish(), self.bound.ways
-        demand(
-            self.done == len(self.states) == len(self.windows.times),
-            "the steps do not end with the run",
-        )
+        """Return what is proved, with states and zeros as narrow as the derivatives make them."""
+        proved = self.windows.finish()
+        complete = self.done == len(self.states) == len(self.windows.times)
+        demand(complete, "the steps do not end with the run")
         with ctx.workprec(self.balls.prec):
             states = tuple(
-                tuple(
-                    within(x, y, ways, [row[i] for row in rows])
-                    for i, (x, y) in enumerate(zip(wide, own, strict=True))
+                self.narrowed_state(wide, own, derivatives)
+                for wide, own, derivatives in zip(
+                    proved.states, self.states, self.hulls, strict=True
                 )
-                for wide, own, rows in zip(proved.states, self.states, self.hulls, strict=True)
             )
-            made = {word: self.narrowed(word, proved.zeros[word]) for word in self.watched}
-        derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
-        narrow = replace(
-            proved,
-            states=states,
-            zeros=proved.zeros | {word: zeros for word, (zeros, _) in made.items()},
-        )
+            narrowed = {word: self.narrowed(word, proved.zeros[word]) for word in self.watched}
+        zeros = {word: of_word.zeros for word, of_word in narrowed.items()}
+        narrow = replace(proved, states=states, zeros=proved.zeros | zeros)
         FINISHED.add(narrow)
-        led = {word: rows for word, (_, rows) in made.items()}
-        FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, led))
+
+        result = ProvedDerivatives(
+            narrow,
+            self.names,
+            tuple(tuple(intervals(row) for row in rows) for rows in self.hulls),
+            {word: of_word.derived for word, of_word in narrowed.items()},
+        )
+        FINISHED.add(result)
         return result
 
-    def narrowed(self, word: str, proved: Any) -> tuple[Any, tuple[Led, ...]]:
-        """Return the zeros of a scan as narrow as derivatives make their times, and these; in each pendulum's time."""
-        watched, zeros, led = self.watched[word], list[Any](), list[Led]()
-        watched.close(self.bound.ways)
-        own_zeros = pairwise(watched.own.finish())
-        demand(
-            all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in own_zeros),
-            "zeros must be in order",
+    def narrowed_state(self, wide: State, own: State, derivatives: list[Vector]) -> State:
+        """Return a state of all of the box: in `wide`, and as near to the scene's own as (12.4c) says."""
+        by_component = zip(wide, own, zip(*derivatives, strict=True), strict=True)
+        return tuple(within(x, y, self.bound.sensitivities, row) for x, y, row in by_component)
+
+    def narrowed(self, word: str, proved: tuple[EnclosedZero, ...]) -> Narrowed:
+        """Return the zeros of a word with times as narrow as derivatives make them, and these.
+
+        `proved` are the zeros of `windows`, in each pendulum's own time.
+        """
+        watched, sensitivities = self.watched[word], self.bound.sensitivities
+        watched.take_closed(sensitivities)
+        in_order = all(
+            z.t.low <= after.t.low and z.t.high <= after.t.high
+            for z, after in pairwise(watched.own_scan.finish())
         )
-        for z, q, row in zip(proved, watched.scan.found, watched.zeros, strict=False):
-            known = row if all(x.is_finite() for parts in row for x in parts) else []
-            # in the scene's own clock, which is that of the course
-            own = watched.centre(q) if known else None
-            zeros.append(
-                replace(z, t=within(z.t, own.t, self.bound.ways, [x[0] for x in row])) if own else z
-            )
-            led.append(
-                Led(own, *(tuple(map(interval, column)) for column in zip(*known, strict=True)))
-            )
-        return tuple(zeros), tuple(led)
+        demand(in_order, "zeros must be in order")
+
+        zeros, derived = list[EnclosedZero](), list[DerivedZero]()
+        # `proved` lacks the last of the scan's zeros if they come after the end
+        rows = zip(proved, watched.scan.found, watched.derivatives, strict=False)
+        for zero, in_course, derivatives in rows:
+            own = watched.own_zero(in_course) if derivatives else None
+            if own is None:
+                zeros.append(zero)
+            else:
+                # the scene's own clock is that of the course
+                t = within(zero.t, own.t, sensitivities, [x.time for x in derivatives])
+                zeros.append(replace(zero, t=t))
+            derived.append(derived_zero(own, derivatives))
+        return Narrowed(tuple(zeros), tuple(derived))
 
 
-def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) -> Interval:
-    """Return where a number is for all inputs: near the scene's own, as far as its derivatives reach; and in `wide`."""
-    far = sum(
-        (way.half * way.scale * x.abs_upper() for way, x in zip(ways, derivatives, strict=True)),
+def all_finite(derivatives: list[ZeroDerivative]) -> bool:
+    """Return whether no derivative of a zero has an infinite ball."""
+    for derivative in derivatives:
+        if not derivative.time.is_finite():
+            return False
+        if derivative.azimuth is not None and not derivative.azimuth.is_finite():
+            return False
+    return True
+
+
+def derived_zero(own: EnclosedZero | None, derivatives: list[ZeroDerivative]) -> DerivedZero:
+    """Return the scene's own zero with intervals for the derivatives."""
+    azimuths = [x.azimuth for x in derivatives if x.azimuth is not None]
+    return DerivedZero(own, intervals([x.time for x in derivatives]), intervals(azimuths))
+
+
+def intervals(balls: Vector) -> tuple[Interval, ...]:
+    """Return the exact endpoints of balls."""
+    return tuple(interval(x) for x in balls)
+
+
+def within(
+    wide: Interval,
+    own: Interval,
+    sensitivities: list[Sensitivity],
+    derivatives: Sequence[arb],
+) -> Interval:
+    """Return where a number is for all inputs: in `wide`, and near the scene's own (12.4c)."""
+    reach = sum(
+        (
+            sensitivity.half_width * sensitivity.scale * x.abs_upper()
+            for sensitivity, x in zip(sensitivities, derivatives, strict=True)
+        ),
         arb(0),
     )
-    if not far.is_finite():
+    if not reach.is_finite():
         return wide
-    reach = interval(far).high
-    low = max(wide.low, own.low - reach)
-    high = min(wide.high, own.high + reach)
+    far = interval(reach).high
+    low = max(wide.low, own.low - far)
+    high = min(wide.high, own.high + far)
     demand(low <= high, "two bounds of one number contradict each other")
     return Interval(low, high)
-
-
-def motion(covered: Covered, s: arb) -> list[Vector]:
-    """Return balls of r, r', r'' at `s`."""
-    (piece, (eta, u, a)), h = covered, covered.piece.constants.h
-    with ctx.workprec(piece.balls.prec):
-        forms = zip(
-            (piece.p, piece.v, [g.derivative() for g in piece.v]),
-            (eta, u, a),
-            (1, h, h**2),
-            strict=True,
-        )
-        return [
-            [(near(f, s) / piece.unit + arb(0, radius)) / power for f in part]
-            for part, radius, power in forms
-        ]
-
-
-def change(covered: Covered, tangent: Tangent, s: arb) -> list[Vector]:
-    """Return balls of ρ, ρ' at `s`."""
-    h, rates = covered.piece.constants.h, [g.derivative() for g in tangent.rows]
-    rho, rate = ([near(f, s) / tangent.unit for f in part] for part in (tangent.rows, rates))
-    return [
-        [q + arb(0, tangent.error) for q in rho],
-        [(q + arb(0, tangent.rate)) / h for q in rate],
-    ]
-
-
-def late_and_turned(
-    covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, apsis: bool
-) -> Vector:
-    """Return the derivatives of time and azimuth of a zero at `s`: of r·r' across the plumb line, or of xdot (12.5)."""
-    piece, (_, m, w) = covered.piece, covered.piece.balls.c
-    with ctx.workprec(piece.balls.prec):
-        north = times(1 / (m * m + w * w).sqrt(), [arb(0), -w, m])
-        both = own + change(covered, tangent, s)
-        (x, y), (vx, vy), (ax, ay), (dx, dy), (ux, uy) = ([q[0], dot(q, north)] for q in both)
-        late = (
-            -(dx * vx + dy * vy + x * ux + y * uy) / (vx**2 + vy**2 + x * ax + y * ay)
-            if apsis
-            else -ux / ax
-        )
-        turned = (x * dy - y * dx + late * (x * vy - y * vx)) / (x**2 + y**2) * 180 / arb.pi()
-        time = first(
-            arb_series([ball(piece.step.centre) + s * piece.constants.h, late], 2) / way.twin.pace
-        )
-        return [x / way.scale for x in ((time, turned) if apsis else (time,))]
-
-
-def values(
-    covered: Covered, own: list[Vector], tangent: Tangent, way: Way, s: arb, time: arb
-) -> Vector:
-    """Return balls of the derivatives of position and velocity, in m and m/s, at the pendulum's own time (12.3)."""
-    with ctx.workprec(covered.piece.balls.prec):
-        (r, v, a), (rho, rate), twin = own, change(covered, tangent, s), way.twin
-        later = first(twin.pace) * time
-        R = [arb_series([y, z * later + u], 2) for y, z, u in zip(r, v, rho, strict=True)]
-        V = [arb_series([y, z * later + u], 2) for y, z, u in zip(v, a, rate, strict=True)]
-        moving = on_the_sphere(*twin.turned(R, -1), *twin.turned(V, -1))
-        moving = [*times(twin.length, moving[:3]), *times(twin.length * twin.pace, moving[3:])]
-        return [first(q) / way.scale for q in moving]

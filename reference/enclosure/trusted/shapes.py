@@ -91,10 +91,10 @@ class ProvedBox:
     still: bool  # xdot is identically zero
 
 
-class Led(NamedTuple):
+class DerivedZero(NamedTuple):
     """A zero in the scene's own motion, or None, and its derivatives to each input, or nothing."""
 
-    own: Any
+    own: EnclosedZero | None
     times: tuple[Interval, ...] = ()
     # about the plumb line, in degrees, at highest and lowest points
     azimuths: tuple[Interval, ...] = ()
@@ -107,7 +107,7 @@ class ProvedDerivatives:
     proved: ProvedBox
     names: tuple[str, ...]
     states: tuple[tuple[State, ...], ...]  # per time, per name
-    zeros: dict[str, tuple[Led, ...]]  # of transits, highest and lowest points, by word
+    zeros: dict[str, tuple[DerivedZero, ...]]  # of transits, highest and lowest points, by word
 
 
 class Tangent(NamedTuple):
