@@ -96,25 +96,23 @@ def forms_hold(module):
         for part in range(5):
             sizes = [Fraction(part in (i, 4), 100) for i in range(3)]
             with ctx.workprec(BITS + 64):
-                numbers = (
+                affine = module.AffineForm(
                     [ball(Fraction(x)) for x in a],
                     [ball(Fraction(x)) for x in b],
                     ball(Fraction(d)),
                 )
-                made = module.SectionSlope(Covered(piece, Tube(*map(ball, sizes))), *numbers)
+                made = module.SectionOnStep(Covered(piece, Tube(*map(ball, sizes))), affine)
             for s, side in product(motions, (1, -1)):
                 r, v, w = ([*x] for x in motions[s])
                 for i, x in enumerate((r, v, w)):
                     x[axis] += side * sizes[i]
                 with ctx.workprec(BITS + 64):
-                    assert made.at(0, ball(s)).overlaps(ball(h * (_dot(a, r) - d) + _dot(b, v))), (
-                        "the form"
-                    )
-                    assert made.at(1, ball(s)).overlaps(ball(h * _dot(a, v) + _dot(b, w))), (
-                        "its rate"
-                    )
+                    value = ball(h * (_dot(a, r) - d) + _dot(b, v))
+                    assert made.value_at(ball(s)).overlaps(value)
+                    rate = ball(h * _dot(a, v) + _dot(b, w))
+                    assert made.rate_at(ball(s)).overlaps(rate)
             scale = float(h * max(a) * sizes[0] + max(b) * sizes[1])
-            assert float(made.forms[0][1].rad()) == pytest.approx(scale, rel=1e-6), (
+            assert float(made.value.off.rad()) == pytest.approx(scale, rel=1e-6), (
                 "what counts as near to zero"
             )
 
@@ -201,7 +199,8 @@ def wide_forms_hold(module):
             wide = [
                 ball(x) + (arb(0, ball(off)) if i == place else 0) for i, x in enumerate(middle)
             ]
-            made = module.SectionSlope(Covered(piece, still), wide[:3], wide[3:6], wide[6])
+            affine = module.AffineForm(wide[:3], wide[3:6], wide[6])
+            made = module.SectionOnStep(Covered(piece, still), affine)
         for side, s in product((1, -1), (Fraction(-1), Fraction(1, 2), Fraction(1))):
             member = [x + side * off * (i == place) for i, x in enumerate(middle)]
             r, v, w = (
@@ -210,16 +209,14 @@ def wide_forms_hold(module):
             )
             a, b, d = member[:3], member[3:6], member[6]
             with ctx.workprec(BITS + 64):
-                assert made.at(0, ball(s)).overlaps(ball(h * (_dot(a, r) - d) + _dot(b, v))), (
-                    "the form of a member"
-                )
-                assert made.at(1, ball(s)).overlaps(ball(h * _dot(a, v) + _dot(b, w))), (
-                    "the rate of a member"
-                )
+                value = ball(h * (_dot(a, r) - d) + _dot(b, v))
+                assert made.value_at(ball(s)).overlaps(value), "the form of a member"
+                rate = ball(h * _dot(a, v) + _dot(b, w))
+                assert made.rate_at(ball(s)).overlaps(rate), "the rate of a member"
         # a wide d costs no more than it is wide, and nothing in the rate, as it is constant
         if place == 6:
-            assert float(made.forms[0][1].rad()) == pytest.approx(float(h * off), rel=1e-6)
-            assert float(made.forms[1][1].rad()) < 1e-30
+            assert float(made.value.off.rad()) == pytest.approx(float(h * off), rel=1e-6)
+            assert float(made.rate.off.rad()) < 1e-30
 
 
 def few_bits_hold(module):
@@ -235,15 +232,15 @@ def few_bits_hold(module):
         ((1, 0), (0, 1), (2, 1)), product((0, 1), combinations(ends, 2))
     ):
         with ctx.workprec(BITS + 64):
-            made = module.SectionSlope(
-                Covered(piece, tube), [arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0)
-            )
-            both = [made.at(n, ball(s)) for s in (low, high)]
+            affine = module.AffineForm([arb(0)] * 3, [arb(x), arb(m), arb(0)], arb(0))
+            made = module.SectionOnStep(Covered(piece, tube), affine)
+            at = made.rate_at if n else made.value_at
+            both = [at(ball(s)) for s in (low, high)]
         with ctx.workprec(64):
-            assert all(
-                made.at(n, ball(s)).contains(y) for s, y in zip((low, high), both, strict=True)
-            ), "at a place"
-            whole = made.at(n, ball(low).union(ball(high)))
+            assert all(at(ball(s)).contains(y) for s, y in zip((low, high), both, strict=True)), (
+                "at a place"
+            )
+            whole = at(ball(low).union(ball(high)))
             assert all(whole.contains(y) for y in both), "on a part"
 
 
@@ -278,20 +275,15 @@ def apses_hold(module):
             Fraction(0), Fraction(3), Fraction(-1), Fraction(1), BITS, (x, [0], z, [0]), EARTH
         )
         piece, tube = Piece(balls, step), Tube(*(arb(float(np.linalg.norm(q))) for q in missed))
-        numbers = [arb(0)] * 3, [arb(b[0]), arb(0), arb(b[1])], arb(0)
-        made, plain = (
-            module.Apsis(Covered(piece, tube), *numbers),
-            module.SectionSlope(Covered(piece, tube), *numbers),
-        )
-        for n in (0, 1):
-            assert abs(b @ missed[n + 1]) <= float(made.forms[n][1].rad()) * (1 + 1e-6), (
-                b,
-                n,
-                missed,
-            )
+        affine = module.AffineForm([arb(0)] * 3, [arb(b[0]), arb(0), arb(b[1])], arb(0))
+        made = module.ApsisOnStep(Covered(piece, tube), affine)
+        plain = module.SectionOnStep(Covered(piece, tube), affine)
+        assert abs(b @ missed[1]) <= float(made.value.off.rad()) * (1 + 1e-6), (b, missed)
+        assert abs(b @ missed[2]) <= float(made.rate.off.rad()) * (1 + 1e-6), (b, missed)
         if b == tilted and missed[1].any():  # what it is for
-            assert float(made.forms[0][1].rad()) < 0.8 * float(plain.forms[0][1].rad())
-        at = made.row(arb(0.5, 0.25))
+            assert float(made.value.off.rad()) < 0.8 * float(plain.value.off.rad())
+        row = made.row(arb(0.5, 0.25))
+        at = [row[name] for name in ("x", "y", "z", "vx", "vy", "vz")]
         with ctx.workprec(BITS + 64):
             for q in (Fraction(1, 4), Fraction(3, 4)):
                 r, v = piece.values(ball(q))

@@ -1,7 +1,21 @@
-"""TRUSTED. Sections of a motion: zeros of affine forms of position and velocity (THEOREM.md, section 13)."""
+"""TRUSTED. Sections of a motion: zeros of affine forms of position and velocity (THEOREM.md, section 13).
 
+| name                 | symbol                                          | unit                    |
+|----------------------|-------------------------------------------------|-------------------------|
+| `form.a`, `.b`, `.d` | a, b, d of F = a·r + b·v - d                    | lengths of the rod      |
+| `a_whole`, …         | integers that stand for ha, b, hd               | over 2^bits             |
+| `a_miss`, …          | ϑa, ϑb, ϑd: by how much these miss              | a step's time           |
+| `eta`, `U`, `A`      | bounds of |r - p|, |v - p'|, |r'' - p''|        | a step's time           |
+| `lost`               | (13.1c) and (13.1d)                             | a step's time           |
+| `value`, `rate`      | f ± off of hF and f' ± off' of hF'              | over 2^(2 bits)         |
+| `along`              | e, along the azimuth α                          | 1                       |
+| `rest`               | r₀, the rest position                           | lengths of the rod      |
+"""
+
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpz_poly
 
@@ -24,145 +38,211 @@ from .shapes import Covered
 from .six_columns import cut
 from .system import SceneBalls
 from .tube import state
-from .zeros import Scan, Slope, sign
+from .zeros import Enclosed, FormOnStep, Scan, ShortForms, sign
 
-WAYS = {"highest": -1, "lowest": 1}
+DIRECTIONS = {"highest": -1, "lowest": 1}  # where a word counts zeros in one direction alone
+SHORT_ORDERS = 32  # of a form in few bits
 
 
-def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
-    """Return the form a·r + b·v - d of a section's word, in the axes of the proof."""
-    kind, _, azimuth = word.partition(" ")
-    zero, (sin, cos) = (
-        [arb(0)] * 3,
-        ball(Fraction(azimuth.removesuffix("@0") or 0) / 180).sin_cos_pi(),
-    )
-    along, rest = balls.turned([cos, sin, arb(0)], 1), [UNIT] * 3
-    if kind != "gate":
-        return zero, along if kind == "turn" else times(-1, balls.c), arb(0)
-    if azimuth.endswith("@0"):
-        return balls.turned([-sin, cos, arb(0)], 1), zero, arb(0)
+@dataclass(frozen=True)
+class AffineForm:
+    """F = a·r + b·v - d, in the axes of the proof."""
+
+    a: Vector
+    b: Vector
+    d: arb
+
+
+class ByForm(NamedTuple):
+    """A number for a form, and one for its rate."""
+
+    value: arb
+    rate: arb
+
+
+def azimuth_of(word: str) -> tuple[arb, arb]:
+    """Return sine and cosine of the azimuth of `gate α`, `gate α@0` or `turn α`."""
+    _, _, azimuth = word.partition(" ")
+    return ball(Fraction(azimuth.removesuffix("@0")) / 180).sin_cos_pi()
+
+
+def form(balls: SceneBalls, word: str) -> AffineForm:
+    """Return the form of a section's word."""
+    zero = [arb(0)] * 3
+    if word in DIRECTIONS:
+        return AffineForm(zero, times(-1, balls.c), arb(0))  # (13.6)
+
+    sin, cos = azimuth_of(word)
+    along = balls.turned([cos, sin, arb(0)], 1)
+    if word.startswith("turn "):
+        return AffineForm(zero, along, arb(0))  # (13.5)
+    if word.endswith("@0"):
+        return AffineForm(balls.turned([-sin, cos, arb(0)], 1), zero, arb(0))  # (13.7)
+    across = cross(along, balls.c)
+    return AffineForm(across, zero, dot(across, rest_position(balls)))  # (13.8)
+
+
+def rest_position(balls: SceneBalls) -> Vector:
+    """Return balls that contain every hanging rest position, for all pendulums (Lemma 13.3)."""
+    rest: Vector = [UNIT] * 3
     for _ in range(balls.prec):
-        pull = add(balls.c, times(-1, cross(balls.omega, cross(balls.omega, rest))))
+        # (13.3a)
+        G = add(balls.c, times(-1, cross(balls.turning, cross(balls.turning, rest))))
         demand(
-            dot(pull, pull) > 0,
+            dot(G, G) > 0,
             "so fast a rotation singles out no rest position, which the gate goes through",
         )
-        rest = times(1 / dot(pull, pull).sqrt(), pull)
-    return (across := cross(along, balls.c)), zero, dot(across, rest)
+        rest = times(1 / dot(G, G).sqrt(), G)
+    return rest
 
 
 def vanishes_at_release(balls: SceneBalls, word: str) -> bool:
     """Return whether exact zeros of the inputs show that F(0) = 0, for every pendulum (Lemma 13.2)."""
-    kind, _, azimuth = word.partition(" ")
-    (x, y, _), (vx, vy, _) = balls.release
-    if kind in WAYS:
-        # c has no component to the east
+    position, velocity = balls.release
+    x, y, _ = position
+    vx, vy, _ = velocity
+    if word in DIRECTIONS:
+        # (13.2d): c has no component to the east
         return bool(balls.level and (balls.upright or vy.is_zero()))
-    sin, cos = ball(Fraction(azimuth.removesuffix("@0")) / 180).sin_cos_pi()
-    if kind == "turn":
-        return bool((vx * cos + vy * sin).is_zero())
-    return azimuth.endswith("@0") and (y * cos - x * sin).is_zero()
+
+    sin, cos = azimuth_of(word)
+    if word.startswith("turn "):
+        return bool((vx * cos + vy * sin).is_zero())  # (13.2b)
+    return word.endswith("@0") and (y * cos - x * sin).is_zero()  # (13.2c)
 
 
-class SectionSlope(Slope):
-    """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'.
+class SectionOnStep(FormOnStep):
+    """A section's form on a step, by Lemma 13.1."""
 
-    `slow` says that the form is exactly 0 at the release.
-    """
+    short: ShortForms
 
-    names: tuple[str, ...] = ("x", "y", "z", "vx", "vy", "vz")
-
-    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
+    def __init__(self, covered: Covered, form: AffineForm, zero_at_release: bool = False) -> None:
+        super().__init__(covered)
         piece = covered.piece
-        eta, u, bend = covered.tube
-        h, bits = piece.constants.h, piece.step.bits
-        # integers over 2^bits stand for h a, b and h d; by how much they miss these, the radii of the balls included
-        a_whole, a_miss = fixed(times(h, a), bits)
-        b_whole, b_miss = fixed(b, bits)
-        d_whole, d_miss = fixed([h * d], bits)
-        self.covered, self.piece = covered, piece
-        self.centre, self.unit = ball(piece.step.centre), piece.unit**2
-        self.slow, self.flat = slow, False
+        h, bits = piece.k.h, piece.step.bits
+        self.unit = piece.unit**2
+        self.zero_at_release = zero_at_release
 
-        # Lemma 13.1: |p| <= P, |p'| <= K, |p''| <= O K
-        position, speed = piece.sizes.p, piece.sizes.k
-        bending = max(map(len, piece.p)) * speed
-        self.lost = a_miss * position + b_miss * speed + d_miss, a_miss * speed + b_miss * bending
-
+        a_whole, a_miss = fixed(times(h, form.a), bits)
+        b_whole, b_miss = fixed(form.b, bits)
+        d_whole, d_miss = fixed([h * form.d], bits)
         terms = zip(
             [*a_whole, *b_whole, *d_whole],
             [*piece.p, *piece.v, fmpz_poly([-piece.unit])],
             strict=True,
         )
-        f = arb_poly(sum((n * g for n, g in terms if n), fmpz_poly()))
-        a_size, b_size = h * size(a), size(b)
-        self.hold(f, a_size * eta + b_size * u, a_size * u + b_size * bend)
+        self.f = arb_poly(sum((n * g for n, g in terms if n), fmpz_poly()))
 
-    def hold(self, f: Any, *offs: arb) -> None:
-        """Take f, and what it and f' miss; both in few bits and orders as well, which are enough for most signs."""
-        both = zip((f, f.derivative()), offs, self.lost, strict=True)
-        self.forms = [(g, arb(0, upper(off + lost))) for g, off, lost in both]
+        P, K = piece.sizes.p, piece.sizes.k
+        orders = max(map(len, piece.p))
+        self.lost = ByForm(
+            value=a_miss * P + b_miss * K + d_miss,  # (13.1c)
+            rate=a_miss * K + b_miss * (orders * K),  # (13.1d)
+        )
+
+        eta, U, A = covered.tube
+        a_size, b_size = h * size(form.a), size(form.b)
+        # (13.1a, b)
+        self.hold(ByForm(a_size * eta + b_size * U, a_size * U + b_size * A))
+
+    def hold(self, off: ByForm) -> None:
+        """Take bounds of how far hF and hF' are from f and f', but for what integers lose."""
+        self.value = Enclosed(self.f, arb(0, upper(off.value + self.lost.value)))
+        self.rate = Enclosed(self.f.derivative(), arb(0, upper(off.rate + self.lost.rate)))
+        # most signs are clear, and need no more bits and orders than these
         with ctx.workprec(SHORT):
-            self.short = [cut(g * (1 / arb(self.unit)), SHORT // 2) + off for g, off in self.forms]
+            self.short = ShortForms(self._short(self.value), self._short(self.rate))
 
-    def at(self, n: int, s: arb) -> Any:
-        """Return a ball that contains the form (n = 0) or its rate (n = 1) on the ball `s`."""
-        plain = self.short[n](s) if ctx.prec == SHORT else super().at(n, s)
-        # about the middle where the series about 0 shows no sign, and there may be one: both ends have the same
-        if (
-            ctx.prec == SHORT
-            and not sign(plain)
-            and self.short[n](s.lower()) * self.short[n](s.upper()) > 0
-        ):
-            return self.short[n](arb_poly([s.mid(), 1]))(s - s.mid())
-        return plain
+    def _short(self, form: Enclosed) -> arb_poly:
+        """Return a form in few bits and orders."""
+        return cut(form.polynomial * (1 / arb(self.unit)), SHORT_ORDERS) + form.off
 
-    def row(self, s: arb) -> Vector:
-        """Return the state over the length."""
-        turned, (r, v) = self.piece.balls.turned, state(self.covered, s)
-        return [*turned(r, -1), *turned(times(1 / self.piece.constants.h, v), -1)]
+    def value_at(self, s: arb) -> Any:
+        """Return a ball that contains hF on the ball `s`."""
+        if ctx.prec == SHORT:
+            return short_at(self.short.value, s)
+        return super().value_at(s)
+
+    def rate_at(self, s: arb) -> Any:
+        """Return a ball that contains hF' on the ball `s`."""
+        if ctx.prec == SHORT:
+            return short_at(self.short.rate, s)
+        return super().rate_at(s)
+
+    def row(self, s: arb) -> dict[str, Any]:
+        """Return the state over the length at a zero that lies in the ball `s`."""
+        r, v = state(self.covered, s)
+        return self._turned(r, times(1 / self.piece.k.h, v))
+
+    def _turned(self, r: Vector, v: Vector) -> dict[str, Any]:
+        """Return a state in axes east, north, up."""
+        turned = self.piece.balls.turned
+        names = ("x", "y", "z", "vx", "vy", "vz")
+        return dict(zip(names, [*turned(r, -1), *turned(v, -1)], strict=True))
 
 
-class Apsis(SectionSlope):
-    """The form of highest and lowest points, b·v, by bounds of second order: v is along the sphere (Lemma 13.4)."""
+def short_at(f: arb_poly, s: arb) -> Any:
+    """Return a ball that contains a short form on the ball `s`.
 
-    def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb, slow: bool = False) -> None:
-        super().__init__(covered, a, b, d, slow)
-        piece, (eta, u, bend), long = self.piece, covered.tube, size(b)
-        miss, bits = dot(piece.p, piece.v), piece.step.bits
-        x = [f(UNIT) / piece.unit for f in (*piece.p, *piece.v, *(f.derivative() for f in piece.v))]
-        aside, low, most, lost = (
-            size(cross(x[:3], b)),
-            dot(x[:3], b).abs_lower(),
-            size(x[3:6]),
-            miss.derivative(),
-        )
-        if low > 0:
-            first = aside * u + long * (eta * (most + u) + total(miss, 2 * bits))
-            second = eta * (size(x[6:]) + bend) + u * (2 * most + u) + total(lost, 2 * bits)
-            self.hold(
-                self.forms[0][0], long / low * first, long / low * (aside * bend + long * second)
-            )
+    It is read about the middle of `s` where the series about 0 shows no sign, and there may be one:
+    where both ends have the same.
+    """
+    about_0 = f(s)
+    if not sign(about_0) and f(s.lower()) * f(s.upper()) > 0:
+        return f(arb_poly([s.mid(), 1]))(s - s.mid())
+    return about_0
 
-    def row(self, s: arb) -> Vector:
-        """Return the state over the length, about the middle of `s`."""
-        piece, (eta, u, _), (middle, off) = (
-            self.piece,
-            self.covered.tube,
-            (arb_poly([s.mid(), 1]), s - s.mid()),
-        )
-        x = [arb_poly(f)(middle)(off) / piece.unit for f in (*piece.p, *piece.v)]
-        r, v = (
-            [q + arb(0, eta) for q in x[:3]],
-            [(q + arb(0, u)) / piece.constants.h for q in x[3:]],
-        )
-        return [*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)]
+
+class ApsisOnStep(SectionOnStep):
+    """The form of highest and lowest points, b·v, by bounds of second order (Lemma 13.4)."""
+
+    def __init__(self, covered: Covered, form: AffineForm, zero_at_release: bool = False) -> None:
+        super().__init__(covered, form, zero_at_release)
+        piece, b = self.piece, form.b
+        bits = piece.step.bits
+        eta, U, A = covered.tube
+        p = [f(UNIT) / piece.unit for f in piece.p]
+        p_rate = [f(UNIT) / piece.unit for f in piece.v]
+        p_bend = [f.derivative()(UNIT) / piece.unit for f in piece.v]
+
+        b_dot_p = dot(p, b).abs_lower()
+        if not b_dot_p > 0:
+            return  # Lemma 13.1 alone
+        b_size = size(b)
+        b_cross_p = size(cross(p, b))
+        speed = size(p_rate)
+        # p·p' and its derivative, in integers over 2^(2 bits)
+        p_dot_p_rate = dot(piece.p, piece.v)
+
+        # (13.4a)
+        first = eta * (speed + U) + total(p_dot_p_rate, 2 * bits)
+        value = b_size / b_dot_p * (b_cross_p * U + b_size * first)
+        # (13.4b)
+        second = eta * (size(p_bend) + A) + U * (2 * speed + U)
+        second = second + total(p_dot_p_rate.derivative(), 2 * bits)
+        rate = b_size / b_dot_p * (b_cross_p * A + b_size * second)
+        self.hold(ByForm(value, rate))
+
+    def row(self, s: arb) -> dict[str, Any]:
+        """Return the state over the length at a zero, read about the middle of the ball `s`."""
+        piece, tube = self.piece, self.covered.tube
+        middle = arb_poly([s.mid(), 1])
+        off = s - s.mid()
+        p = [arb_poly(f)(middle)(off) / piece.unit for f in piece.p]
+        p_rate = [arb_poly(f)(middle)(off) / piece.unit for f in piece.v]
+        r = [x + arb(0, tube.eta) for x in p]
+        v = [(x + arb(0, tube.u)) / piece.k.h for x in p_rate]
+        return self._turned(r, v)
 
 
 def section_scan(balls: SceneBalls, word: str, second_order: bool = False) -> Scan:
-    """Return a scan for the passages of a section; `second_order`: of highest and lowest points by `Apsis`."""
+    """Return a scan for the passages of a section.
+
+    With `second_order` highest and lowest points are bounded by Lemma 13.4.
+    """
     with ctx.workprec(balls.prec):
-        a, b, d = form(balls, word)
-        slow = vanishes_at_release(balls, word)
-    kind = Apsis if second_order and word in WAYS else SectionSlope
-    return Scan(balls, lambda covered: kind(covered, a, b, d, slow), WAYS.get(word, 0))
+        affine = form(balls, word)
+        zero_at_release = vanishes_at_release(balls, word)
+    kind = ApsisOnStep if second_order and word in DIRECTIONS else SectionOnStep
+    form_on = partial(kind, form=affine, zero_at_release=zero_at_release)
+    return Scan(balls, form_on, DIRECTIONS.get(word, 0))

@@ -149,9 +149,12 @@ Proposal = list[list[list[int]]]  # six columns of six polynomials of integers
 
 
 class Leaf(NamedTuple):
-    """A part of a step where xdot may be 0: `bend` is the sign of xddot (M, monotone), or 0 (R, undecided)."""
+    """A part of a step where a form may be 0.
 
-    bend: int
+    `rate_sign` is the sign of its rate on it (a leaf M, monotone), or 0 (a leaf R, undecided).
+    """
+
+    rate_sign: int
     low: arb
     high: arb
-    slope: Any
+    form: Any

@@ -1,170 +1,309 @@
-"""TRUSTED. Every zero of a form in (0, T]: which are single, and where; xdot itself (THEOREM.md, section 8)."""
+"""TRUSTED. Every zero of a form in (0, T]: which are single, and where (THEOREM.md, section 8).
 
+The form is xdot, or one of `sections`; all of this is in the time of a step, s = (t - centre)/h.
+
+| name               | symbol                                                       | unit          |
+|--------------------|--------------------------------------------------------------|---------------|
+| `value.polynomial` | f: for xdot it is p'_x                                       | over `unit`   |
+| `value.off`        | U: hF lies in f ± U; for xdot, hF is x'                      | a step's time |
+| `rate.polynomial`  | f'                                                           | over `unit`   |
+| `rate.off`         | A: hF' lies in f' ± A                                        | a step's time |
+| `left`, `right`    | the signs of F on both sides of a cluster, 0 if not known    |               |
+| `rate_sign`        | the sign of F' on a leaf: ±1 on a leaf M, 0 on a leaf R      |               |
+"""
+
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, ctx
 
 from ..guess import around_zero
-from .balls import SHORT, Vector, ball, cross, demand, interval
+from .balls import SHORT, ball, cross, demand, interval
+from .defect import Piece
 from .shapes import Covered, EnclosedZero, Leaf
 from .system import SceneBalls
 from .tube import state
 
 MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible zero
+FIRST_DEPTH = 2  # a step is cut in four
+FULL_DEPTH = 4  # from here on a leaf takes all bits: most are decided before
 
 
 def sign(x: arb) -> int:
     """Return the sign that all points of a ball have, or 0."""
-    return 1 if x > 0 else -1 if x < 0 else 0
+    if x > 0:
+        return 1
+    return -1 if x < 0 else 0
 
 
-class Slope:
-    """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
+class Enclosed(NamedTuple):
+    """A polynomial of a step, and a ball around 0 that bounds how far the truth is from it."""
 
-    names: tuple[str, ...] = ("x", "y", "z", "vy", "ax")  # what `row` returns
+    polynomial: Any
+    off: arb
+
+
+class ShortForms(NamedTuple):
+    """A form and its rate in few bits and orders, as polynomials that contain both."""
+
+    value: arb_poly
+    rate: arb_poly
+
+
+class FormOnStep:
+    """A form F on a step: hF lies in `value`, and hF' in `rate`, polynomials over `unit`.
+
+    `zero_at_release` says that F is exactly 0 at the release.
+    """
+
+    value: Enclosed
+    rate: Enclosed
+    unit: Any
+    zero_at_release: bool
+    short: ShortForms | None = None
 
     def __init__(self, covered: Covered) -> None:
-        self.covered, self.piece, self.unit, (piece, tube) = (
-            covered,
-            covered.piece,
-            covered.piece.unit,
-            covered,
-        )
-        self.centre, self.slow, self.flat = (
-            ball(piece.step.centre),
-            piece.balls.slow,
-            piece.balls.flat,
-        )
-        self.forms: Any = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
+        self.covered = covered
+        self.piece: Piece = covered.piece
+        self.centre = ball(self.piece.step.centre)
 
-    def at(self, n: int, s: arb) -> Any:
-        """Return a ball that contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
-        return self.forms[n][0](s) / self.unit + self.forms[n][1]
+    def value_at(self, s: arb) -> Any:
+        """Return a ball that contains hF on the ball `s`."""
+        return self.value.polynomial(s) / self.unit + self.value.off
 
-    def rate(self, s: arb) -> Any:
-        """Return a ball that contains xddot on `s`; about the middle of `s` where the series about 0 shows no sign."""
-        (f, off), plain = self.forms[1], self.at(1, s)
-        return (
-            plain
-            if sign(plain)
-            else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.unit + off
-        )
+    def rate_at(self, s: arb) -> Any:
+        """Return a ball that contains hF' on the ball `s`."""
+        return self.rate.polynomial(s) / self.unit + self.rate.off
 
-    def push(self, s: arb) -> int:
-        """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
-        k, bend = (
-            self.piece.constants,
-            [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v],
-        )
-        return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.S**2) < 1 else 0
+    def rate_on_leaf(self, s: arb) -> Any:
+        """Return the same; by the series about the middle of `s` if that about 0 shows no sign."""
+        about_0 = self.rate_at(s)
+        if sign(about_0):
+            return about_0
+        about_middle = arb_poly(self.rate.polynomial)(arb_poly([s.mid(), 1]))
+        return about_middle(s - s.mid()) / self.unit + self.rate.off
 
-    def row(self, s: arb) -> Vector:
-        """Return x, y, z, vy and ax over the length at a transit; xdot, the velocity's first component, is 0."""
-        turned, h, (r, v) = (
-            self.piece.balls.turned,
-            self.piece.constants.h,
-            state(self.covered, s, 1),
-        )
-        return [*turned(r, -1), turned([0, *v], -1)[1] / h, self.at(1, s) / h**2]
+    def sign_from_rest(self, s: arb) -> int:
+        """Return the sign of F on the first leaf `s` if F and F' are 0 at the release, or 0."""
+        return 0
+
+    def row(self, s: arb) -> dict[str, Any]:
+        """Return the state's balls over the length at a zero that lies in the ball `s`."""
+        raise NotImplementedError
+
+
+class XdotOnStep(FormOnStep):
+    """xdot on a step."""
+
+    def __init__(self, covered: Covered) -> None:
+        super().__init__(covered)
+        piece, tube = covered.piece, covered.tube
+        self.unit = piece.unit
+        self.value = Enclosed(piece.v[0], arb(0, tube.u))
+        self.rate = Enclosed(piece.v[0].derivative(), arb(0, tube.a))
+        self.zero_at_release = piece.balls.slow
+
+    def sign_from_rest(self, s: arb) -> int:
+        """Return the sign of the Coriolis force on the first leaf `s`, after rest at x = 0; or 0."""
+        if not self.piece.balls.flat:
+            return 0
+        k = self.piece.k
+        acceleration = [f.derivative()(s) / self.unit + self.rate.off for f in self.piece.v]
+        delta_squared = 4 * s.rad() ** 2
+        Q = k.c_size + k.speed**2
+        # (8.10): u = (r'' × Ω)_x
+        return sign(cross(acceleration, k.omega)[0]) if delta_squared * Q < 1 else 0
+
+    def row(self, s: arb) -> dict[str, Any]:
+        """Return x, y, z, vy and ax at a transit; xdot, the velocity's first component, is 0."""
+        turned, h = self.piece.balls.turned, self.piece.k.h
+        r, v = state(self.covered, s, 1)
+        x, y, z = turned(r, -1)
+        _, vy, _ = turned([0, *v], -1)
+        return {"x": x, "y": y, "z": z, "vy": vy / h, "ax": self.rate_at(s) / h**2}
+
+
+class Place(NamedTuple):
+    """A ball of s in a step, with the form there."""
+
+    form: FormOnStep
+    s: arb
 
 
 class Scan:
-    """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8).
+    """Bisects the steps into leaves, and closes clusters of those that are not E, across steps too.
 
     With `only` a direction, single zeros in the other one are left out.
     """
 
-    def __init__(self, balls: SceneBalls, slope: Any = Slope, only: int = 0) -> None:
-        self.balls, self.left, self.time, self.leaves, self.slope = balls, 0, Fraction(0), 0, slope
-        self.end: tuple[Slope, arb] | None = None
-        self.only, self.found, self.cluster = only, list[EnclosedZero](), list[Leaf]()
+    def __init__(
+        self,
+        balls: SceneBalls,
+        form_on: Callable[[Covered], FormOnStep] = XdotOnStep,
+        only: int = 0,
+    ) -> None:
+        self.balls = balls
+        self.form_on = form_on
+        self.only = only
+        self.time = Fraction(0)
+        self.form: FormOnStep | None = None  # on the last step
+        self.leaves = 0  # of the last step
+        self.left = 0
+        self.cluster = list[Leaf]()
+        self.found = list[EnclosedZero]()
 
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
         piece = covered.piece
-        demand(
-            piece.begin == self.time and piece.balls is self.balls,
-            "steps must join, and be of one scene",
-        )
+        joins = piece.begin == self.time and piece.balls is self.balls
+        demand(joins, "steps must join, and be of one scene")
         with ctx.workprec(self.balls.prec):
-            slope, low, high = self.slope(covered), ball(piece.step.low), ball(piece.step.high)
-            self.left = self.left if self.time else sign(slope.at(0, low))
-            self.end, self.time, self.leaves = (slope, high), piece.end, 0
-            for part in pairwise(
-                [low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]
-            ):
-                self._sort(slope, *part, 2)
-
-    def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
-        self.leaves += 1
-        # most leaves are decided at low precision, and only a few need all bits
-        with ctx.workprec(SHORT if depth < 4 else self.balls.prec):
-            whole, middle = low.union(high), ((low + high) / 2).mid()
-            demand(low < middle < high, "a step is too short for the precision")
-            rate = slope.at(1, whole) if depth < 4 else slope.rate(whole)
-            speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
-            way, bend = sign(speed), sign(rate)
-            if not way and slope.slow and not (self.left or self.cluster):
-                # this is the first leaf: from rest, xdot takes the sign of its first derivative that is not 0
-                way = bend or (slope.push(whole) if slope.flat else 0)
-            elif not way and bend and sign(slope.at(0, low)) == (last := sign(slope.at(0, high))):
-                way = last
-        deep = 2 * depth >= self.balls.prec or self.leaves > MOST_LEAVES
-        if way:
-            self._close(way)
-        elif bend or deep or not speed.abs_upper() > 3 * slope.forms[0][1].rad():
-            self.cluster.append(Leaf(bend, low, high, slope))
-        else:
-            self._sort(slope, low, middle, depth + 1)
-            self._sort(slope, middle, high, depth + 1)
+            form = self.form_on(covered)
+            low = ball(piece.step.low)
+            high = ball(piece.step.high)
+            if not self.time:
+                self.left = sign(form.value_at(low))
+            self.form = form
+            self.time = piece.end
+            self.leaves = 0
+            cuts = [(low + (high - low) * k / 4).mid() for k in (1, 2, 3)]
+            for begin, end in pairwise([low, *cuts, high]):
+                self._sort(form, begin, end, FIRST_DEPTH)
 
     def finish(self) -> list[EnclosedZero]:
         """Close the cluster that is open at T; return all zeros in order."""
         with ctx.workprec(self.balls.prec):
-            self._close(sign(self.end[0].at(0, self.end[1])) if self.end else 0)
+            right = 0
+            if self.form is not None:
+                right = sign(self.form.value_at(ball(self.form.piece.step.high)))
+            self._close(right)
         return self.found
 
+    def _sort(self, form: FormOnStep, low: arb, high: arb, depth: int) -> None:
+        """Close the cluster at a leaf E, add a leaf M or R to it, or cut the leaf in halves."""
+        self.leaves += 1
+        deep = depth >= FULL_DEPTH
+        with ctx.workprec(self.balls.prec if deep else SHORT):
+            whole = low.union(high)
+            middle = ((low + high) / 2).mid()
+            demand(low < middle < high, "a step is too short for the precision")
+            rate = form.rate_on_leaf(whole) if deep else form.rate_at(whole)
+            # (8.1)
+            value = form.value_at(middle) + rate * (whole - middle)
+            rate_sign = sign(rate)
+            value_sign = sign(value) or self._other_sign(form, low, high, rate_sign)
+
+        exhausted = 2 * depth >= self.balls.prec or self.leaves > MOST_LEAVES
+        if value_sign:
+            self._close(value_sign)
+        # (8.3), (8.4)
+        elif rate_sign or exhausted or not value.abs_upper() > 3 * form.value.off.rad():
+            self.cluster.append(Leaf(rate_sign, low, high, form))
+        else:
+            self._sort(form, low, middle, depth + 1)
+            self._sort(form, middle, high, depth + 1)
+
+    def _other_sign(self, form: FormOnStep, low: arb, high: arb, rate_sign: int) -> int:
+        """Return the sign of F on a leaf on which the mean value form has none, or 0."""
+        first = not (self.left or self.cluster)
+        if first and form.zero_at_release:
+            if rate_sign:
+                return rate_sign  # (8.9), (13.2a)
+            return form.sign_from_rest(low.union(high))
+
+        if rate_sign:
+            # (8.2)
+            at_low = sign(form.value_at(low))
+            at_high = sign(form.value_at(high))
+            return at_high if at_low == at_high else 0
+        return 0
+
     def _close(self, right: int) -> None:
-        leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
-        steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
-        demand(
-            product >= 0 or (leaves[0].bend == right if steady else bool(leaves)),
-            "two enclosures contradict",
-        )
-        if not leaves or (
-            steady and (product > 0 or (product < 0 and leaves[0].bend == -self.only))
-        ):
+        """Close the cluster at a leaf E with the sign `right`, or at T."""
+        leaves, left = self.cluster, self.left
+        self.cluster, self.left = [], right
+        if not leaves:
+            demand(left * right >= 0, "two enclosures contradict")
             return
-        ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
-        begin, end = (slope.centre + s * slope.piece.constants.h for slope, s in ends)
-        t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
-        parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
-        way = leaves[0].bend if steady else right if product < 0 else 0
-        rows = zip(*(slope.row(s) for slope, s in touched(leaves, t)), strict=True)
-        values = (interval(reduce(arb.union, x) * self.balls.length) for x in rows)
-        named = dict(zip(leaves[0].slope.names, values, strict=True))
-        self.found.append(EnclosedZero(parity, way, interval(t), **named))
+
+        rate_sign = leaves[0].rate_sign
+        monotone = rate_sign != 0 and all(leaf.rate_sign == rate_sign for leaf in leaves)
+        if monotone and left * right > 0:
+            return  # (8.5)
+        if monotone and left * right < 0:
+            # (8.6)
+            demand(rate_sign == right, "two enclosures contradict")
+            if rate_sign != -self.only:
+                self._add("one", rate_sign, leaves, narrowed(leaves, left, right))
+            return
+
+        # (8.7)
+        parity = {-1: "odd", 0: "unknown", 1: "even"}[left * right]
+        direction = 0
+        if monotone:
+            direction = rate_sign
+        elif left * right < 0:
+            direction = right
+        t = narrowed(leaves, left, right) if monotone else time_of(leaves)
+        self._add(parity, direction, leaves, t)
+
+    def _add(self, parity: str, direction: int, leaves: list[Leaf], t: arb) -> None:
+        """Add a zero that lies in the ball of time `t`, with all states that the motion has there."""
+        rows = [place.form.row(place.s) for place in touched(leaves, t)]
+        state = {
+            name: interval(reduce(arb.union, [row[name] for row in rows]) * self.balls.length)
+            for name in rows[0]
+        }
+        self.found.append(EnclosedZero(parity, direction, interval(t), **state))
 
 
-def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
-    """Return the leaves that the time ball `t` may touch, each with the part of `t` in it as s."""
-    parts = [
-        (x.slope, (t - x.slope.centre) / x.slope.piece.constants.h, x.low.union(x.high))
-        for x in leaves
-    ]
-    return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
+def time_of(leaves: Sequence[Leaf]) -> arb:
+    """Return a ball of time that contains the leaves of a cluster."""
+    return begin_of(leaves[0]).union(end_of(leaves[-1]))
 
 
-def narrowed(leaves: list[Leaf], begin: arb, end: arb, sides: tuple[int, int]) -> arb:
-    """Return where a monotone xdot may be 0: between proposed times, if it has its sides' signs there still."""
-    ends = [begin, end]
-    for n, t in enumerate(around_zero(leaves)):
-        # outside the leaves nothing is known
-        if begin < t < end and {sign(f.at(0, s)) for f, s in touched(leaves, t)} == {sides[n]} != {
-            0
-        }:
-            ends[n] = t
-    return ends[0].union(ends[1])
+def begin_of(leaf: Leaf) -> arb:
+    """Return the time at which a leaf begins."""
+    form: FormOnStep = leaf.form
+    return form.centre + leaf.low * form.piece.k.h
+
+
+def end_of(leaf: Leaf) -> arb:
+    """Return the time at which a leaf ends."""
+    form: FormOnStep = leaf.form
+    return form.centre + leaf.high * form.piece.k.h
+
+
+def touched(leaves: Sequence[Leaf], t: arb) -> list[Place]:
+    """Return the part of the ball of time `t` in each leaf that it may touch."""
+    places = []
+    for leaf in leaves:
+        s = (t - leaf.form.centre) / leaf.form.piece.k.h
+        whole = leaf.low.union(leaf.high)
+        if s.overlaps(whole):
+            places.append(Place(leaf.form, s.intersection(whole)))
+    return places
+
+
+def narrowed(leaves: Sequence[Leaf], left: int, right: int) -> arb:
+    """Return where a monotone F may be 0: between proposed times, if it has its sides' signs there.
+
+    `left` and `right` are the signs of F on both sides of the leaves, 0 if not known.
+    """
+    begin = begin_of(leaves[0])
+    end = end_of(leaves[-1])
+
+    def keeps(t: arb, side: int) -> bool:
+        """Return whether F has the sign of a side at `t`; outside the leaves nothing is known."""
+        if not begin < t < end or side == 0:
+            return False
+        return {sign(place.form.value_at(place.s)) for place in touched(leaves, t)} == {side}
+
+    # (8.8)
+    before, after = around_zero(leaves)
+    low = before if keeps(before, left) else begin
+    high = after if keeps(after, right) else end
+    return low.union(high)

@@ -30,7 +30,7 @@ from reference.enclosure.trusted.balls import ball
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.shapes import Covered, Leaf, Tube
 from reference.enclosure.trusted.system import SceneBalls
-from reference.enclosure.trusted.zeros import Scan, Slope, narrowed
+from reference.enclosure.trusted.zeros import Scan, XdotOnStep, narrowed
 from reference.numbers.taylor_step import TaylorStep
 
 
@@ -170,13 +170,14 @@ def released_in_the_meridian(rng):
 def test_from_rest_in_the_meridian_xdot_has_the_sign_of_the_coriolis_force_on_a_short_leaf(seed):
     inputs = released_in_the_meridian(Random(seed))
     covered = next(carry(inputs, steps(inputs, Fraction(1, 100))))
-    slope, step, k = Slope(covered), covered.piece.step, covered.piece.constants
-    assert Slope(covered._replace(tube=Tube(*covered.tube[:2], arb(1e9)))).push(ball(step.low)) == 0
+    form, step, k = XdotOnStep(covered), covered.piece.step, covered.piece.k
+    vague = XdotOnStep(covered._replace(tube=Tube(*covered.tube[:2], arb(1e9))))
+    assert vague.sign_from_rest(ball(step.low)) == 0
     signs, longest = set(), 0
     for doubling in range(-8, 20):
         length = (step.high - step.low) * Fraction(2) ** doubling
-        sign = slope.push(ball(step.low).union(ball(step.low + length)))
-        if float(length) ** 2 * float(k.c_size + k.S**2) > 1:
+        sign = form.sign_from_rest(ball(step.low).union(ball(step.low + length)))
+        if float(length) ** 2 * float(k.c_size + k.speed**2) > 1:
             assert sign == 0
         elif doubling <= 0 and sign:
             signs, longest = signs | {sign}, length
@@ -252,11 +253,9 @@ def test_ends_move_only_to_signs_that_are_those_of_the_sides(low, high, sides, f
     with ctx.workprec(balls.prec):
         row = [0, 0, 1 << 127]  # xdot = s
         piece = Piece(balls, unit_step(128, (row, *[[0]] * 3)))
-        slope, (low, high) = (
-            Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3))),
-            (ball(Fraction(q)) for q in (low, high)),
-        )
-        found = narrowed([Leaf(1, low, high, slope)], 1 + low, 1 + high, sides)
+        form = XdotOnStep(Covered(piece, Tube(*[arb(2) ** -90] * 3)))
+        low, high = (ball(Fraction(q)) for q in (low, high))
+        found = narrowed([Leaf(1, low, high, form)], *sides)
         for end, old, moved in zip((found.lower(), found.upper()), (low, high), far, strict=True):
             assert abs(end - 1 - (0 if moved else old)) < ROUNDED
 
@@ -266,8 +265,8 @@ def test_a_zero_far_from_the_middle_of_a_bent_leaf_is_found():
     with ctx.workprec(balls.prec):
         row = [0, -(1 << 108), 0, 0, 0, (1 << 128) // 5]  # xdot = s^4 - 2^-20, 0 at 1/32
         piece = Piece(balls, unit_step(128, (row, *[[0]] * 3)))
-        slope = Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3)))
-        found = narrowed([Leaf(1, arb("0.01"), arb(1), slope)], arb("1.01"), arb(2), (-1, 1))
+        form = XdotOnStep(Covered(piece, Tube(*[arb(2) ** -90] * 3)))
+        found = narrowed([Leaf(1, arb("0.01"), arb(1), form)], -1, 1)
         assert found.contains(1 + arb(2) ** -5)
         assert found.rad() < arb(2) ** -70
 
@@ -278,11 +277,11 @@ def test_whatever_is_proposed_the_zero_stays_between():
     with ctx.workprec(balls.prec):
         row = [0, 0, 1 << 127]  # xdot = s, known to 0.01
         piece = Piece(balls, unit_step(128, (row, *[[0]] * 3)))
-        slope = Slope(Covered(piece, Tube(*[arb("0.01")] * 3)))
-        leaves = [Leaf(1, arb(-1), arb("0.25"), slope), Leaf(1, arb("0.25"), arb(1), slope)]
+        form = XdotOnStep(Covered(piece, Tube(*[arb("0.01")] * 3)))
+        leaves = [Leaf(1, arb(-1), arb("0.25"), form), Leaf(1, arb("0.25"), arb(1), form)]
         for _ in range(200):
             times = tuple(1 + arb(rng.choice((-1, 1)) * 10 ** rng.uniform(-4, 1)) for _ in range(2))
-            found = trusted.narrowed(leaves, arb(0), arb(2), (-1, 1))
+            found = trusted.narrowed(leaves, -1, 1)
             assert -ROUNDED <= found.lower() <= arb("0.99")
             assert arb("1.01") <= found.upper() <= 2 + ROUNDED
 
