@@ -42,8 +42,8 @@ def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
         value = f(s)
 
     away = MARGIN * (width + abs(value)) / abs(slope)
-    before = form.centre + (s - away) * form.piece.k.h
-    after = form.centre + (s + away) * form.piece.k.h
+    before = form.centre + (s - away) * form.piece.constants.h
+    after = form.centre + (s + away) * form.piece.constants.h
     return before.mid(), after.mid()
 
 

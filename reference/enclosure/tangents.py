@@ -36,7 +36,7 @@ class TangentSource:
     def __init__(self, balls: BoxBalls, sensitivities: list[Sensitivity]) -> None:
         """Read Ω_q, γ_q and the derivatives at the release as floats."""
         self.columns = ColumnSource(balls)
-        self.drag = float(balls.drag)
+        self.drag = float(balls.drag_0)
         self.omega_q = [np.array([*map(float, x.omega_q)]) for x in sensitivities]
         self.drag_q = [float(x.drag_q) for x in sensitivities]
         # the matrices of r ↦ r × Ω_q

@@ -48,12 +48,12 @@ def residuals_hold(module):
         )  # constants: their bounds are exact
         omega, turn, c = rng.normal(size=(3, 3)) * rng.choice([0, 1], size=(3, 1))
         drag, slow, h = rng.choice([0, 0.5]), rng.choice([0, 0.25]), rng.choice([1, 0.5, 3])
-        k = SimpleNamespace(h=arb(h), c=balls(c), drag=arb(drag))
+        constants = SimpleNamespace(h=arb(h), c=balls(c), drag_0=arb(drag))
         sensitivity = SimpleNamespace(omega_q=balls(turn), drag_q=arb(slow))
         poly = [[arb_poly(balls(column)) for column in rows.T] for rows in (p, K, P, Q)]
         with ctx.workprec(128):
             scene_motion = module.SceneMotion(balls(omega), *poly[:2])
-            norms = module.residuals(k, scene_motion, sensitivity, [*poly[2], *poly[3]])
+            norms = module.residuals(constants, scene_motion, sensitivity, [*poly[2], *poly[3]])
             found = (
                 norms.P, norms.Q, norms.R1, norms.R2, norms.off_sphere, norms.off_momentum
             )  # fmt: skip
@@ -106,19 +106,19 @@ def sources_hold(module):
         s1, s2 = size(found[0] - there[0]), size(found[1] - there[1])
         box = W0[:, None] + np.outer(off, [-1, 1])
         k = SimpleNamespace(
-            w=arb(w), h=arb(1), drag=arb(gamma), drag_size=arb(gamma + gap), c_size=arb(3), speed=arb(1.5),
+            w=arb(w), h=arb(1), drag_0=arb(gamma), drag=arb(gamma + gap), drag_size=arb(gamma + gap),
+            c_size=arb(3), S=arb(1.5),
             omega=[arb(float(lo + hi) / 2, float(abs(hi - lo)) / 2) for lo, hi in box],
-            omega_size=arb(float(size(W0) + size(off))), below=arb(0.3), above=arb(0.2),
+            omega_size=arb(float(size(W0) + size(off))), lambda_minus=arb(0.3), lambda_plus=arb(0.2),
         )  # fmt: skip
         piece = SimpleNamespace(
-            k=k, step=SimpleNamespace(low=Fraction(0), high=Fraction(1, 1 << 30))
+            constants=k, step=SimpleNamespace(low=Fraction(0), high=Fraction(1, 1 << 30))
         )
-        owner = SimpleNamespace(omega=balls(W0), damping=arb(gamma + gap))
         sensitivity = SimpleNamespace(omega_q=balls(turn), drag_q=arb(float(slow)), epsilon=arb(0))
         parts = [size(P), size(Q), 0.1, 0.2, abs(p @ P), abs(K @ P + p @ Q)]
         norms = module.Norms(*balls(parts))
         assumed = module.Distance(arb(float(size(e))), arb(float(size(g))))
-        step = module.box_step(owner, piece, arb(float(size(p))))
+        step = module.box_step(piece, balls(W0), arb(float(size(p))))
         bounds = module.carried(step, sensitivity, norms, assumed)
         tilt = abs(H @ P + r @ Q)
         needed = 0.1 + s1 + (0.2 + s2 + 3 * abs(r @ P) + 1.5 * tilt) / w
@@ -127,7 +127,7 @@ def sources_hold(module):
         assert tilt + s1 + 0.1 <= float(bounds.a_rate) * SLACK
         if kind % 100 == 0:  # growth, and what bounds have of the radius itself
             sensitivity.epsilon, piece.step.high = arb(1), Fraction(1)
-            step = module.box_step(owner, piece, arb(float(size(p))))
+            step = module.box_step(piece, balls(W0), arb(float(size(p))))
             bounds = module.carried(step, sensitivity, norms, module.Distance(arb(0), arb(0)))
             grown = np.exp((max(0.3, 0.2 + 1.5**2) + (gamma + gap) * size(W)) / (2 * w))
             source = 0.1 + (0.2 + 3 * parts[4] + 1.5 * parts[5]) / w
@@ -314,7 +314,8 @@ def radius_holds(module):
             grown=lambda *_, eta=eta: Covered(None, Tube(arb(eta), arb(0), arb(0)))
         )
         bound = SimpleNamespace(box_radius=kept, box_radius_holds=True)
-        found = module.Tangents.by_theorem_c(bound, SimpleNamespace(k=k), d, arb(0), arb(off))
+        piece, widened = SimpleNamespace(constants=k), SimpleNamespace(sizes=d)
+        found = module.Tangents.by_theorem_c(bound, piece, widened, arb(off))
         assert float(found.r) == pytest.approx(eta)
         assert float(found.H) == pytest.approx(2.7 * eta + 1.5**2 * off)
 

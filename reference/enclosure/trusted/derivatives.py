@@ -17,7 +17,7 @@ to an input q is computed as that to q / 2^n, so that proposals are of the size 
 | `Reached`        | E₁ and G₁                           | likewise                             |
 | `of_scene`       | η₀ and G₀                           | likewise                             |
 | `theorem_c`      | η_C and what (12.4e) makes of it    | likewise                             |
-| `ell`            | ℓ, the length of a step             | a step's time                        |
+| `length`           | ℓ, the length of a step             | a step's time                        |
 | `p_size`         | |p|, at most P of section 2         | 1                                    |
 """
 
@@ -32,7 +32,7 @@ from typing import Any
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
-from .box import BoxBalls, BoxRadius, Windows, near, on_the_sphere, spread
+from .box import BoxBalls, BoxRadius, Widened, Windows, near, on_the_sphere, spread
 from .course import FINISHED, scan_of
 from .defect import Piece
 from .printed_box import end_of
@@ -44,7 +44,6 @@ from .shapes import (
     EnclosedZero,
     Interval,
     ProvedDerivatives,
-    Sizes,
     State,
     Tangent,
 )
@@ -99,15 +98,15 @@ class Sensitivity:
         with ctx.workprec(balls.prec):
             r = self.varied.r
             v = self.varied.v
-            omega = self.varied.turning
+            omega = self.varied.omega
             H = cross(r, add(v, cross(omega, r)))
             self.end = [derivative_of(x) for x in (*r, *H)]
             self.omega_q = [derivative_of(x) for x in omega]
-            self.drag_q = derivative_of(self.varied.damping)
+            self.drag_q = derivative_of(self.varied.drag)
 
     def join(self, candidate: Candidate, piece: Piece) -> None:
         """Add to ε by how much the proposals of a step do not join those of the one before."""
-        h = piece.k.h
+        h = piece.constants.h
         start = candidate.at(piece.step.low, h)
         end = candidate.at(piece.step.high, h)
         jump = [(after - before).abs_upper() for after, before in zip(start, self.end, strict=True)]
@@ -144,9 +143,9 @@ class BoxStep:
     `delta_omega` and `delta_drag` are |δΩ| and |δγ|; `W` bounds |Ω| and |Ω₀|.
     """
 
-    k: Scaled
+    constants: Scaled
     p_size: arb
-    ell: arb
+    length: arb
     delta_omega: arb
     delta_drag: arb
     W: arb
@@ -177,9 +176,12 @@ class Reached:
     bounds: list[Carried]
 
 
-def scene_motion(piece: Piece, omega: Vector) -> SceneMotion:
-    """Return what the residuals have of the scene's motion, cut as section 5 cuts p and K."""
-    omega_0 = times(piece.k.h, omega)
+def scene_motion(piece: Piece, omega_0: Vector) -> SceneMotion:
+    """Return what the residuals have of the scene's motion, cut as section 5 cuts p and K.
+
+    `omega_0` is in 1/s here.
+    """
+    omega_0 = times(piece.constants.h, omega_0)
     p = [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in piece.p]
     p_rate = [cut(arb_poly(f) * (1 / arb(piece.unit)), TERMS) for f in piece.v]
     V = add(p_rate, cross(omega_0, p))
@@ -188,12 +190,12 @@ def scene_motion(piece: Piece, omega: Vector) -> SceneMotion:
 
 
 def residuals(
-    k: Scaled, scene: SceneMotion, sensitivity: Sensitivity, rows: list[arb_poly]
+    constants: Scaled, scene: SceneMotion, sensitivity: Sensitivity, rows: list[arb_poly]
 ) -> Norms:
     """Return the norms of P and Q, of their residuals in (12.1), and of (12.1c) of p, K₀, P, Q.
 
     Args:
-        k: the scene's γ₀ and c, and the step's h.
+        constants: the scene's γ₀ and c, and the step's h.
         scene: its motion on the step.
         sensitivity: Ω_q and γ_q.
         rows: P and Q.
@@ -202,19 +204,19 @@ def residuals(
     P, Q = rows[:3], rows[3:]
     P_rate = [f.derivative() for f in P]
     Q_rate = [f.derivative() for f in Q]
-    omega_q = times(k.h, sensitivity.omega_q)
-    drag_q = k.h * sensitivity.drag_q
+    omega_q = times(constants.h, sensitivity.omega_q)
+    drag_q = constants.h * sensitivity.drag_q
     K_less_omega = add(K_0, times(-1, omega_0))
 
     # (12.2a)
     R1 = add(P_rate, cross(p, Q), cross(P, K_less_omega), cross(omega_q, p))
 
     # (12.2b)
-    R2 = add(Q_rate, cross(k.c, P), cross(omega_0, Q), cross(omega_q, K_0))
-    if not k.drag.is_zero():
+    R2 = add(Q_rate, cross(constants.c, P), cross(omega_0, Q), cross(omega_q, K_0))
+    if not constants.drag_0.is_zero():
         along_p = times(dot(omega_q, p) + dot(omega_0, P), p)
         along_P = times(dot(omega_0, p), P)
-        R2 = add(R2, times(k.drag, add(Q, times(-1, omega_q), along_p, along_P)))
+        R2 = add(R2, times(constants.drag_0, add(Q, times(-1, omega_q), along_p, along_P)))
     if not drag_q.is_zero():
         R2 = add(R2, times(drag_q, add(K_less_omega, times(dot(omega_0, p), p))))
 
@@ -233,29 +235,37 @@ def sup_norm(polynomials: Vector) -> arb:
     return size([f(UNIT) for f in polynomials])
 
 
-def box_step(balls: BoxBalls, whole: Piece, p_size: arb) -> BoxStep:
-    """Return what Lemma 12.2 needs of a step, `whole` with the constants of the box."""
-    k = whole.k
-    omega_0 = times(k.h, balls.omega)
+def box_step(piece: Piece, omega_0: Vector, p_size: arb) -> BoxStep:
+    """Return what Lemma 12.2 needs of a step; `omega_0` is in 1/s here."""
+    constants = piece.constants
+    omega_0 = times(constants.h, omega_0)
     return BoxStep(
-        k=k,
+        constants=constants,
         p_size=p_size,
-        ell=ball(whole.step.high - whole.step.low),
-        delta_omega=size(add(k.omega, times(-1, omega_0))),
-        delta_drag=upper(abs(k.h * balls.damping - k.drag)),
-        W=k.omega_size.max(size(omega_0)),
+        length=ball(piece.step.high - piece.step.low),
+        delta_omega=size(add(constants.omega, times(-1, omega_0))),
+        delta_drag=upper(abs(constants.drag - constants.drag_0)),
+        W=constants.omega_size.max(size(omega_0)),
     )
 
 
 def carried(step: BoxStep, sensitivity: Sensitivity, norms: Norms, assumed: Distance) -> Carried:
     """Return the bounds of Lemma 12.2, where all of the box is as near to p and K₀ as is assumed."""
-    k, p, W = step.k, step.p_size, step.W
-    w, S = k.w, k.speed
-    eta, G = assumed.r, assumed.H
-    P, Q = norms.P, norms.Q
+    constants = step.constants
+    c = constants.c_size
+    Omega = constants.omega_size
+    gamma = constants.drag_size
+    w = constants.w
+    S = constants.S
+    p = step.p_size
+    W = step.W
     delta_omega = step.delta_omega
-    omega_q = size(times(k.h, sensitivity.omega_q))
-    drag_q = upper(abs(k.h * sensitivity.drag_q))
+    eta = assumed.r
+    G = assumed.H
+    P = norms.P
+    Q = norms.Q
+    omega_q = size(times(constants.h, sensitivity.omega_q))
+    drag_q = upper(abs(constants.h * sensitivity.drag_q))
 
     # (12.2e)
     S1 = (Q + omega_q) * eta + (G + delta_omega) * P
@@ -263,7 +273,7 @@ def carried(step: BoxStep, sensitivity: Sensitivity, norms: Norms, assumed: Dist
     # (12.2f): what differs by Ω and H, by δγ, and in the terms of γ and γ_q
     S2 = Q * delta_omega + G * omega_q
     S2 = S2 + step.delta_drag * (Q + omega_q * (1 + p**2) + 2 * W * p * P)
-    of_drag = k.drag_size * (omega_q * eta * (1 + p) + 2 * P * (delta_omega + W * eta))
+    of_drag = gamma * (omega_q * eta * (1 + p) + 2 * P * (delta_omega + W * eta))
     of_drag_q = drag_q * (G + 2 * delta_omega + W * eta * (1 + p))
     S2 = S2 + (of_drag + of_drag_q)
 
@@ -272,16 +282,17 @@ def carried(step: BoxStep, sensitivity: Sensitivity, norms: Norms, assumed: Dist
     B = norms.off_momentum + G * P + eta * Q
 
     # (12.2d)
-    two_w_mu = k.below.max(k.above + S**2) + k.drag_size * k.omega_size
+    curvature = constants.lambda_minus.max(constants.lambda_plus + S**2)
+    two_w_mu = curvature + gamma * Omega
 
     # (12.2c, i)
-    source = S1 + norms.R1 + (S2 + norms.R2 + A * k.c_size + B * S) / w
-    growth = (step.ell * two_w_mu / (2 * w)).exp()
-    a = upper((sensitivity.epsilon + step.ell * source) * growth)
+    source = S1 + norms.R1 + (S2 + norms.R2 + A * c + B * S) / w
+    growth = (step.length * two_w_mu / (2 * w)).exp()
+    a = upper((sensitivity.epsilon + step.length * source) * growth)
 
     # (12.2j, k)
     b = upper((w + S) * a + B)
-    a_rate = upper(b + (S + k.omega_size) * a + S1 + norms.R1)
+    a_rate = upper(b + (S + Omega) * a + S1 + norms.R1)
     return Carried(a, b, a_rate)
 
 
@@ -300,9 +311,9 @@ class Tangents:
     ) -> None:
         self.balls = balls
         texts = {name: str(half_width) for name, half_width in half_widths.items()}
-        ends = [end_of(balls.inputs.inputs, texts, side) for side in (-1, 1)]
+        ends = [end_of(balls.inputs, texts, side) for side in (-1, 1)]
         # Lemma 12.4 takes a box that is symmetric about the scene
-        demand(ends == [*balls.inputs[1:]], "a width is missing, or another one")
+        demand(ends == [balls.claim.low, balls.claim.high], "a width is missing, or another one")
         self.sensitivities = [
             Sensitivity(balls, name, half_width, scales[name])
             for name, half_width in half_widths.items()
@@ -324,8 +335,8 @@ class Tangents:
             piece: the step.
             proposal: six polynomials of integers, and the bits of their unit, for each input.
         """
-        # Lemmas 11.2 and 11.3: constants, sizes and jump for all of the box
-        whole, sizes, jump = self.box_radius.widened(piece)
+        # Lemmas 11.2 and 11.3: sizes and jump for all of the box
+        widened = self.box_radius.widened(piece)
         # the same polynomials, read once, bound the scene's own motion
         self.scene = self.point.advance(Piece(self.balls.own, piece.step))
         candidates = [
@@ -333,64 +344,66 @@ class Tangents:
         ]
 
         with ctx.workprec(2 * SHORT):
-            scene = scene_motion(piece, self.balls.omega)
+            scene = scene_motion(piece, self.balls.omega_0)
             norms = []
             for sensitivity, candidate in zip(self.sensitivities, candidates, strict=True):
                 sensitivity.join(candidate, piece)
                 with ctx.workprec(SHORT):
-                    rows = candidate.polynomials()
-                    norms.append(residuals(whole.k, scene, sensitivity, rows))
+                    polynomials = candidate.polynomials()
+                    norms.append(residuals(piece.constants, scene, sensitivity, polynomials))
 
         with ctx.workprec(SHORT):
-            delta_omega = size(add(whole.k.omega, times(-1, scene.omega_0)))
-            theorem_c = self.by_theorem_c(whole, sizes, jump, delta_omega)
-            reached = self.confirmed(box_step(self.balls, whole, sizes.p), sizes, norms, theorem_c)
+            sizes = widened.sizes
+            delta_omega = size(add(piece.constants.omega, times(-1, scene.omega_0)))
+            theorem_c = self.by_theorem_c(piece, widened, delta_omega)
+            step = box_step(piece, self.balls.omega_0, sizes.p)
+            reached = self.confirmed(step, norms, self.scene_distance(sizes.k), theorem_c)
 
             self.eta = reached.distance.r.min(theorem_c.r)
-            gamma = reached.distance.H.min(theorem_c.H)
+            H_distance = reached.distance.H.min(theorem_c.H)
             self.tangents = []
-            for sensitivity, candidate, bound in zip(
-                self.sensitivities, candidates, reached.bounds, strict=True
-            ):
+            bounds = zip(self.sensitivities, candidates, reached.bounds, strict=True)
+            for sensitivity, candidate, bound in bounds:
                 sensitivity.epsilon = bound.a
-                self.tangents.append(
-                    Tangent(candidate.rows[:3], candidate.unit, bound.a, bound.a_rate)
-                )
-            # (12.4f)
-            return Covered(whole, tube(whole.k, sizes, self.eta, gamma + sizes.p**2 * delta_omega))
+                P = candidate.rows[:3]
+                self.tangents.append(Tangent(P, candidate.unit, bound.a, bound.a_rate))
+            gamma = H_distance + sizes.p**2 * delta_omega  # (12.4f)
+            return Covered(piece, tube(piece.constants, sizes, self.eta, gamma))
 
-    def by_theorem_c(self, whole: Piece, sizes: Sizes, jump: arb, delta_omega: arb) -> Distance:
+    def by_theorem_c(self, piece: Piece, widened: Widened, delta_omega: arb) -> Distance:
         """Return (12.4d, e), for all of the box; no bounds from where Lemma 11.4 fails on."""
         eta = arb("inf")
         if self.box_radius_holds:
             try:
-                eta = self.box_radius.grown(whole, sizes, jump).tube.eta
+                eta = self.box_radius.grown(piece, widened).tube.eta
             except ArithmeticError:
                 self.box_radius_holds = False
-        H = ((whole.k.w + sizes.k) * eta + sizes.p**2 * delta_omega).upper()
+        K, P = widened.sizes.k, widened.sizes.p
+        H = ((piece.constants.w + K) * eta + P**2 * delta_omega).upper()
         return Distance(eta, H)
 
+    def scene_distance(self, K: arb) -> Distance:
+        """Return η₀ and G₀; `K` bounds |K| for all of the box."""
+        eta_0 = self.scene.tube.eta
+        w = self.scene.piece.constants.w
+        return Distance(eta_0, (w + K) * eta_0)  # (12.4g)
+
     def confirmed(
-        self, step: BoxStep, sizes: Sizes, norms: list[Norms], theorem_c: Distance
+        self, step: BoxStep, norms: list[Norms], of_scene: Distance, theorem_c: Distance
     ) -> Reached:
         """Return the bounds of Lemma 12.4, with E and G twice what follows from none.
 
         Raises ArithmeticError if they are not confirmed, and not Theorem C's either.
         """
-        eta_0 = self.scene.tube.eta
-        # (12.4g)
-        of_scene = Distance(eta_0, (self.scene.piece.k.w + sizes.k) * eta_0)
-
         least = self.reached(step, norms, Distance(arb(0), arb(0)), of_scene).distance
-        assumed = Distance(
-            upper(2 * least.r + TINY).min(theorem_c.r), upper(2 * least.H + TINY).min(theorem_c.H)
-        )
-        reached = self.reached(step, norms, assumed, of_scene)
+        E = upper(2 * least.r + TINY).min(theorem_c.r)
+        G = upper(2 * least.H + TINY).min(theorem_c.H)
+        reached = self.reached(step, norms, Distance(E, G), of_scene)
 
         # (12.4a, b); what Theorem C gives holds without
-        r_holds = reached.distance.r < assumed.r or assumed.r == theorem_c.r
-        H_holds = reached.distance.H < assumed.H or assumed.H == theorem_c.H
-        demand(r_holds and H_holds, "a bound has outgrown what it rests on")
+        E_holds = reached.distance.r < E or theorem_c.r == E
+        G_holds = reached.distance.H < G or theorem_c.H == G
+        demand(E_holds and G_holds, "a bound has outgrown what it rests on")
         return reached
 
     def reached(
@@ -446,7 +459,7 @@ class ZeroDerivative:
 def motion_at(covered: Covered, s: arb) -> MotionBalls:
     """Return balls of r, r', r'' on the ball `s`: those of section 7."""
     piece, bounds = covered.piece, covered.tube
-    h = piece.k.h
+    h = piece.constants.h
 
     def enclosed(polynomials: list[fmpz_poly], radius: arb, time: Any) -> Vector:
         return [(near(f, s) / piece.unit + arb(0, radius)) / time for f in polynomials]
@@ -461,7 +474,7 @@ def motion_at(covered: Covered, s: arb) -> MotionBalls:
 
 def variation_at(covered: Covered, tangent: Tangent, s: arb) -> VariationBalls:
     """Return balls of ρ and ρ' on the ball `s`: P and P' with (12.2i) and (12.2k)."""
-    h = covered.piece.k.h
+    h = covered.piece.constants.h
     rates = [f.derivative() for f in tangent.rows]
     return VariationBalls(
         rho=[near(f, s) / tangent.unit + arb(0, tangent.error) for f in tangent.rows],
@@ -533,7 +546,7 @@ def zero_derivative(
         azimuth = None
 
     # (12.3e)
-    theta = arb_series([ball(piece.step.centre) + s * piece.k.h, late], 2)
+    theta = arb_series([ball(piece.step.centre) + s * piece.constants.h, late], 2)
     own_time = derivative_of(theta / sensitivity.varied.pace)
     return ZeroDerivative(own_time / sensitivity.scale, azimuth)
 

@@ -87,7 +87,7 @@ def rest_position(balls: SceneBalls) -> Vector:
     rest: Vector = [UNIT] * 3
     for _ in range(balls.prec):
         # (13.3a)
-        G = add(balls.c, times(-1, cross(balls.turning, cross(balls.turning, rest))))
+        G = add(balls.c, times(-1, cross(balls.omega, cross(balls.omega, rest))))
         demand(
             dot(G, G) > 0,
             "so fast a rotation singles out no rest position, which the gate goes through",
@@ -119,7 +119,7 @@ class SectionOnStep(FormOnStep):
     def __init__(self, covered: Covered, form: AffineForm, zero_at_release: bool = False) -> None:
         super().__init__(covered)
         piece = covered.piece
-        h, bits = piece.k.h, piece.step.bits
+        h, bits = piece.constants.h, piece.step.bits
         self.unit = piece.unit**2
         self.zero_at_release = zero_at_release
 
@@ -172,7 +172,7 @@ class SectionOnStep(FormOnStep):
     def row(self, s: arb) -> dict[str, Any]:
         """Return the state over the length at a zero that lies in the ball `s`."""
         r, v = state(self.covered, s)
-        return self._turned(r, times(1 / self.piece.k.h, v))
+        return self._turned(r, times(1 / self.piece.constants.h, v))
 
     def _turned(self, r: Vector, v: Vector) -> dict[str, Any]:
         """Return a state in axes east, north, up."""
@@ -231,7 +231,7 @@ class ApsisOnStep(SectionOnStep):
         p = [arb_poly(f)(middle)(off) / piece.unit for f in piece.p]
         p_rate = [arb_poly(f)(middle)(off) / piece.unit for f in piece.v]
         r = [x + arb(0, tube.eta) for x in p]
-        v = [(x + arb(0, tube.u)) / piece.k.h for x in p_rate]
+        v = [(x + arb(0, tube.u)) / piece.constants.h for x in p_rate]
         return self._turned(r, v)
 
 

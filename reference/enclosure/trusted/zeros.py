@@ -110,16 +110,16 @@ class XdotOnStep(FormOnStep):
         """Return the sign of the Coriolis force on the first leaf `s`, after rest at x = 0; or 0."""
         if not self.piece.balls.flat:
             return 0
-        k = self.piece.k
+        constants = self.piece.constants
         acceleration = [f.derivative()(s) / self.unit + self.rate.off for f in self.piece.v]
         delta_squared = 4 * s.rad() ** 2
-        Q = k.c_size + k.speed**2
+        Q = constants.c_size + constants.S**2
         # (8.10): u = (r'' × Ω)_x
-        return sign(cross(acceleration, k.omega)[0]) if delta_squared * Q < 1 else 0
+        return sign(cross(acceleration, constants.omega)[0]) if delta_squared * Q < 1 else 0
 
     def row(self, s: arb) -> dict[str, Any]:
         """Return x, y, z, vy and ax at a transit; xdot, the velocity's first component, is 0."""
-        turned, h = self.piece.balls.turned, self.piece.k.h
+        turned, h = self.piece.balls.turned, self.piece.constants.h
         r, v = state(self.covered, s, 1)
         x, y, z = turned(r, -1)
         _, vy, _ = turned([0, *v], -1)
@@ -268,20 +268,20 @@ def time_of(leaves: Sequence[Leaf]) -> arb:
 def begin_of(leaf: Leaf) -> arb:
     """Return the time at which a leaf begins."""
     form: FormOnStep = leaf.form
-    return form.centre + leaf.low * form.piece.k.h
+    return form.centre + leaf.low * form.piece.constants.h
 
 
 def end_of(leaf: Leaf) -> arb:
     """Return the time at which a leaf ends."""
     form: FormOnStep = leaf.form
-    return form.centre + leaf.high * form.piece.k.h
+    return form.centre + leaf.high * form.piece.constants.h
 
 
 def touched(leaves: Sequence[Leaf], t: arb) -> list[Place]:
     """Return the part of the ball of time `t` in each leaf that it may touch."""
     places = []
     for leaf in leaves:
-        s = (t - leaf.form.centre) / leaf.form.piece.k.h
+        s = (t - leaf.form.centre) / leaf.form.piece.constants.h
         whole = leaf.low.union(leaf.high)
         if s.overlaps(whole):
             places.append(Place(leaf.form, s.intersection(whole)))

@@ -170,14 +170,14 @@ def released_in_the_meridian(rng):
 def test_from_rest_in_the_meridian_xdot_has_the_sign_of_the_coriolis_force_on_a_short_leaf(seed):
     inputs = released_in_the_meridian(Random(seed))
     covered = next(carry(inputs, steps(inputs, Fraction(1, 100))))
-    form, step, k = XdotOnStep(covered), covered.piece.step, covered.piece.k
+    form, step, k = XdotOnStep(covered), covered.piece.step, covered.piece.constants
     vague = XdotOnStep(covered._replace(tube=Tube(*covered.tube[:2], arb(1e9))))
     assert vague.sign_from_rest(ball(step.low)) == 0
     signs, longest = set(), 0
     for doubling in range(-8, 20):
         length = (step.high - step.low) * Fraction(2) ** doubling
         sign = form.sign_from_rest(ball(step.low).union(ball(step.low + length)))
-        if float(length) ** 2 * float(k.c_size + k.speed**2) > 1:
+        if float(length) ** 2 * float(k.c_size + k.S**2) > 1:
             assert sign == 0
         elif doubling <= 0 and sign:
             signs, longest = signs | {sign}, length
