@@ -18,7 +18,7 @@ from ..numbers.taylor_step import TaylorStep
 from .approximant import GRAIN, rescaled
 from .trusted.balls import add, dot, size, times
 from .trusted.course import Course
-from .trusted.function import CUT, Following, position
+from .trusted.function import CUT, Following, position, variable_error
 from .trusted.shapes import ProvedFunction
 from .trusted.system import SceneBalls
 
@@ -36,43 +36,64 @@ class FunctionFit:
         self.following = Following(course, 2 if _stays_deep(course.balls) else 3)
 
     def add(self) -> None:
-        """Propose the piece of the step that was proved last."""
-        following, ((piece, _),) = self.following, self.following.covered
-        last = until = double_below(piece.end)
-        while Fraction(last) > (begin := following.end) + LEAST:
-            rows = position(piece, begin, Fraction(until), following.count)
-            if self.rounding_of_z(rows.entries(), 3 if 2 * begin >= until else 7) > ROUNDING:
-                until = double_below((begin + Fraction(until)) / 2)
+        """Propose the piece of the step that was proved last; or several, where z rounds much."""
+        following = self.following
+        assert following.covered is not None
+        piece = following.covered.piece
+        last = double_below(piece.end)
+        until = last
+        while Fraction(last) > following.end + LEAST:
+            begin, end = following.end, Fraction(until)
+            rows = position(piece, begin, end, following.count)
+            series = rows.entries()
+            if self._rounding_of_z(series, variable_error(begin, end)) > ROUNDING:
+                until = double_below((begin + end) / 2)
             else:
-                following.add(until, [float(c) for c in rows.entries()])
+                following.add(until, [float(c) for c in series])
                 until = last
 
-    def rounding_of_z(self, series: list[arb], off: int) -> float:
-        """Return how far a series of z rounds, its coefficients and its values, in ulp of the length; 0 without one."""
-        costs = (
-            (off * k**2 + k + 1) * abs(x) * 2**-53 + abs(x - float(x))
-            for k, x in enumerate(series[2 * CUT :])
-        )
-        return float(sum(costs, arb(0))) / ulp(float(self.following.balls.inputs.length))
+    def _rounding_of_z(self, series: list[arb], lam: int) -> float:
+        """Return how far a series of z rounds, in ulp of the length: its coefficients and values.
+
+        It is 0 without a series of z.
+        """
+        rounding = arb(0)
+        for k, c in enumerate(series[2 * CUT :]):
+            of_value = ((2 + lam) * k**2 + k + 1) * abs(c) * 2**-53
+            of_coefficient = abs(c - float(c))
+            rounding += of_value + of_coefficient
+        return float(rounding) / ulp(float(self.following.balls.inputs.length))
 
     def finish(self) -> ProvedFunction:
         """Finish the proof, with the lowest degree that costs next to nothing."""
-        pieces, count, k, degree = self.following.pieces, self.following.count, np.arange(CUT), 0
-        sizes = np.abs(np.array([piece[1] for piece in pieces])).reshape(-1, count, CUT)
-        there = np.array([[float(off) for off in piece[4].entries()] for piece in pieces]).reshape(
-            -1, count, 4
+        pieces, count = self.following.pieces, self.following.count
+        sizes = np.abs(np.array([piece.series for piece in pieces])).reshape(-1, count, CUT)
+        of_proof = [[float(x) for x in piece.of_proof.entries()] for piece in pieces]
+        errors = np.array(of_proof).reshape(-1, count, 4)
+        to_rates = np.array([[[float(2 / piece.duration)]] for piece in pieces])
+
+        k = np.arange(CUT)
+        value_rounding = 2.0**-53 * sizes * (3 * k**2 + k + 1)
+        rate_rounding = 2.0**-53 * to_rates * sizes * (k**2 * (k**2 + k + 7 / 3))
+        degree = max(
+            _degree(sizes, value_rounding, errors[..., 0]),
+            _degree(to_rates * sizes * k**2, rate_rounding, errors[..., 2]),
         )
-        half = np.array([[[float(2 / piece[3])]] for piece in pieces])
-        weights: dict[int, Any] = {
-            0: (3 * k**2 + k + 1, k**0, 1.0),
-            2: (k**2 * (k**2 + k + 7 / 3), k**2, half),
-        }
-        for j, (kept, left, scale) in weights.items():
-            rounding = (2.0**-53 * scale * sizes * kept).cumsum(2)[..., -1]
-            tails = (scale * sizes * left)[..., ::-1].cumsum(2)[..., ::-1].max(0)
-            needed = tails > SHARE * (rounding + there[..., j]).max(0)[:, None]
-            degree = max(degree, int(needed.sum(1).max()) - 1)
         return self.following.finish(degree)
+
+
+def _degree(sizes: Any, rounding: Any, errors: Any) -> int:
+    """Return the lowest degree that adds no more than SHARE to what is there anyway, at least 0.
+
+    Args:
+        sizes: what leaving out each coefficient costs, by piece and component.
+        rounding: what evaluating it costs.
+        errors: those of the proof, by piece and component.
+    """
+    evaluated = rounding.cumsum(2)[..., -1]
+    tails = sizes[..., ::-1].cumsum(2)[..., ::-1].max(0)
+    needed = tails > SHARE * (evaluated + errors).max(0)[:, None]
+    return max(0, int(needed.sum(1).max()) - 1)
 
 
 def _stays_deep(balls: SceneBalls) -> bool:

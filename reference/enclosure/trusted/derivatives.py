@@ -31,7 +31,7 @@ from typing import Any
 
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
-from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
+from .balls import SHORT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
 from .box import BoxBalls, BoxRadius, Widened, Windows, near, on_the_sphere, spread
 from .course import FINISHED, scan_of
 from .defect import Piece
@@ -47,7 +47,7 @@ from .shapes import (
     State,
     Tangent,
 )
-from .six_columns import cut
+from .six_columns import cut, sup_norm
 from .system import Scaled
 from .tube import output, tube
 from .zeros import Scan
@@ -228,11 +228,6 @@ def residuals(
         off_sphere=sup_norm([dot(p, P)]),
         off_momentum=sup_norm([dot(K_0, P) + dot(p, Q)]),
     )
-
-
-def sup_norm(polynomials: Vector) -> arb:
-    """Return an upper bound of the length of a vector of polynomials on |s| <= 1."""
-    return size([f(UNIT) for f in polynomials])
 
 
 def box_step(piece: Piece, omega_0: Vector, p_size: arb) -> BoxStep:

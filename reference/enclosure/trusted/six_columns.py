@@ -1,7 +1,21 @@
-"""TRUSTED. The error bound for large angles: a matrix of six columns carries it; Theorems E and N.
+"""TRUSTED. The error bound for large angles: six columns carry it, by Theorem E (THEOREM.md, section 5).
 
-The columns are proposals: integers over 2^FINE, so they are exact whatever floats they were rounded from.
+The columns are proposals: integers over 2^FINE, so they are exact whatever floats they were rounded
+from. In the time of a step, lengths over that of the rod:
+
+    code                    text
+    Wp, WK                  Wp_j, WK_j: the polynomials of a column j
+    z                       z_j >= |ζ_j|, the same in physical time
+    Zp, ZK                  Σ z_j |Wp_j|, Σ z_j |WK_j|
+    R1, R2                  R1_j, R2_j
+    D1, D2, P               the sizes of section 6, of the central curve (p, K)
+    epsilon                 ε₁
+    delta                   δ, for r and, in 1/s, for H
+    W_start, W_end          Ŵ(a), W(b): the columns in physical time
+    length                  ℓ, the length of the step in s
 """
+
+from dataclasses import dataclass
 
 from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
@@ -15,53 +29,77 @@ FINE = 50  # a column's coefficients are integers over 2^FINE
 CUT = 48  # terms of p and K in the residuals, which are multiplied by the small z_j
 
 
-class Columns(CarriedState):
-    """Theorem E: (r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j; `rest` bounds e and g (g in 1/s)."""
+@dataclass(frozen=True)
+class ColumnNorms:
+    """Sup norms of a column and of its residuals on |s| <= 1."""
 
-    rest, z, carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)
+    Wp: arb
+    WK: arb
+    R1: arb
+    R2: arb
+
+
+class Columns(CarriedState):
+    """Theorem E: (r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j; `delta` bounds e and g."""
+
+    z = [arb(0)] * 6
+    delta = [arb(0)] * 6
+    W_end = arb_mat(6, 6)
 
     def advance(self, piece: Piece, proposal: Proposal) -> Covered:
-        """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
-        k, step, d, columns = (
-            piece.constants,
-            piece.step,
-            piece.sizes,
-            [[fmpz_poly(f) for f in c] for c in proposal],
-        )
+        """Carry the bounds over `piece`; `proposal[j]` holds the six polynomials of column j."""
+        columns = [[fmpz_poly(f) for f in column] for column in proposal]
+        constants = piece.constants
+        sizes = piece.sizes
         with ctx.workprec(2 * SHORT):
-            jump = self.join(piece)
-            slack = add([*jump.p, *jump.K], self.rest)
-            inverse = matrix(columns, ball(step.low), k.h).inv()
-            moved, self.carried = inverse * self.carried, matrix(columns, ball(step.high), k.h)
-            pairs = [
-                (moved[i, j].abs_upper() * self.z[j], inverse[i, j].abs_upper() * slack[j])
-                for i, j in GRID
-            ]
-            self.z = [
-                upper(sum((a + b for a, b in pairs[6 * i : 6 * i + 6]), arb(0))) for i in range(6)
-            ]
+            self._take_columns(piece, columns)
+
         with ctx.workprec(SHORT):
-            rows = [
-                times(z, sizes) for z, sizes in zip(self.z, residuals(piece, columns), strict=True)
-            ]
-            zp, zk, d1, d2 = add([arb(0), arb(0), d.d1, d.d2], *rows)
-            d1, d2, span = (
-                d1 + zp * zk,
-                d2 + k.drag_size * k.omega_size * zp**2,
-                ball(step.high - step.low),
-            )
-            left = upper(span * (d2 / k.w + d1) * (span * error_rate(k, d.p + zp)).exp())
-            self.rest = [left] * 3 + [upper(left * self.balls.w0)] * 3
-            return Covered(piece, tube(k, d, zp + left, zk + left * k.w))
+            Zp, ZK, D1, D2 = arb(0), arb(0), sizes.d1, sizes.d2
+            for z, norms in zip(self.z, residuals(piece, columns), strict=True):
+                Zp += z * norms.Wp
+                ZK += z * norms.WK
+                D1 += z * norms.R1
+                D2 += z * norms.R2
 
+            # (5.3)
+            D1 += Zp * ZK
+            D2 += constants.drag_size * constants.omega_size * Zp**2
+            length = ball(piece.step.high - piece.step.low)
+            nu = error_rate(constants, sizes.p + Zp)
+            epsilon = upper(length * (D2 / constants.w + D1) * (length * nu).exp())
 
-GRID = [(i, j) for i in range(6) for j in range(6)]
+            self.delta = [epsilon] * 3 + [upper(epsilon * self.balls.w0)] * 3
+            # (5.4)
+            return Covered(piece, tube(constants, sizes, Zp + epsilon, ZK + epsilon * constants.w))
+
+    def _take_columns(self, piece: Piece, columns: list[Vector]) -> None:
+        """Go over to the columns of the next step: z becomes ẑ."""
+        jump = self.join(piece)
+        slack = add([*jump.p, *jump.K], self.delta)
+        inverse = matrix(columns, ball(piece.step.low), piece.constants.h).inv()
+        moved = inverse * self.W_end
+
+        # (5.5)
+        z = []
+        for i in range(6):
+            total = arb(0)
+            for j in range(6):
+                of_z = moved[i, j].abs_upper() * self.z[j]
+                of_slack = inverse[i, j].abs_upper() * slack[j]
+                total += of_z + of_slack
+            z.append(upper(total))
+        self.z = z
+        self.W_end = matrix(columns, ball(piece.step.high), piece.constants.h)
 
 
 def matrix(columns: list[Vector], s: arb, h: arb) -> arb_mat:
-    """Return the columns at `s`, H in 1/s."""
-    values = [arb_poly(columns[j][i])(s) / (fmpz(1) << FINE) for i, j in GRID]
-    return arb_mat(6, 6, [*values[:18], *times(1 / h, values[18:])])
+    """Return the columns at `s` in physical time: H in 1/s."""
+    rows = []
+    for i in range(6):
+        row = [arb_poly(column[i])(s) / (fmpz(1) << FINE) for column in columns]
+        rows.append(row if i < 3 else times(1 / h, row))
+    return arb_mat(rows)
 
 
 def cut(f: arb_poly, terms: int = CUT) -> arb_poly:
@@ -69,21 +107,35 @@ def cut(f: arb_poly, terms: int = CUT) -> arb_poly:
     return f.truncate(terms) + arb(0, f.right_shift(terms)(UNIT).abs_upper())
 
 
-def residuals(piece: Piece, columns: list[Vector]) -> list[list[arb]]:
-    """Return |Wp|, |WK|, |R1|, |R2| for each column."""
-    k, out = piece.constants, []
-    p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit))) for f in part] for part in (piece.p, piece.v))
-    K = [cut(f) for f in cross(p, add(v, cross(k.omega_0, p)))]
-    turn = add(K, times(-1, k.omega_0))
+def residuals(piece: Piece, columns: list[Vector]) -> list[ColumnNorms]:
+    """Return the norms of each column, and of what it misses in the linearised equations."""
+    constants = piece.constants
+    omega_0 = constants.omega_0
+    p = [cut(arb_poly(f) * (1 / arb(piece.unit))) for f in piece.p]
+    p_rate = [cut(arb_poly(f) * (1 / arb(piece.unit))) for f in piece.v]
+    K = [cut(f) for f in cross(p, add(p_rate, cross(omega_0, p)))]
+    K_less_omega = add(K, times(-1, omega_0))
+
+    norms = []
     for column in columns:
-        W = [arb_poly(f) * (1 / arb(fmpz(1) << FINE)) for f in column]
-        P, Q, rates = W[:3], W[3:], [f.derivative() for f in W]
-        r1 = add(rates[:3], cross(p, Q), cross(P, turn))
-        r2 = add(rates[3:], cross(k.c, P), cross(k.omega_0, Q))
-        if not k.drag_0.is_zero():
-            r2 = add(
-                r2,
-                times(k.drag_0, add(Q, times(dot(k.omega_0, P), p), times(dot(k.omega_0, p), P))),
-            )
-        out.append([size([f(UNIT) for f in part]) for part in (P, Q, r1, r2)])
-    return out
+        polynomials = [arb_poly(f) * (1 / arb(fmpz(1) << FINE)) for f in column]
+        Wp = polynomials[:3]
+        WK = polynomials[3:]
+        Wp_rate = [f.derivative() for f in Wp]
+        WK_rate = [f.derivative() for f in WK]
+
+        # (5.1)
+        R1 = add(Wp_rate, cross(p, WK), cross(Wp, K_less_omega))
+        # (5.2)
+        R2 = add(WK_rate, cross(constants.c, Wp), cross(omega_0, WK))
+        if not constants.drag_0.is_zero():
+            along_p = times(dot(omega_0, Wp), p)
+            along_Wp = times(dot(omega_0, p), Wp)
+            R2 = add(R2, times(constants.drag_0, add(WK, along_p, along_Wp)))
+        norms.append(ColumnNorms(sup_norm(Wp), sup_norm(WK), sup_norm(R1), sup_norm(R2)))
+    return norms
+
+
+def sup_norm(polynomials: Vector) -> arb:
+    """Return an upper bound of the length of a vector of polynomials on |s| <= 1."""
+    return size([f(UNIT) for f in polynomials])

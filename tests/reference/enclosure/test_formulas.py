@@ -219,6 +219,10 @@ def test_one_radius_is_carried_as_theorem_c_says():
     assert too_wide > 0
 
 
+def norms_of(norms):
+    return norms.Wp, norms.WK, norms.R1, norms.R2
+
+
 def test_six_columns_are_carried_as_theorem_e_says():
     rng, bounded = Random(2), 0
     while bounded < 50:
@@ -230,17 +234,17 @@ def test_six_columns_are_carried_as_theorem_e_says():
             float(piece.step.high - piece.step.low),
         )
         rest, z, before = ([10 ** rng.uniform(-3, -2) for _ in range(n)] for n in (6, 6, 36))
-        bound.rest, bound.z = [arb(x) for x in rest], [arb(x) for x in z]
+        bound.delta, bound.z = [arb(x) for x in rest], [arb(x) for x in z]
         before, jump = np.array(before).reshape(6, 6), jumped(rng, piece, bound)
-        bound.carried = arb_mat(6, 6, [arb(x) for x in before.flat])
+        bound.W_end = arb_mat(6, 6, [arb(x) for x in before.flat])
         whole = [
             [[rng.randint(-(2**FINE), 2**FINE) for _ in range(3)] for _ in range(6)]
             for _ in range(6)
         ]
         rows = np.array(
             [
-                [float(x) for x in row]
-                for row in residuals(piece, [[fmpz_poly(f) for f in c] for c in whole])
+                [float(x) for x in norms_of(norms)]
+                for norms in residuals(piece, [[fmpz_poly(f) for f in c] for c in whole])
             ]
         )
         unit = np.repeat([1, 1 / K.h], 3)[:, None] / 2.0**FINE
@@ -262,10 +266,10 @@ def test_six_columns_are_carried_as_theorem_e_says():
         got = bound.advance(piece, whole).tube
         assert np.allclose([float(x) for x in bound.z], box, rtol=1e-6)
         assert np.allclose(
-            [float(x) for x in bound.rest], [left] * 3 + [left * K.w / K.h] * 3, rtol=1e-6
+            [float(x) for x in bound.delta], [left] * 3 + [left * K.w / K.h] * 3, rtol=1e-6
         )
         assert np.allclose(
-            np.array([[float(bound.carried[i, j]) for j in range(6)] for i in range(6)]), end
+            np.array([[float(bound.W_end[i, j]) for j in range(6)] for i in range(6)]), end
         )
         assert same(got, expected)
 
@@ -310,7 +314,8 @@ def test_residuals_bound_what_their_names_say_and_nearly_reach_it(size):
             [round(2**FINE * x * rng.choice((0, 1, -1))) for _ in range(rng.randint(1, 2))]
             for x in scale
         ]
-        (bounds,) = residuals(piece, [[fmpz_poly(f) for f in column]])
+        (norms,) = residuals(piece, [[fmpz_poly(f) for f in column]])
+        bounds = norms_of(norms)
         W, c, g = (
             [exact(x) for x in piece.constants.omega_0],
             [exact(x) for x in piece.constants.c],

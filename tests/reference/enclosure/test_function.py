@@ -25,6 +25,7 @@ from reference.enclosure.fit import FunctionFit, on_doubles
 from reference.enclosure.trusted.course import Course
 from reference.enclosure.trusted.function import (
     CUT,
+    Bounds,
     Following,
     basis,
     check_function,
@@ -158,7 +159,7 @@ class Driver:
     @property
     def last(self):
         """The last step with its tube."""
-        return self.fit.following.covered[0]
+        return self.fit.following.covered
 
 
 def of_proof(made):
@@ -275,7 +276,7 @@ def test_a_tube_from_elsewhere_is_refused():
     """Only the course may say which tube a piece is compared with."""
 
     def forged(following, until, series):
-        following.advance(following.covered[0])
+        following.advance(following.covered)
         following.add(until, series)
 
     with pytest.raises(ArithmeticError, match="from the course alone"):
@@ -356,8 +357,8 @@ def test_what_is_evaluated_in_doubles_is_within_the_bound_of_its_rounding(multip
         ).tolist()
         begin = float(rng.choice([0.0, rng.uniform(0, 1), rng.uniform(1, 1e5)]))
         end = begin + float(rng.uniform(0.1, 10))
-        off, width = 3 if 2 * begin >= end else 7, Fraction(end) - Fraction(begin)
-        cost = arb_mat([[abs(x) for x in c] + [0] * (CUT - degree - 1)]) * weights(degree, off)
+        lam, width = 1 if 2 * begin >= end else 5, Fraction(end) - Fraction(begin)
+        cost = arb_mat([[abs(x) for x in c] + [0] * (CUT - degree - 1)]) * weights(degree, lam)
         limits = float(cost[0, 0]), float(cost[0, 2] * float(2 / width))
         for t in (begin, end, np.nextafter(end, 0), *rng.uniform(begin, end, 5)):
             both = zip(
@@ -396,17 +397,9 @@ def test_z_from_the_sphere_is_within_its_bound():
         turn, way = rng.uniform(0, 2 * np.pi, 2)
         x, y = (Fraction(float(wide * f(turn))) for f in (np.cos, np.sin))
         vx, vy = (Fraction(float(fast * f(way))) for f in (np.cos, np.sin))
-        most = [
-            arb(d),
-            arb(abs(float(x))),
-            arb(e),
-            arb(abs(float(vx))),
-            arb(d),
-            arb(abs(float(y))),
-            arb(e),
-            arb(abs(float(vy))),
-        ]
-        z_bound, _, vz_bound = on_sphere(balls, arb(square), *most)
+        x_bounds = Bounds(*map(arb, (d, abs(float(x)), e, abs(float(vx)))))
+        y_bounds = Bounds(*map(arb, (d, abs(float(y)), e, abs(float(vy)))))
+        z_bound, vz_bound = on_sphere(balls, arb(square), x_bounds, y_bounds)
         X, Y, VX, VY = (
             float(q) + s * rng.choice([-1, 1, 0.3]) * 0.999
             for q, s in ((x, d), (y, d), (vx, e), (vy, e))
