@@ -366,16 +366,17 @@ class Tangents:
             return Covered(piece, tube(piece.constants, sizes, self.eta, gamma))
 
     def by_theorem_c(self, piece: Piece, widened: Widened, delta_omega: arb) -> Distance:
-        """Return (12.4d, e), for all of the box; no bounds from where Lemma 11.4 fails on."""
+        """Return Theorem C's bounds for all of the box; infinite ones from where Lemma 11.4 fails on."""
         eta = arb("inf")
         if self.box_radius_holds:
             try:
                 eta = self.box_radius.grown(piece, widened).tube.eta
             except ArithmeticError:
                 self.box_radius_holds = False
-        K, P = widened.sizes.k, widened.sizes.p
+        K = widened.sizes.k
+        P = widened.sizes.p
         H = ((piece.constants.w + K) * eta + P**2 * delta_omega).upper()
-        return Distance(eta, H)
+        return Distance(eta, H)  # (12.4d, e)
 
     def scene_distance(self, K: arb) -> Distance:
         """Return η₀ and G₀; `K` bounds |K| for all of the box."""
@@ -816,7 +817,7 @@ def within(
     sensitivities: list[Sensitivity],
     derivatives: Sequence[arb],
 ) -> Interval:
-    """Return where a number is for all inputs: in `wide`, and near the scene's own (12.4c)."""
+    """Return where a number is for all inputs: in `wide`, and near the scene's own (Lemma 12.4)."""
     reach = sum(
         (
             sensitivity.half_width * sensitivity.scale * x.abs_upper()
@@ -827,6 +828,7 @@ def within(
     if not reach.is_finite():
         return wide
     far = interval(reach).high
+    # (12.4c)
     low = max(wide.low, own.low - far)
     high = min(wide.high, own.high + far)
     demand(low <= high, "two bounds of one number contradict each other")

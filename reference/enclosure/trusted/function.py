@@ -97,8 +97,8 @@ def position(piece: Piece, begin: Fraction, end: Fraction, count: int) -> arb_ma
 
 
 def variable_error(begin: Fraction, end: Fraction) -> int:
-    """Return λ of a piece (10.2a)."""
-    return 1 if 2 * begin >= end else 5
+    """Return λ of a piece (Lemma 10.2)."""
+    return 1 if 2 * begin >= end else 5  # (10.2a)
 
 
 @lru_cache
@@ -112,9 +112,9 @@ def weights(degree: int, lam: int) -> arb_mat:
         if k <= degree:
             value = HALF * ((2 + lam) * k**2 + k + 1)  # (10.3c)
             rate = HALF * k**2 * ((2 + lam) * k**2 + 3 * k + 7) / 3  # (10.3d)
-            rows.append((value, 1, rate, k**2))
+            rows.append((value, 1, rate, k**2))  # the sizes by (10.3f)
         else:
-            rows.append((1, 1, k**2, k**2))  # (10.3e)
+            rows.append((1, 1, k**2, k**2))  # (10.3e), (10.3f)
     return arb_mat(rows)
 
 

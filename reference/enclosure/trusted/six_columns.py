@@ -1,18 +1,20 @@
 """TRUSTED. The error bound for large angles: six columns carry it, by Theorem E (THEOREM.md, section 5).
 
 The columns are proposals: integers over 2^FINE, so they are exact whatever floats they were rounded
-from. In the time of a step, lengths over that of the rod:
+from. Lengths are divided by that of the rod.
 
-    code                    text
-    Wp, WK                  Wp_j, WK_j: the polynomials of a column j
-    z                       z_j >= |ζ_j|, the same in physical time
-    Zp, ZK                  Σ z_j |Wp_j|, Σ z_j |WK_j|
-    R1, R2                  R1_j, R2_j
-    D1, D2, P               the sizes of section 6, of the central curve (p, K)
-    epsilon                 ε₁
-    delta                   δ, for r and, in 1/s, for H
-    W_start, W_end          Ŵ(a), W(b): the columns in physical time
-    length                  ℓ, the length of the step in s
+| name              | symbol                                                  | unit                |
+|-------------------|---------------------------------------------------------|---------------------|
+| `Wp`, `WK`        | Wp_j, WK_j: the polynomials of a column j               | a step's time       |
+| `z`               | z_j >= |ζ_j|                                            | 1                   |
+| `Zp`, `ZK`        | Σ z_j |Wp_j|, Σ z_j |WK_j|                              | a step's time       |
+| `R1`, `R2`        | R1_j, R2_j                                              | a step's time       |
+| `D1`, `D2`        | D1, D2 of the central curve, then with what columns add | a step's time       |
+| `epsilon`         | ε₁                                                      | a step's time       |
+| `delta`           | δ: for r, then for H                                    | 1, then 1/s         |
+| `inverse`         | Ŵ(a)⁻¹, of the columns of the step that begins          | as `W_end`          |
+| `W_end`           | W(b), of the columns of the step before                 | 1, rows of H in 1/s |
+| `length`          | ℓ, the length of the step in s                          | a step's time       |
 """
 
 from dataclasses import dataclass
