@@ -14,7 +14,7 @@ same size. What is left of the box is in Ω, γ and the release. A proof of a po
 | `length`                    | l in `BoxBalls`; ℓ, the length of a step, in `grown` | m; 1             |
 | `eta_start`, `eta`, `b`     | η(a), η, b                                           | 1                |
 | `E`                         | E, a bound of η that η₁ has to confirm               | 1                |
-| `mu_0`, `two_w_mu`          | μ for E = 0; 2 w μ                                   | 1                |
+| `two_w_mu_0`, `two_w_mu`    | 2 w μ for E = 0; 2 w μ                               | 1                |
 """
 
 from copy import copy
@@ -215,8 +215,8 @@ class BoxRadius(Radius):
             driven = upper(eta_start + length * b)  # η(a) + ℓ b
 
             # E is twice what follows for E = 0
-            mu_0 = (lambda_minus.max(lambda_plus + S**2) + gamma * Omega * P) / (2 * w)
-            E = upper(2 * driven * (length * mu_0).exp())
+            two_w_mu_0 = lambda_minus.max(lambda_plus + S**2) + gamma * Omega * P
+            E = upper(2 * driven * (length * two_w_mu_0 / (2 * w)).exp())
 
             # (11.4a)
             curvature = lambda_minus.max(lambda_plus + (S + (w + K) * E) ** 2)
@@ -283,7 +283,7 @@ class Windows:
     def _released(self) -> Vector:
         """Return the state at the release in m and m/s; what is given of it as it is given."""
         position, velocity = self.balls.release
-        x, y, z, vx, vy, vz = times(self.balls.length, [*position, *velocity])
+        x, y, z, vx, vy, vz = (q * self.balls.length for q in (*position, *velocity))
         if self.balls.given:
             x, y, vx, vy = self.balls.given
         return [x, y, z, vx, vy, vz]
