@@ -16,6 +16,7 @@ from flint import arb, fmpq
 import reference.enclosure.trusted.derivatives
 from reference.enclosure.approximant import pair
 from reference.enclosure.prove import until
+from reference.enclosure.trusted.course import FINISHED
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import PhasePoint
 from reference.enclosure.trusted.shapes import Sizes
@@ -218,6 +219,7 @@ def runs_hold(module, names=SHORT_RUNS):
         with pytest.raises(ArithmeticError, match="course alone"):
             windows.advance(covered[-1])
         proved = windows.finish()
+        assert proved in FINISHED, "only what counts as proved may be handed on"
         assert "narrow" not in name or float(windows.course.bound.eta) < 1e-10
         if name not in TRUTHS:
             rng = Random(1)
