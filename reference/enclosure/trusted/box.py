@@ -236,7 +236,10 @@ class Windows:
         self.balls = BoxBalls(box, prec)
         self.times = tuple(until)
         self.pace = self.balls.paces
-        demand(self.pace.low > 0 == until[0], "a box is followed from its release on")
+        demand(
+            self.pace.low > 0 and until[0] == 0,
+            "a box is followed from its release on",
+        )
         self.hulls = list[Vector]()  # of the states at each time so far, over the length
         self.done = 0  # times whose hulls are complete
 
