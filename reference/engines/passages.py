@@ -304,7 +304,7 @@ def signs_of(form: Array, sign_low: Any, sign_high: Any) -> Array:
 
 
 class _Bernstein(NamedTuple):
-    """Matrices from coefficients to Bernstein's form, and from that to the form on the first half."""
+    """Matrices from a series to Bernstein's form, and from that to the form on the first half."""
 
     from_series: Array
     to_half: Array
