@@ -126,3 +126,10 @@ class RangesRequest:
     engine: str = AUTO
     derivatives: bool = False
     report: Report | None = None
+
+
+def progress_report(report: Report | None, span_s: Fraction) -> Report | None:
+    """Return a function of the part of a span that is done, which reports the simulated time."""
+    if report is None:
+        return None
+    return lambda part: report(part * float(span_s))

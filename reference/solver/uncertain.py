@@ -21,7 +21,7 @@ from ..system.imports import needed
 from .pilot import check_reach
 from .proof_steps import Feed
 from .ranges import Intervals, Ranges
-from .request import RangesRequest, RunSettings
+from .request import RangesRequest, RunSettings, progress_report
 from .solution import exact_decimals, separated
 
 UNCERTAIN = [
@@ -213,7 +213,7 @@ def _proved_ranges(request: RangesRequest) -> Ranges:
             list(request.times),
             approximant,
             scene.run.zeros,
-            _progress(request.report, end),
+            progress_report(request.report, end),
             request.widths,
             request.derivatives,
         )
@@ -245,10 +245,3 @@ def _expected_steps(inputs: Inputs, end: Fraction) -> int:
     swing_rate = sqrt(abs(float(inputs.gravity / inputs.length)))
     rate = max(swing_rate, abs(float(inputs.rotation_rate)), 1 / float(end))
     return ceil(float(end) * rate)
-
-
-def _progress(report: Report | None, end: Fraction) -> Report | None:
-    """Return a function of the part of the span that is proved, which reports the time in s."""
-    if report is None:
-        return None
-    return lambda part: report(part * float(end))
