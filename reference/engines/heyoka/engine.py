@@ -13,7 +13,10 @@ HARDWARE_STEP_S = 4e-5  # in double and long double
 
 
 class Heyoka(Engine):
-    """Taylor series of adaptive order and step, compiled from expressions; heyoka is imported when it runs."""
+    """Taylor series of adaptive order and step, compiled from expressions.
+
+    heyoka is imported when it runs.
+    """
 
     name = "heyoka"
     formulation = "momentum"
