@@ -11,7 +11,7 @@ MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
 
 
 class HeyokaBatch(Batch):
-    """A loop over the rows in `momentum`: events find zeros, a second pass gives the states there."""
+    """A loop over the rows in `momentum`: events find zeros, a pass gives the states there."""
 
     name = "heyoka"
     requires = ("heyoka",)

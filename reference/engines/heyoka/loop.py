@@ -20,6 +20,7 @@ from ..row_zeros import (
     HEIGHT,
     MODEL,
     TRANSIT,
+    FoundZeros,
     RowMotion,
     RowRelease,
     RowZeros,
@@ -259,23 +260,23 @@ def _describe(
     outcomes: Outcomes, row: _Row, times: Array, transits: RowZeros, heights: RowZeros
 ) -> None:
     """Fill in a row's transits and highest points, from the motion at them and at sampled times."""
-    sought, release, number = row.compilation.sought, row.release, row.number
+    sought = row.compilation.sought
     seen = _seen(row, times, transits, heights)
-    if TRANSIT in sought and not release.still:
-        times = seen.samples.finer(transits, seen.at_transits, release, TRANSIT)
+    if TRANSIT in sought and not row.release.still:
+        times = seen.samples.finer(seen.transits)
         if len(times) > len(seen.samples.times):  # the plane passes north-south
             seen = _seen(row, times, transits, heights)
-        describe_transits(outcomes, number, release, transits, seen.at_transits, seen.samples)
+        describe_transits(outcomes, row.number, seen.transits, seen.samples)
     if HEIGHT in sought:
-        describe_highest_points(outcomes, number, release, heights, seen.at_heights, seen.samples)
+        describe_highest_points(outcomes, row.number, seen.heights, seen.samples)
 
 
 class _Seen(NamedTuple):
-    """The motion of a row at samples, at its transits, and at the zeros of its height's rate."""
+    """A row's motion at samples, its transits, and the zeros of its height's rate."""
 
     samples: Samples
-    at_transits: RowMotion
-    at_heights: RowMotion
+    transits: FoundZeros
+    heights: FoundZeros
 
 
 def _seen(row: _Row, samples: Array, transits: RowZeros, heights: RowZeros) -> _Seen:
@@ -289,6 +290,6 @@ def _seen(row: _Row, samples: Array, transits: RowZeros, heights: RowZeros) -> _
         motion = RowMotion.of(integrator.at(times), row.k)
     return _Seen(
         samples=Samples(samples, motion[at_samples]),
-        at_transits=motion[at_transits],
-        at_heights=motion[at_heights],
+        transits=FoundZeros(TRANSIT, row.release, transits, motion[at_transits]),
+        heights=FoundZeros(HEIGHT, row.release, heights, motion[at_heights]),
     )
