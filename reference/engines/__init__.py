@@ -17,7 +17,7 @@ from pkgutil import iter_modules
 AUTO = "auto"  # the fastest engine that is installed
 
 
-def folders_with(file: str) -> tuple[str, ...]:
+def _folders_with(file: str) -> tuple[str, ...]:
     """Return the folders here that have a module of this name."""
     folders = (module.name for module in iter_modules(__path__) if module.ispkg)
     return tuple(
@@ -27,9 +27,9 @@ def folders_with(file: str) -> tuple[str, ...]:
 
 def engine_names() -> tuple[str, ...]:
     """Return the names of the engines: folders whose `engine.py` declares one as `ENGINE`."""
-    return folders_with("engine")
+    return _folders_with("engine")
 
 
 def batch_names() -> tuple[str, ...]:
     """Return the names of the engines for many rows: folders whose `batch.py` declares `BATCH`."""
-    return folders_with("batch")
+    return _folders_with("batch")

@@ -21,9 +21,9 @@ from .plan import Engine, Pace, Plan, Report, Run
 
 SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
-REPORT_S = 0.2  # seconds between two reports of progress
+_REPORT_S = 0.2  # seconds between two reports of progress
 WORTH_A_PROCESS = 1.0  # estimated CPU seconds from which a process pays for its start
-COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
+_COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
 
 
 @cache
@@ -100,7 +100,7 @@ def run_both(
     """
     first_s = expected_s(first, steps)
     second_s = expected_s(second, steps)
-    pays = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
+    pays = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= _COMPILATION_S
     end = float(first.times[-1])
     with in_background(pays, send_run, second) as background:
         first_report = report and (lambda t: report((t + background.reached) / 2))
@@ -125,7 +125,7 @@ def reports(emit: Emit) -> Report:
 
     def report(t: float) -> None:
         nonlocal last_report
-        if time.monotonic() - last_report > REPORT_S:
+        if time.monotonic() - last_report > _REPORT_S:
             last_report = time.monotonic()
             emit(float(t))
 
@@ -176,7 +176,7 @@ class Background:
         if self._here is not None:
             self._report = report
             self._here()
-        while not wait([self._result], REPORT_S).done:
+        while not wait([self._result], _REPORT_S).done:
             if report is not None:
                 report(self.reached)
         return self._result.result()

@@ -21,12 +21,12 @@ from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAx
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
-RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
-FINER = 16  # parts of the time between two samples, where a form may dip to zero there
+_RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
+_FINER = 16  # parts of the time between two samples, where a form may dip to zero there
 # of a swing's period after the release: there heyoka may report the zero at the release
-QUIET = 1e-4
+_QUIET = 1e-4
 # of a radian of the swing: how far Newton's step may move a zero of the height's rate
-MOST_LATE = 1e-3
+_MOST_LATE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -136,9 +136,9 @@ class RowRelease:
             length=rows.length[row, 0],
             end=rows.t_end[row, 0],
             rate=rate,
-            quiet=QUIET * 2 * np.pi / (rate + axes.speed[row]),
+            quiet=_QUIET * 2 * np.pi / (rate + axes.speed[row]),
             still=bool(rows.still[row]),
-            forms={TRANSIT: form, HEIGHT: RISE},
+            forms={TRANSIT: form, HEIGHT: _RISE},
             zero={TRANSIT: multiplicity > 0, HEIGHT: rising == 0},
             signs={
                 TRANSIT: rows.leaves[row] or np.sign(leaving[multiplicity]),
@@ -209,7 +209,7 @@ class Samples:
     def finer(self, found: FoundZeros) -> Array:
         """Return the times of samples, with more of them where the form may dip to zero."""
         starts, ends = self._dips(found)
-        between = np.linspace(starts, ends, FINER + 1)[1:-1]
+        between = np.linspace(starts, ends, _FINER + 1)[1:-1]
         return np.union1d(self.times, between)
 
     def _dips(self, found: FoundZeros) -> tuple[Array, Array]:
@@ -294,7 +294,7 @@ def describe_highest_points(
         return
     late = at.v[2] / at.a[2]
     zeros = RowZeros(found.zeros.times - late, found.zeros.directions)
-    close = (np.abs(late) * release.rate < MOST_LATE).all()
+    close = (np.abs(late) * release.rate < _MOST_LATE).all()
     if samples.lost(replace(found, zeros=zeros)) or not close:
         outcomes.fate[row] = DOUBTFUL
         return

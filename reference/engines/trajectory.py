@@ -108,9 +108,9 @@ class Variants:
 
 
 # most steps while the scene's fastest rate goes through a radian: a run takes one or two
-STEPS_PER_RADIAN = 100
-LEAST_STEPS = 10_000  # and of a whole run
-SINGULAR = {
+_STEPS_PER_RADIAN = 100
+_LEAST_STEPS = 10_000  # and of a whole run
+_SINGULAR = {
     "plane": "at the horizontal",
     "angles": "on the vertical",
     "lagrangian": "on the vertical",
@@ -217,14 +217,14 @@ def trajectory(
     except OverflowError:
         raise BeyondDoublesError from None
     radians = start.fastest_rate * float(moments[-1])
-    max_steps = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians)
+    max_steps = _LEAST_STEPS + math.ceil(_STEPS_PER_RADIAN * radians)
     propagator = model.propagator(tolerance, radians)
     try:
         states = propagator.from_zero(release, moments, max_steps=max_steps)
     except IntegrationError as error:
         advice = ""
-        if formulation in SINGULAR:
-            where = SINGULAR[formulation]
+        if formulation in _SINGULAR:
+            where = _SINGULAR[formulation]
             advice = f"The formulation {formulation} is singular {where}: take momentum."
         raise IntegrationError(error.reason, advice) from None
     rows = model.doubles(states)

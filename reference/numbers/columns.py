@@ -21,7 +21,7 @@ RUN = (*STATE, "ax")  # an engine's results at each output time, and after t at 
 
 GRID = STATE  # of grid.csv, after t
 SECTION = ("t", *STATE)  # of sections.csv, beside section, number, direction and bound
-WHOLE = ("k", "direction")  # columns of whole numbers
+_WHOLE = ("k", "direction")  # columns of whole numbers
 TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
 
 # of the columns of each kind
@@ -72,7 +72,7 @@ class Framed:
         columns = {}
         for name in self.columns:
             column = self.array(name)
-            columns[name] = column.astype(int) if name in WHOLE else column
+            columns[name] = column.astype(int) if name in _WHOLE else column
         return data_frame(columns)
 
     def _repr_html_(self) -> str | None:

@@ -18,7 +18,7 @@ from .columns import KINDS, Framed, place_of
 from .precision import Array, decimals_for, rounded, to_fraction, with_decimal_point
 
 Integers = Any  # an array of integers of any size: dtype object, shape (rows,)
-NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
+_NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def resolved(
     """
     sizes = {}
     for name, size in largest.items():
-        is_noise = size <= NOISE * errors[name]
+        is_noise = size <= _NOISE * errors[name]
         sizes[name] = Fraction(0) if is_noise else size
     of_kind = {}
     for name, size in sizes.items():

@@ -25,8 +25,8 @@ FINER_BITS = 16  # bits that the published run has more than the one it is compa
 # precisions are multiples of this, so that small changes of the pilot's errors do not show
 ROUND_TO_BITS = 8
 # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
-SAMPLES = 3
-HARDWARE_ENGINE = "heyoka"  # computes in double and long double
+_SAMPLES = 3
+_HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 
 
 def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> Pilot:
@@ -48,11 +48,11 @@ def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> 
     if scene.run.level != "computed":
         return run_pilot(inputs, times)
 
-    pilot = run_pilot(inputs, times, samples=SAMPLES)
+    pilot = run_pilot(inputs, times, samples=_SAMPLES)
     published_engine = _first_published(scene, times, pilot, engine).engine
     if published_engine == pilot.engine:
         return pilot
-    return run_pilot(inputs, times, published_engine, samples=SAMPLES)
+    return run_pilot(inputs, times, published_engine, samples=_SAMPLES)
 
 
 def _first_published(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str) -> Plan:
@@ -104,7 +104,7 @@ def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
     prec += second_order_bits(scene, pilot)
     if is_single:
         return rounded_prec(prec) if prec > LONG_DOUBLE.prec else prec
-    may_be_double = engine in (AUTO, HARDWARE_ENGINE) and scene.run.level != "enclosed"
+    may_be_double = engine in (AUTO, _HARDWARE_ENGINE) and scene.run.level != "enclosed"
     if may_be_double and prec <= DOUBLE.prec:
         return DOUBLE.prec
     return rounded_prec(max(prec, LONG_DOUBLE.prec))
@@ -135,7 +135,7 @@ def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, pre
 
 
 def drawn_intervals(scene: Scene) -> list[int]:
-    """Return the intervals of a scene's grid, counted from 0, that a sampled confirmation integrates.
+    """Return the intervals of a grid, counted from 0, that a sampled confirmation integrates.
 
     A tenth of them, rounded up: those with the least sha256 of "HASH K", where K counts intervals
     from 1, and HASH is the sha256, in hexadecimal figures, of the scene's inputs as JSON without

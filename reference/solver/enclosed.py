@@ -45,9 +45,9 @@ from .request import SolveRequest
 from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
 
 # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
-AUDIT_STEPS = 2000
-LOWER = 5  # priority of that process, in steps of `nice`
-WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
+_AUDIT_STEPS = 2000
+_LOWER = 5  # priority of that process, in steps of `nice`
+_WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
 
 
 def solve_enclosed(request: SolveRequest) -> Solution:
@@ -84,7 +84,7 @@ def solve_enclosed(request: SolveRequest) -> Solution:
             pays = expected_s(plan, pilot.steps) >= WORTH_A_PROCESS
             whole_run = background.enter_context(in_background(pays, send_run, plan))
         if options.audit:
-            pays = pilot.steps >= AUDIT_STEPS
+            pays = pilot.steps >= _AUDIT_STEPS
             work = in_background(pays, _send_digits, replace(task, function=False))
             second_proof = background.enter_context(work)
 
@@ -151,7 +151,7 @@ def _send_digits(emit: Emit, task: ProofTask) -> None:
     if isinstance(
         emit, Parent
     ):  # in a process of its own: leave the core to heyoka's run, the longest
-        os.nice(LOWER)
+        os.nice(_LOWER)
     again = proved(task, partial(enclose, flint_only=True), reports(emit))
     emit((proved_digits(again), again.cpu_s - again.pilot_s))
 
@@ -165,7 +165,7 @@ def _confirming_plan(task: ProofTask, confirm: Confirmation, prec: int | None = 
     scene, pilot = task.scene, task.pilot
     bits = prec or first_prec(scene, pilot, AUTO)
     steps = pilot.steps // SAMPLED if confirm == "sampled" else pilot.steps
-    check_reach(steps, bits, scene.run.digits, WITHOUT)
+    check_reach(steps, bits, scene.run.digits, _WITHOUT)
     return confirming_plan(scene, tuple(scene.exact.grid), pilot, bits)
 
 

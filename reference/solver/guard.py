@@ -23,8 +23,11 @@ from .pilot import ESTIMATE_FACTOR, Pilot, second_order_bits
 from .proving import EVALUATION_BITS
 from .solution import CrossCheck, Solution
 
-USUAL_DIGITS, FINER_DIGITS = 7, 27  # of the run with event detection, at first and on a second try
-MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
+_USUAL_DIGITS, _FINER_DIGITS = (
+    7,
+    27,
+)  # of the run with event detection, at first and on a second try
+_MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
 SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
@@ -46,7 +49,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     inputs, times, words = solution.scene.exact, solution.times, tuple(solution.zeros)
     contradiction: IntegrationError | None = None
     for prec in _precisions(solution, pilot):
-        if prec > MOST_CHECK_PREC:
+        if prec > _MOST_CHECK_PREC:
             reason: Exception = UnreachableError(
                 f"A run would take {prec} bits to see transits so flat."
             )
@@ -70,8 +73,8 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
 def _precisions(solution: Solution, pilot: Pilot) -> tuple[int, int]:
     """Return the bits of a run with event detection, and of a second one if the first fails."""
     end = solution.times[-1]
-    usual = pilot.bits_for(USUAL_DIGITS, end, checked=False)
-    finer = pilot.bits_for(FINER_DIGITS, end, checked=False)
+    usual = pilot.bits_for(_USUAL_DIGITS, end, checked=False)
+    finer = pilot.bits_for(_FINER_DIGITS, end, checked=False)
     least = _bits_to_see(solution.transits, end, pilot)
     more = second_order_bits(solution.scene, pilot)
     return max(usual + more, least), max(finer + more, least + finer - usual)
@@ -84,7 +87,7 @@ def _check(event_run: Run, solution: Solution, pilot: Pilot) -> CrossCheck:
         IntegrationError: its states are too far from the enclosure, or it finds other zeros.
     """
     gaps = solution.grid.distance(event_run.grid).largest()
-    for name, places in pilot.decimals(USUAL_DIGITS).items():
+    for name, places in pilot.decimals(_USUAL_DIGITS).items():
         if gaps[name] > Fraction(1, 10**places):
             raise IntegrationError(
                 f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure."
@@ -134,7 +137,7 @@ def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
     slope = min(map(abs, transits.whole("ax", transits.bits)))
     least_xdot = Fraction(slope * shortest, unit**2)
     if not least_xdot:
-        return MOST_CHECK_PREC + 1
+        return _MOST_CHECK_PREC + 1
     return pilot.prec + bits_in(pilot.cautious["vx"] / least_xdot) + SEEN_BITS
 
 

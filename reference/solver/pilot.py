@@ -25,7 +25,7 @@ from ..numbers.table import Table, bits_in, decimals_of, resolved
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 
-PILOT_PREC = 47  # of the first exact run: three limbs
+_PILOT_PREC = 47  # of the first exact run: three limbs
 PILOT_GAP_BITS = 22  # bits between it and the second: a limb
 LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
 # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
@@ -34,19 +34,19 @@ MARGIN_BITS = 14
 CLOSE_TRANSIT_BITS = 12
 # safety factor from the pilot's error to that of a run which no second one checks
 ESTIMATE_FACTOR = 16
-LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
+_LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
 # the pilot runs are compared at more times than this, so that no error is small by luck
-LEAST_TIMES = 64
+_LEAST_TIMES = 64
 # an error above this part of the largest position or speed leaves no digit
-LOST = Fraction(1, 1 << 12)
+_LOST = Fraction(1, 1 << 12)
 STILL_PREC = 128  # bits from which a velocity that is exactly zero is that of rest
 # bits from which a position or velocity that shrinks with the precision is taken for zero
 ZERO_PREC = 512
 MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_RAISES = 6  # of the precision, before giving up
 MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
-PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
-SETTLED = 10  # with drag γ the pace may change until t = SETTLED/γ
+_PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
+_SETTLED = 10  # with drag γ the pace may change until t = _SETTLED/γ
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Pilot:
         """
         floored = {}
         for name, error in self.errors.items():
-            least = LEAST_ULPS * self.largest[name] / 2**self.prec
+            least = _LEAST_ULPS * self.largest[name] / 2**self.prec
             floored[name] = ESTIMATE_FACTOR * max(error, least)
         cautious = {}
         for name in floored:
@@ -146,9 +146,9 @@ def run_pilot(
         UnreachableError: the run takes too many steps, or rounding grows so fast that no affordable
             run keeps a digit.
     """
-    if len(times) <= LEAST_TIMES:
-        times = tuple(times[-1] * k / LEAST_TIMES for k in range(LEAST_TIMES + 1))
-    pair = _PilotPair(inputs, times, engine, PILOT_PREC, PILOT_PREC + PILOT_GAP_BITS)
+    if len(times) <= _LEAST_TIMES:
+        times = tuple(times[-1] * k / _LEAST_TIMES for k in range(_LEAST_TIMES + 1))
+    pair = _PilotPair(inputs, times, engine, _PILOT_PREC, _PILOT_PREC + PILOT_GAP_BITS)
     if hardware:
         pair = replace(pair, prec=DOUBLE.prec, fine_prec=LONG_DOUBLE.prec, hardware=True)
 
@@ -307,7 +307,7 @@ def _lost(
     for kind in (POSITION, VELOCITY):
         size = max(largest[name] for name in kind)
         error = max(errors[name] for name in kind)
-        if size > zero and error > size * LOST:
+        if size > zero and error > size * _LOST:
             return True
         if size <= zero and prec < STILL_PREC:
             return True
@@ -332,7 +332,7 @@ def _good_until(gaps: Table, times: tuple[Fraction, ...], largest: dict[str, Fra
     """Return the time in s until which both position and velocity keep a digit."""
     columns = []
     for kind in (POSITION, VELOCITY):
-        limit = LOST * max(largest[name] for name in kind)
+        limit = _LOST * max(largest[name] for name in kind)
         columns += [(gaps.exact(name), limit) for name in kind]
     good_until = Fraction(0)
     for i, time in enumerate(times):
@@ -392,7 +392,7 @@ class Pace:
     def __call__(self, steps: int, t: float) -> None:
         """Measure the pace once, or with drag again and again."""
         more_steps = steps - self._last_steps
-        if not self._watching or more_steps < PACE_STEPS:
+        if not self._watching or more_steps < _PACE_STEPS:
             return
         pace = more_steps / (t - self._last_t) if t > self._last_t else math.inf
         self._last_steps = steps
@@ -408,7 +408,7 @@ class Pace:
     def _settled(self, t: float) -> bool:
         """Return whether drag does not change the pace any more."""
         drag = self._inputs.drag
-        return not drag or drag * Fraction(t) >= SETTLED
+        return not drag or drag * Fraction(t) >= _SETTLED
 
 
 def _reason(inputs: Inputs, needed: float, pace: float) -> str:

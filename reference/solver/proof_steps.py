@@ -28,7 +28,7 @@ BATCH = 32  # steps sent at once
 # that.
 HEYOKA_BITS = 8
 
-Sent = tuple[TaylorStep | Run, float]
+_Sent = tuple[TaylorStep | Run, float]
 
 
 class EngineChanged(Exception):
@@ -114,7 +114,7 @@ class Feed:
         if self._worker is not None:
             self._worker.stop()
 
-    def _only_steps(self, items: Iterable[Sent]) -> Generator[TaylorStep]:
+    def _only_steps(self, items: Iterable[_Sent]) -> Generator[TaylorStep]:
         for item, self.run_s in items:
             if isinstance(item, Run):
                 self._run = item
@@ -128,7 +128,7 @@ class Feed:
 
 def _steps_and_run(
     engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int
-) -> Iterator[Sent]:
+) -> Iterator[_Sent]:
     """Yield the steps of an engine's run, in the axes of a proof and paired, and finally the run.
 
     With each come the CPU seconds since the first, before which code is compiled.

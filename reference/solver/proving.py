@@ -146,7 +146,7 @@ def _solution(task: ProofTask, enclosed: Any, approximant: Run) -> Solution:
     if XDOT in zeros:
         transit_radius = max(zeros[XDOT].table.bound("t"), default=None)
 
-    gaps = checked_states(grid, times, approximant).largest()
+    gaps = _checked_states(grid, times, approximant).largest()
     # no further run, so no further cost
     check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)
     return Solution(
@@ -195,7 +195,7 @@ def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
     return radius / (1 << math.ceil(min(bits, _MOST_DIED)))
 
 
-def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
+def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
     """Return how far the run's states are from the middles of the balls.
 
     Raises:

@@ -28,7 +28,7 @@ from ..scenes.scene import Scene
 from .pilot import MAX_PREC, run_pilot
 
 # a change above this part of a column's size is no longer proportional to the perturbation
-DIVERGED = Fraction(1, 64)
+_DIVERGED = Fraction(1, 64)
 # Factors of the nudge of each input. Most get smaller, as x, y and the angle must, to stay on the
 # sphere; length and gravity, which set the swing's frequency, change in opposite directions.
 _NUDGE_FACTORS = {"y": Fraction(-1, 2), "azimuth": Fraction(-1, 2)}
@@ -76,7 +76,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
             changes = base.distance(grid).largest()
             relative = [changes[name] / size for name, size in pilot.sizes.items() if size]
             worst = max([worst, *relative])
-        if worst <= DIVERGED:
+        if worst <= _DIVERGED:
             return _positive_log10(worst / nudge)
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(

@@ -159,7 +159,7 @@ class Solution(GridColumns, WithZeros[Table]):
 
     @property
     def swing(self) -> Swing | None:
-        """Frequency and precession as intervals from the section `highest`; None without a swing."""
+        """Frequency and precession as intervals from highest points; None without a swing."""
         return self.swing_or_reason if isinstance(self.swing_or_reason, Swing) else None
 
     @cached_property

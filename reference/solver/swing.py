@@ -39,7 +39,7 @@ FAST = (
     "nobody can tell which way"
 )
 SMALL = "the plane turns by less than it may seem to, since the rest position is off the plumb line"
-LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
+_LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
 _ARC = Fraction(21, 20)  # a little more than π/3
 _DEGREES = Fraction(573, 10)  # a little more than a radian in degrees
 
@@ -156,7 +156,7 @@ def swing_or_reason(
 
     turn = _turn(apses, half_turns, start.ctx, bits)
     if turn is None:
-        return Swing(hz, None, LOST)
+        return Swing(hz, None, _LOST)
     # both ends may be off by the offset; the middle of the turn is half the sum
     if 2 * Fraction(offset_rad) * _DEGREES > abs(turn.low + turn.high):
         return Swing(hz, None, SMALL)

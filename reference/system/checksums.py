@@ -17,8 +17,8 @@ from .documents import regular
 
 SUMS = "SHA256SUMS"
 JOURNALS = "*.jsonl"
-SEAL = "seal"
-MOST_BYTES = 1 << 30  # of a file
+_SEAL = "seal"
+_MOST_BYTES = 1 << 30  # of a file
 _LINE = re.compile(r"([0-9a-f]{64})  ([^/]+)")
 _SEAL_HEX = 16  # hexadecimal digits of the seal of a line
 
@@ -31,14 +31,14 @@ def sums_text(files: Mapping[str, bytes]) -> str:
 
 def sealed_line(record: Mapping[str, Any]) -> dict[str, Any]:
     """Return the record of a line of a journal with its seal."""
-    unsealed = {name: value for name, value in record.items() if name != SEAL}
+    unsealed = {name: value for name, value in record.items() if name != _SEAL}
     text = json.dumps(unsealed, sort_keys=True)
-    return {**record, SEAL: sha256(text.encode()).hexdigest()[:_SEAL_HEX]}
+    return {**record, _SEAL: sha256(text.encode()).hexdigest()[:_SEAL_HEX]}
 
 
 def is_sound(record: Mapping[str, Any]) -> bool:
     """Return whether the record of a line matches its seal; earlier versions wrote none."""
-    return SEAL not in record or sealed_line(record) == record
+    return _SEAL not in record or sealed_line(record) == record
 
 
 def check_sums(folder: Path) -> list[str]:
@@ -48,7 +48,7 @@ def check_sums(folder: Path) -> list[str]:
         FileNotFoundError: there is no SHA256SUMS.
         InputError: it is no regular file.
     """
-    with regular(folder / SUMS, "PATH", MOST_BYTES, SUMS) as stream:
+    with regular(folder / SUMS, "PATH", _MOST_BYTES, SUMS) as stream:
         lines = stream.read().decode(errors="replace").splitlines()
     problems = [] if lines else [f"{SUMS} is empty"]
     matches = [_LINE.fullmatch(line) for line in lines]
@@ -57,7 +57,7 @@ def check_sums(folder: Path) -> list[str]:
     for match in filter(None, matches):
         expected, name = match.groups()
         try:
-            with regular(folder / name, "PATH", MOST_BYTES, "a file") as stream:
+            with regular(folder / name, "PATH", _MOST_BYTES, "a file") as stream:
                 found = sha256(stream.read()).hexdigest()
         except FileNotFoundError:
             problems.append(f"{name} is missing, which {SUMS} lists")
@@ -83,7 +83,7 @@ def verify_report(folder: Path) -> tuple[list[str], list[str]]:
 
 def _check_journal(path: Path) -> tuple[list[str], list[str]]:
     """Return what is wrong with a journal, and what cannot be decided."""
-    with regular(path, "PATH", MOST_BYTES, "a journal") as stream:
+    with regular(path, "PATH", _MOST_BYTES, "a journal") as stream:
         lines = stream.read().splitlines()
     damaged = []
     cut_short = 0
@@ -94,7 +94,7 @@ def _check_journal(path: Path) -> tuple[list[str], list[str]]:
             cut_short += 1
         elif record is None or not is_sound(record):
             damaged.append(number)
-        elif SEAL not in record:
+        elif _SEAL not in record:
             unsealed += 1
     problems = [
         f"{path.name}: line {number} is not as it was written, and not used: delete it"

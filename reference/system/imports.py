@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from ..errors import InputError, NotInstalledError, no_attribute, unknown
 
-PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
+_PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
 
 
 def lazy(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -105,7 +105,7 @@ def needed(module: str, extra: str, field: str, purpose: str, instead: str = "")
         InputError: it is not.
     """
     if missing([module]):
-        raise NotInstalledError(field, purpose, PACKAGES.get(module, module), extra, instead)
+        raise NotInstalledError(field, purpose, _PACKAGES.get(module, module), extra, instead)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:

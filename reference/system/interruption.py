@@ -11,8 +11,8 @@ from types import FrameType
 from typing import Any
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-ENDS = (KeyboardInterrupt, SystemExit)
-AGAIN_S = 0.25  # seconds after which the exception of a signal, which may be lost, is raised again
+_ENDS = (KeyboardInterrupt, SystemExit)
+_AGAIN_S = 0.25  # seconds after which the exception of a signal, which may be lost, is raised again
 
 
 @contextmanager
@@ -66,7 +66,7 @@ def terminable() -> Iterator[list[int]]:
     Signals that already have a handler, or that are ignored (nohup), are left alone; outside the
     main thread all are. The exception of a signal can be lost: Python ignores it in a finaliser,
     and code in C drops one that it meets while it looks for an attribute. Hence an alarm raises it
-    again every `AGAIN_S` until the context is left. While the exception is handled, neither the
+    again every `_AGAIN_S` until the context is left. While the exception is handled, neither the
     alarm nor a further signal has an effect.
 
     Yields:
@@ -81,7 +81,7 @@ def terminable() -> Iterator[list[int]]:
         if _ends(sys.exc_info()[1]):  # unfinished work is being cleared away
             return
         if signal.getsignal(signal.SIGALRM) is stop:
-            signal.setitimer(signal.ITIMER_REAL, AGAIN_S, AGAIN_S)
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN_S, _AGAIN_S)
         first = received[0]
         if first == signal.SIGINT:
             raise KeyboardInterrupt
@@ -105,4 +105,4 @@ def terminable() -> Iterator[list[int]]:
 
 def _ends(error: BaseException | None) -> bool:
     """Return whether an exception ends the run, or was raised while one that does was handled."""
-    return error is not None and (isinstance(error, ENDS) or _ends(error.__context__))
+    return error is not None and (isinstance(error, _ENDS) or _ends(error.__context__))

@@ -16,8 +16,8 @@ from threading import Lock
 from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-HERE = Path(__file__).parent
-PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
+_HERE = Path(__file__).parent
+_PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
 _declaring = Lock()
 _listeners: list[Callable[[str], None]] = []
 _announced: set[str] = set()
@@ -33,7 +33,7 @@ def announced_to(listener: Callable[[str], None]) -> Iterator[None]:
         _listeners.remove(listener)
 
 
-def announce(what: str, seconds: int) -> None:
+def _announce(what: str, seconds: int) -> None:
     """Tell the last listener, once in a process, that `what` is compiled in about `seconds`."""
     if what not in _announced and _listeners:
         _announced.add(what)
@@ -53,8 +53,8 @@ def folder_of(sources: Iterable[Path]) -> Path | None:
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
         return Path(chosen, name)
-    if os.access(HERE, os.W_OK):
-        return HERE / "__pycache__" / name
+    if os.access(_HERE, os.W_OK):
+        return _HERE / "__pycache__" / name
     from .cache import store  # and NumPy, which `foucault --help` does not need
 
     return store("machine_code", name, lambda path: path.mkdir(exist_ok=True))
@@ -110,10 +110,10 @@ def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
     if types in function.signatures:
         return
     if kept_variants(function.__name__, folder) <= len(function.signatures):
-        announce(what, seconds)
+        _announce(what, seconds)
     with ExitStack() as turn:
         if folder is not None:
-            lock = FileLock(Path(folder, f"{function.__name__}.lock"), timeout=PATIENCE_S)
+            lock = FileLock(Path(folder, f"{function.__name__}.lock"), timeout=_PATIENCE_S)
             # after a long wait, or on a disk without locks, it is compiled a second time
             with suppress(OSError):
                 turn.enter_context(lock)

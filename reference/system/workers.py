@@ -34,11 +34,13 @@ _START = (
     "import sys; sys.path[:] = sys.argv[2:]; "
     "from reference.system.workers import serve; serve(int(sys.argv[1]))"
 )
-STDERR = 2
-LEAVE_S = 0.5  # seconds in which a worker whose parent has ended can end what it has started itself
-GRACE_S = 10.0  # seconds in which a worker has to end once its parent has left it
-TRIES = 2  # of what a pool does: the first process may have been killed from outside
-CHECK_S = 5.0  # between two looks whether anything can still come
+_STDERR = 2
+_LEAVE_S = (
+    0.5  # seconds in which a worker whose parent has ended can end what it has started itself
+)
+_GRACE_S = 10.0  # seconds in which a worker has to end once its parent has left it
+_TRIES = 2  # of what a pool does: the first process may have been killed from outside
+_CHECK_S = 5.0  # between two looks whether anything can still come
 
 
 def usable_cores() -> int:
@@ -68,7 +70,7 @@ class Worker:
             self._process = subprocess.Popen(
                 [sys.executable, "-c", _START, str(line), *sys.path],
                 stdin=subprocess.DEVNULL,
-                stdout=STDERR,  # what a library prints there may not mix with the program's results
+                stdout=_STDERR,  # what a library prints must not mix with the results
                 pass_fds=[line],
                 env={**os.environ, **(env or {})},
             )
@@ -109,7 +111,7 @@ class Worker:
     def stop(self) -> None:
         """Close the line, which ends the process if it is still at work, and wait for its end.
 
-        After `GRACE_S` it is killed.
+        After `_GRACE_S` it is killed.
         """
         if self._connection.closed:
             return
@@ -120,7 +122,7 @@ class Worker:
             # unlike closing, this wakes a thread that waits for a result
             line.shutdown(socket.SHUT_RDWR)
         try:
-            self._process.wait(GRACE_S)
+            self._process.wait(_GRACE_S)
         except subprocess.TimeoutExpired:
             self.kill()
             self._process.wait()
@@ -175,7 +177,7 @@ class Pool:
     def _call(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
         thread = threading.get_ident()
         reason = ""
-        for _ in range(TRIES):
+        for _ in range(_TRIES):
             worker = self._processes.get(thread)
             if worker is None or worker.ended:  # one that was killed while idle costs no try
                 worker = Worker(_answer)
@@ -225,7 +227,7 @@ def as_done(
         if not begun:
             return
         try:
-            yield done.get(timeout=CHECK_S)
+            yield done.get(timeout=_CHECK_S)
             begun -= 1
         except queue.Empty:
             if check is not None:
@@ -318,5 +320,5 @@ def _receive(
             received.put(connection.recv())
     ended.set()
     signal.pthread_kill(cast("int", threading.main_thread().ident), signal.SIGTERM)
-    time.sleep(LEAVE_S)
+    time.sleep(_LEAVE_S)
     os._exit(0)

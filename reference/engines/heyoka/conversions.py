@@ -22,8 +22,8 @@ from .system import keep_on_disk
 # longer the more bits they have. So a run of fewer radians than these is compiled quickly.
 # (Compiling `lagrangian`, which is much longer, takes 3 to 10 s, and a step is 30 to 100 µs
 # faster.) Levels above 1 give no faster step.
-SHORT_RUN = 20_000  # in hardware numbers
-SHORT_WORK = 4e9  # beyond them: times the cube of the bits
+_SHORT_RUN = 20_000  # in hardware numbers
+_SHORT_WORK = 4e9  # beyond them: times the cube of the bits
 KEPT = 24  # integrators, of 1 to 5 MB each, that are kept for further runs of their equations
 # type of numbers, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {
@@ -88,7 +88,7 @@ class Numbers:
             options: those of `_compiled`. `events` are expressions, each with the function that is
                 called where it is zero; integrators that share the code share these functions.
         """
-        short = SHORT_RUN if self.number.hardware else SHORT_WORK / self.number.prec**3
+        short = _SHORT_RUN if self.number.hardware else _SHORT_WORK / self.number.prec**3
         options["opt_level"] = int(radians >= short)
         integrator = copy(_compiled(self.number, tuple(system), **options))
         integrator.state[: len(state)] = np.array(state, self.dtype)

@@ -31,11 +31,11 @@ from ..row_zeros import (
 from .conversions import Numbers
 from .system import as_pairs, rates
 
-PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
-STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
+_PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
+_STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
 # at least, between which a rate may dip to zero; a step of a tiny swing lasts half of one
-SAMPLES_PER_SWING = 12
-LEAST_STEPS = 10_000  # that are granted to any row
+_SAMPLES_PER_SWING = 12
+_LEAST_STEPS = 10_000  # that are granted to any row
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Integrator:
     """
 
     def __init__(self, compilation: _Compilation) -> None:
-        names = PARAMETERS if compilation.drag else PARAMETERS[:-1]
+        names = _PARAMETERS if compilation.drag else _PARAMETERS[:-1]
         k = Constants.of({name: hy.par[i] for i, name in enumerate(names)})
         state = hy.make_vars(*MODEL.variables)
         n, v = MODEL.cartesian(state, k, hy)
@@ -238,7 +238,7 @@ def _solve(outcomes: Outcomes, row: _Row) -> RowZeros:
     release = row.release
     with _lent(row.compilation) as integrator:
         integrator.begin(row)
-        max_steps = int(LEAST_STEPS + row.times_swings(STEPS_PER_SWING))
+        max_steps = int(_LEAST_STEPS + row.times_swings(_STEPS_PER_SWING))
         end = integrator.to_end(release, max_steps)
         transits = release.after(integrator.zeros(TRANSIT), TRANSIT)
         heights = release.after(integrator.zeros(HEIGHT), HEIGHT)
@@ -250,7 +250,7 @@ def _solve(outcomes: Outcomes, row: _Row) -> RowZeros:
     outcomes.state[row.number] = [*last.n, *last.v]
     outcomes.steps[row.number] = end.steps
     if row.compilation.sought:
-        count = int(max(end.steps, row.times_swings(SAMPLES_PER_SWING)))
+        count = int(max(end.steps, row.times_swings(_SAMPLES_PER_SWING)))
         samples = np.linspace(0, release.end, count + 1)
         _describe(outcomes, row, samples, transits, heights)
     return transits

@@ -29,12 +29,12 @@ from .conversions import Numbers
 from .events import march
 from .stepper import Stepper, Zero
 
-SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits
-DECAYS = 5.0  # with a fast drag γ the step size is at most DECAYS MOST_TURN/γ
+_SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits
+_DECAYS = 5.0  # with a fast drag γ the step size is at most _DECAYS MOST_TURN/γ
 # mantissa of a step size: equal steps share their scaled constants, and times stay short
 STEP_BITS = 6
 # of the span: the longest step of a run that takes other steps, if one would do
-OTHER_STEPS = Fraction(5, 8)
+_OTHER_STEPS = Fraction(5, 8)
 UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
 # results carry this many bits below the run's epsilon, for swings much smaller than the cord
 SMALL_SWING_BITS = 80
@@ -77,8 +77,8 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
 def _longest_step(plan: Plan, start: Start) -> Fraction:
     """Return the longest step in s that the series of a proof may have."""
     swing_rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)))
-    rate = max(swing_rate, float(start.k.drag) / DECAYS)
-    turn = MOST_TURN * float(OTHER_STEPS) if plan.other_steps else MOST_TURN
+    rate = max(swing_rate, float(start.k.drag) / _DECAYS)
+    turn = MOST_TURN * float(_OTHER_STEPS) if plan.other_steps else MOST_TURN
     return _few_bits(turn / rate) if rate > 0 else max(plan.times[-1], Fraction(1))
 
 
@@ -100,7 +100,7 @@ def _next_step(h: Fraction, series: Any, bits: int) -> Fraction:
         largest = max(abs(int(c)).bit_length() for c in series[:, k])
         log2_radii.append(-(largest - bits) / k)
     power = min(log2_radii) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
-    return _few_bits(float(h) * 2**power * SHRINK)
+    return _few_bits(float(h) * 2**power * _SHRINK)
 
 
 def _few_bits(h: float) -> Fraction:
@@ -121,7 +121,7 @@ class EarlyZero(NamedTuple):
     direction: int
 
 
-def early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
+def _early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
     """Return the zero of xdot near a release whose vx is less than a run's rounding.
 
     None if vx is zero, or if it is more.
@@ -147,7 +147,7 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     """
     start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     watching = plan.transits and not xdot_vanishes(start)
-    longest = plan.times[-1] * OTHER_STEPS if plan.other_steps else None
+    longest = plan.times[-1] * _OTHER_STEPS if plan.other_steps else None
     formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
     stepper = Stepper(
         formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest
@@ -156,7 +156,7 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     zeros: list[Zero] = []
     started = time.process_time()
     if watching:
-        early = early_zero(start, plan.number.prec)
+        early = _early_zero(start, plan.number.prec)
         release = stepper.state
         multiplicity = zero_at_release(start) or int(early is not None)
         states, zeros = march(stepper, times, multiplicity, report)

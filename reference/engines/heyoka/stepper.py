@@ -20,7 +20,7 @@ from ..plan import Pace, Report
 from .model import RoundedModel
 from .system import system_of
 
-STEPS_PER_REPORT = 64  # steps between two reports of progress
+_STEPS_PER_REPORT = 64  # steps between two reports of progress
 # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
 TIME_BITS = 64
 
@@ -197,7 +197,7 @@ class Stepper:
         def progress(integrator: Any) -> bool:
             nonlocal count
             count += 1
-            if count % STEPS_PER_REPORT == 0:
+            if count % _STEPS_PER_REPORT == 0:
                 t = float(integrator.time)
                 if pace is not None:
                     pace(count, t)

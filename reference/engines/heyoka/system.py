@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
 FOLDER = "foucault"
-MOST_BYTES = 1 << 25
-EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
+_MOST_BYTES = 1 << 25
+_EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
 
 
 def keep_on_disk(number: NumberType) -> None:
@@ -48,13 +48,13 @@ def _has_place() -> bool:
         return False
     try:
         hy.llvm_state.set_diskcache_path(place / FOLDER)
-        hy.llvm_state.set_diskcache_limit(MOST_BYTES)
+        hy.llvm_state.set_diskcache_limit(_MOST_BYTES)
     except RuntimeError:  # it cannot be written, or is damaged
         return False
     return True
 
 
-NAMES = {
+_NAMES = {
     "turn_1": "Omega_y", "turn_2": "Omega_z", "pull_1": "c_y", "pull_2": "c_z", "centrifugal_0": "Omega2",
     "centrifugal_1": "Omega_z2", "centrifugal_2": "minus_Omega_yz", "centrifugal_3": "Omega_y2", "drag": "gamma",
     "length": "l", "gravity": "g_l", "axis_distance": "R_l", "rate": "Omega", "sin": "sin_lat", "cos": "cos_lat",
@@ -117,7 +117,7 @@ def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
 
     Exact zeros and constant variables are left out.
     """
-    named = Constants.of({name: hy.make_vars(NAMES[name]) for name in constants.entries()})
+    named = Constants.of({name: hy.make_vars(_NAMES[name]) for name in constants.entries()})
     constant = constant_variables(formulation, constants)
     equations, _ = system_of(formulation, named)
     lines = []
@@ -140,7 +140,7 @@ def lines_and_left_out(scene: Scene, formulation: str, number: str) -> tuple[lis
     inputs = scene.exact
     run = scene.run
     system = FORMULATIONS[formulation]
-    start = Start.of(inputs, EQUATIONS_PREC)
+    start = Start.of(inputs, _EQUATIONS_PREC)
     turns = inputs.rotation_rate != 0
     at_pole = abs(inputs.latitude) == 90
     at_equator = inputs.latitude == 0
