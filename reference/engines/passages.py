@@ -140,7 +140,8 @@ class _SectionSearch:
 
     def _passage(self, step: TaylorStep, rows: list[list[int]], s: int, direction: int) -> _Passage:
         """Return the passage at a place of a step, an integer over 2**bits."""
-        h, up = step.h, self._bits - step.bits
+        h = step.h
+        up = self._bits - step.bits
         values = [_horner(row, s, self._bits) for row in rows]
         velocity = [_over(_shifted(rate, up), h) for _, rate in values]
         missing = [int(_over(_truncation(row, s / (1 << self._bits)), h)) for row in rows]
@@ -357,10 +358,10 @@ class _LocalAxes:
         x, second, third, *_ = step.coefficients
         if step.columns[:3] == LOCAL:
             return [x, second, third]
-        sin, cos = self._sin, self._cos
+        sin, cos, unit = self._sin, self._cos, self._unit
         pairs = list(zip(second, third, strict=True))
-        y = [(m * sin + w * cos) // self._unit for m, w in pairs]
-        z = [(w * sin - m * cos) // self._unit for m, w in pairs]
+        y = [(m * sin + w * cos) // unit for m, w in pairs]
+        z = [(w * sin - m * cos) // unit for m, w in pairs]
         return [x, y, z]
 
 
@@ -369,7 +370,9 @@ def _zeros(plan: Plan, search: _SectionSearch) -> Zeros[Table]:
     bits = plan.number.prec + SPARE_BITS
     length = plan.inputs.length
     end = int(plan.times[-1] * (1 << bits))
-    values, errors, directions = [], [], []
+    values = []
+    errors = []
+    directions = []
     for passage in search.passages:
         if passage.time > end:
             continue

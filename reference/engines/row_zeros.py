@@ -218,7 +218,8 @@ class Samples:
         The cubic through the values and slopes there says how low the minimum between them is, but
         for its error: that of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
-        release, zeros = found.release, found.zeros
+        release = found.release
+        zeros = found.zeros
         values, slopes = self.motion.form(found.form)
         _, slopes_at_zeros = found.at.form(found.form)
         tolerance = np.abs(values).max()  # A
@@ -279,7 +280,8 @@ def describe_highest_points(
     step of Newton's method goes from the ones to the others; of u' = A sin 2ωt it leaves a third of
     the cube of what 2ωt was.
     """
-    release, at = found.release, found.at
+    release = found.release
+    at = found.at
     is_high = found.zeros.directions < 0
     x, p, u = (part[is_high] for part in at.n)
     across = np.hypot(x, p)

@@ -192,6 +192,7 @@ def _motion_at(run: Run, word: str) -> _Motion:
     In double the height of a small swing would be nothing but rounding.
     """
     table = run.zeros[word].table.only(("t", *STATE))
+    # many names, as each step is one quantity of the motion
     bits = table.bits + GUARD_BITS
     start = Start.of(run.plan.inputs, bits)
     form = form_of(word, start)

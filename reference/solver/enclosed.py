@@ -71,7 +71,8 @@ def solve_enclosed(request: SolveRequest) -> Solution:
     need_flint()
     from .. import enclosure
 
-    scene, options = request.scene, request.proof
+    scene = request.scene
+    options = request.proof
     enclosure.check_gates(scene.exact, scene.run.sections or ())
     pilot = run_pilot(scene.exact, request.times)
     task = ProofTask(scene, request.engine, pilot, options.function)
@@ -162,7 +163,8 @@ def _confirming_plan(task: ProofTask, confirm: Confirmation, prec: int | None = 
     Raises:
         UnreachableError: the run, or the sampled tenth of it, is out of reach.
     """
-    scene, pilot = task.scene, task.pilot
+    scene = task.scene
+    pilot = task.pilot
     bits = prec or first_prec(scene, pilot, AUTO)
     steps = pilot.steps // SAMPLED if confirm == "sampled" else pilot.steps
     check_reach(steps, bits, scene.run.digits, _WITHOUT)

@@ -23,10 +23,8 @@ from .pilot import ESTIMATE_FACTOR, Pilot, second_order_bits
 from .proving import EVALUATION_BITS
 from .solution import CrossCheck, Solution
 
-_USUAL_DIGITS, _FINER_DIGITS = (
-    7,
-    27,
-)  # of the run with event detection, at first and on a second try
+_USUAL_DIGITS = 7  # of the run with event detection
+_FINER_DIGITS = 27  # of a second one, if the first fails
 _MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
 SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
@@ -46,7 +44,8 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     """
     if not solution.zeros:
         return solution
-    inputs, times, words = solution.scene.exact, solution.times, tuple(solution.zeros)
+    inputs = solution.scene.exact
+    words = tuple(solution.zeros)
     contradiction: IntegrationError | None = None
     for prec in _precisions(solution, pilot):
         if prec > _MOST_CHECK_PREC:
@@ -55,7 +54,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             )
             break
         try:
-            event_run = run(Plan(inputs, "momentum", cheapest_type(prec), times, words))
+            event_run = run(Plan(inputs, "momentum", cheapest_type(prec), solution.times, words))
         except (UnreachableError, OverflowError) as error:
             reason = error
             break

@@ -36,7 +36,7 @@ from .solution import (
 )
 
 # bits by which a swing may die down: beyond them balls are made smaller step by step
-_MOST_DIED = 1024
+MOST_DIED = 1024
 # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 ROUNDING_BITS = 20
 _ROUNDING_TRIES = 8  # radii that are tried before giving up
@@ -177,8 +177,9 @@ def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
     ones have smaller balls.
     """
     decimals = pilot.decimals(scene.run.digits)
-    middle = [sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)]
-    unit = Fraction(1, 10 ** max(middle))
+    _, position, _ = sorted(decimals[name] for name in POSITION)
+    _, velocity, _ = sorted(decimals[name] for name in VELOCITY)
+    unit = Fraction(1, 10 ** max(position, velocity))
     return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
 
 
@@ -192,7 +193,7 @@ def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
     stiffness = float(inputs.gravity / inputs.length)
     rate = half_drag - math.sqrt(max(half_drag**2 - stiffness, 0.0))
     bits = rate * float(inputs.t_end) * log2(math.e)
-    return radius / (1 << math.ceil(min(bits, _MOST_DIED)))
+    return radius / (1 << math.ceil(min(bits, MOST_DIED)))
 
 
 def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:

@@ -90,7 +90,8 @@ def solve(
 
 def _solved(request: SolveRequest) -> Solution:
     """Solve a scene at its level."""
-    scene, level = request.scene, request.scene.run.level
+    scene = request.scene
+    level = scene.run.level
     if level == "enclosed":
         # a proof is not imported unless it is asked for
         from .enclosed import solve_enclosed
@@ -204,12 +205,12 @@ def _agreed(request: SolveRequest, pilot: Pilot) -> Solution:
 
 def _two_runs(request: SolveRequest, pilot: Pilot, prec: int) -> tuple[Run, Run]:
     """Return the published run and its witness, of which the coarser has `prec` bits."""
-    scene, times, engine = request.scene, request.times, request.engine
-    fine = published_plan(scene, times, pilot, prec, engine)
+    scene = request.scene
+    fine = published_plan(scene, request.times, pilot, prec, request.engine)
     if scene.run.level == "confirmed":
-        coarse = confirming_plan(scene, times, pilot, prec)
+        coarse = confirming_plan(scene, request.times, pilot, prec)
     else:
-        coarse = _witness(fine, prec, engine, pilot.steps)
+        coarse = _witness(fine, prec, request.engine, pilot.steps)
     return run_both(fine, coarse, pilot.steps, request.report)
 
 

@@ -147,8 +147,7 @@ def swing_or_reason(
     swings = Fraction(len(points) - 1, 2)
     spans = (last_low - first_high, last_high - first_low)
     hz = Ends(swings / spans[1], swings / spans[0])
-    longest = max(later[0][1] - earlier[0][0] for earlier, later in pairwise(points))
-    if turns_too_far(start, longest):
+    if turns_too_far(start, _longest_gap(points)):
         return Swing(hz, None, FAST)
     half_turns = _half_turns(apses)
     if any(count % 2 == 0 for count in half_turns):
@@ -162,6 +161,11 @@ def swing_or_reason(
         return Swing(hz, None, SMALL)
     rates = [angle / span * HOUR for angle in turn for span in spans]
     return Swing(hz, Ends(min(rates), max(rates)))
+
+
+def _longest_gap(points: Sequence[_Point]) -> Fraction:
+    """Return the longest time between neighbours that their intervals allow, in s."""
+    return max(later[0][1] - earlier[0][0] for earlier, later in pairwise(points))
 
 
 def left_out(reason: str, still: bool) -> dict[str, str]:
