@@ -141,7 +141,7 @@ PUBLIC = {
     "reference.dataset.sheets": "by_field",
     "reference.engines.heyoka.conversions": "Numbers",
     "reference.engines.heyoka.model": "RoundedModel",
-    "reference.engines.heyoka.propagator": "Propagator compiled",
+    "reference.engines.heyoka.propagator": "AutonomousSystem Propagator compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "MAX_STEPS Variants",
     "reference.errors": "BeyondDoublesError Stopped checked_path counted did_you_mean in_words usable",

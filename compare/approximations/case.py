@@ -140,7 +140,7 @@ def integrated(
     Raises:
         IntegrationError: the motion comes to a singularity, or needs more than `MAX_STEPS` steps.
     """
-    from reference.engines.heyoka.propagator import Propagator
+    from reference.engines.heyoka.propagator import AutonomousSystem, Propagator
     from reference.engines.trajectory import MAX_STEPS
 
     used = case.k.entries("turn", "pull", "centrifugal", "drag")
@@ -148,9 +148,8 @@ def integrated(
     def rates(state: State, functions: Functions, parameters: Sequence[Any] = ()) -> State:
         return derivatives(state, Constants.of(dict(zip(used, parameters, strict=True))), functions)
 
-    propagator = Propagator(
-        variables, rates, DOUBLE, parameters=len(used), radians=case.fastest_rate * times[-1]
-    )
+    system = AutonomousSystem(variables, rates, len(used))
+    propagator = Propagator(system, DOUBLE, radians=case.fastest_rate * times[-1])
     begin, constants = map(propagator.numbers.all_of, (start, [*used.values()]))
     return np.asarray(propagator.from_zero(begin, times, constants, MAX_STEPS))
 

@@ -16,8 +16,9 @@ from ..numbers.columns import SECTION, STATE, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..numbers.zeros import XDOT, Zeros
 from ..scenes.scene import parse_scene
-from ..solver.ranges import Ends, Intervals, Ranges
+from ..solver.ranges import Intervals, Ranges
 from ..solver.solution import exact_decimals
+from ..solver.swing import Ends
 from ..solver.uncertain import prove_ranges
 from ..system.documents import json_document
 from .files import LINE_ENDS

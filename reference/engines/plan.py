@@ -1,7 +1,7 @@
-"""An integrator: its input, `Plan`, its output, `Run`, tables of states and transits, and its interface, `Engine`.
+"""An integrator: its input, `Plan`, its output, `Run`, and its interface, `Engine`.
 
-Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py` has
-what that does, as `run(plan, report, pace)` and `taylor_steps(plan, coefficient_bits)`.
+Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py`
+has the functions `run(plan, report, pace)` and `taylor_steps(plan, coefficient_bits)`.
 """
 
 from __future__ import annotations
@@ -48,7 +48,8 @@ class Plan:
         times: times of output in s, increasing, from 0.
         zeros: words of the zeros that are to be found: `XDOT` for transits, and those of sections.
         engine: the name of an engine, as `registry.engines` has them.
-        other_steps: whether to take other steps than the engine would: for a run that checks one of the same engine.
+        other_steps: whether to take other steps than the engine would: for a run that checks one of
+            the same engine.
     """
 
     inputs: Inputs
@@ -81,7 +82,8 @@ class Run:
         steps: number of steps.
         compile_s: CPU seconds of compiling.
         cpu_s: CPU seconds of the run without compiling.
-        zeros: by word, t and at least the columns that are printed; without xdot where that is identically zero.
+        zeros: by word, t and at least the columns that are printed; without xdot where that is
+            identically zero.
     """
 
     plan: Plan
@@ -104,7 +106,10 @@ class Run:
 
     @cached_property
     def tension(self) -> float:
-        """Least tension of the cord over l on the grid, in 1/s², computed in double; negative where a rod is pushed."""
+        """Least tension of the cord over l on the grid, in 1/s²; negative where a rod is pushed.
+
+        It is computed in double.
+        """
         k = Start.of(self.plan.inputs, DOUBLE_BITS + GUARD_BITS).k.converted(float)
         x, y, z, vx, vy, vz = (self.grid[name] / k.length for name in STATE)
         return float(np.min(tension((x, y, z), (vx, vy, vz), k)))
@@ -114,10 +119,13 @@ class Engine(OptionalEngine, ABC):
     """An integrator of the model that finds the zeros of xdot, in number types of its own.
 
     Attributes:
-        formulation: the formulation that suits it best; not `space` or `spin`, in which heyoka confirms other runs.
+        formulation: the formulation that suits it best; not `space` or `spin`, in which heyoka
+            confirms other runs.
         bits: lowest and highest precision that it is chosen for.
-        own_process: whether a proof has it compute in a child process; else it costs too little for that.
-        start_s: CPU seconds until its first step: of importing what it requires and of loading what it has compiled.
+        own_process: whether a proof has it compute in a child process; else it costs too little for
+            that.
+        start_s: CPU seconds until its first step: of importing what it requires and of loading what
+            it has compiled.
         proof_step_s: CPU seconds that a proof takes for as much of its run as is a step in double.
     """
 
@@ -134,13 +142,13 @@ class Engine(OptionalEngine, ABC):
         """Return the cheapest run with at least `prec` bits."""
 
     def witness(self, published: Plan, prec: int) -> Plan:
-        """Return a run of at most `prec` bits, fewer than those of the published run, and in other steps.
+        """Return a run in other steps and of at most `prec` bits, fewer than the published run has.
 
-        No number in it may be the published run's by construction, so that their difference tells an error.
+        No number in it may be the published run's by construction, so that their difference tells
+        an error.
         """
-        return replace(
-            self.plan(published.inputs, prec, published.times, published.zeros), other_steps=True
-        )
+        plan = self.plan(published.inputs, prec, published.times, published.zeros)
+        return replace(plan, other_steps=True)
 
     @property
     def _code(self) -> Any:
@@ -165,7 +173,7 @@ class Engine(OptionalEngine, ABC):
     def taylor_steps(
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
     ) -> Generator[TaylorStep, None, Run]:
-        """Yield the Taylor steps of a run from t = 0 to one step beyond the last time, in order; return the run.
+        """Yield the Taylor steps of a run, to one step beyond the last time; return the run.
 
         The run's plan names this engine.
 
@@ -176,8 +184,8 @@ class Engine(OptionalEngine, ABC):
             coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits.
         """
         plan = self.plan(inputs, prec, times)
-        # not in hardware: a proof's bytes are the same on every machine
-        plan = replace(plan, number=real(plan.number.prec)) if plan.number.hardware else plan
+        if plan.number.hardware:  # a proof's bytes have to be the same on every machine
+            plan = replace(plan, number=real(plan.number.prec))
         return self.expanded(plan, coefficient_bits)
 
     def expanded(self, plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
@@ -187,4 +195,4 @@ class Engine(OptionalEngine, ABC):
 
     @abstractmethod
     def expected_s(self, steps: int, prec: int) -> float:
-        """Return about how many CPU seconds a run takes that would be `steps` steps in double."""
+        """Return an estimate of the CPU seconds of a run that would be `steps` steps in double."""

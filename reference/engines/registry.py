@@ -1,4 +1,4 @@
-"""The engines by name, which of them a run takes, and the run itself, here or, if it is worth it, in the background."""
+"""The engines by name, the choice of one for a run, and runs, here or in the background."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from .plan import Engine, Pace, Plan, Report, Run
 
 SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
-REPORT_S = 0.2  # seconds between two reports of progress
+_REPORT_S = 0.2  # seconds between two reports of progress
 WORTH_A_PROCESS = 1.0  # estimated CPU seconds from which a process pays for its start
-COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
+_COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
 
 
 @cache
@@ -34,7 +34,7 @@ def engines() -> dict[str, Engine]:
 
 @cache
 def batches() -> dict[str, Batch]:
-    """Return every engine that solves many rows side by side, by its name, which is that of its folder."""
+    """Return every engine that solves many rows, by its name, which is that of its folder."""
     return {name: import_module(f".{name}.batch", __package__).BATCH for name in batch_names()}
 
 
@@ -53,37 +53,44 @@ def checked(name: str | None) -> str:
 
 
 def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS, *, proof: bool = False) -> Engine:
-    """Return the engine to compute with at `prec` bits, in a run that would be `steps` steps in double.
+    """Return the engine to compute with at `prec` bits, in a run of `steps` steps in double.
 
-    With `proof` what a proof of the run costs counts as well. The engine called `name` is taken if it is
-    installed and can compute at this precision. Otherwise, or if `name` is "auto", it is the one with the least
-    expected cost among the installed engines that can.
+    The engine called `name` is taken if it is installed and can compute at this precision.
+    Otherwise, or if `name` is "auto", it is the one with the least expected cost among the
+    installed engines that can. With `proof` the cost of a proof of the run is added.
     """
 
-    def cost_s(engine: Engine) -> float:
-        return engine.start_s + engine.expected_s(steps, prec) + proof * steps * engine.proof_step_s
+    def preference(engine: Engine) -> tuple[bool, float]:
+        cost_s = engine.start_s + engine.expected_s(steps, prec)
+        if proof:
+            cost_s += steps * engine.proof_step_s
+        return name not in (engine.name, AUTO), cost_s
 
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
-    return min(serving, key=lambda engine: (name not in (engine.name, AUTO), cost_s(engine)))
+    return min(serving, key=preference)
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
-    """Integrate a plan with its engine; for arguments and errors see `Engine.run`. Sections take a second pass."""
+    """Integrate a plan with its engine; sections take a second pass.
+
+    For arguments and errors see `Engine.run`.
+    """
     engine = engines()[plan.engine]
     done = engine.run(plan, report, pace)
     if not plan.sections:
         return done
     from .passages import passages
 
-    begun, steps = process_time(), engine.expanded(plan, plan.number.prec + SERIES_BITS)
-    found = passages(plan, steps)
-    return replace(done, zeros={**done.zeros, **found}, cpu_s=done.cpu_s + process_time() - begun)
+    begun = process_time()
+    steps = engine.expanded(plan, plan.number.prec + SERIES_BITS)
+    zeros = {**done.zeros, **passages(plan, steps)}
+    return replace(done, zeros=zeros, cpu_s=done.cpu_s + process_time() - begun)
 
 
 def run_both(
     first: Plan, second: Plan, steps: int, report: Report | None = None
 ) -> tuple[Run, Run]:
-    """Do two runs, at the same time if the machine has two cores and the work is worth another process.
+    """Do two runs, at the same time if the machine has two cores and a second process pays.
 
     Args:
         first: runs in this process.
@@ -91,12 +98,15 @@ def run_both(
         steps: about how many steps either takes.
         report: called with the simulated time, the mean of both.
     """
-    first_s, second_s = (expected_s(plan, steps) for plan in (first, second))
-    worth = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
+    first_s = expected_s(first, steps)
+    second_s = expected_s(second, steps)
+    pays = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= _COMPILATION_S
     end = float(first.times[-1])
-    with in_background(worth, send_run, second) as other:
-        first_run = run(first, report and (lambda t: report((t + other.reached) / 2)))
-        return first_run, other.result(report and (lambda t: report((end + t) / 2)))
+    with in_background(pays, send_run, second) as background:
+        first_report = report and (lambda t: report((t + background.reached) / 2))
+        first_run = run(first, first_report)
+        second_report = report and (lambda t: report((end + t) / 2))
+        return first_run, background.result(second_report)
 
 
 def expected_s(plan: Plan, steps: int) -> float:
@@ -115,7 +125,7 @@ def reports(emit: Emit) -> Report:
 
     def report(t: float) -> None:
         nonlocal last_report
-        if time.monotonic() - last_report > REPORT_S:
+        if time.monotonic() - last_report > _REPORT_S:
             last_report = time.monotonic()
             emit(float(t))
 
@@ -123,13 +133,13 @@ def reports(emit: Emit) -> Report:
 
 
 @contextmanager
-def in_background(worth: bool, work: Callable[..., None], *arguments: Any) -> Iterator[Background]:
-    """Do work in the background, where that is worth a process and the machine has two cores; else when it is wanted.
+def in_background(pays: bool, work: Callable[..., None], *arguments: Any) -> Iterator[Background]:
+    """Do work in the background if that pays and there are two cores, else when it is wanted.
 
-    `work(emit, *arguments)` stands at the top level of a module; it sends simulated times, as `reports` does, and then
-    its result.
+    `work(emit, *arguments)` is defined at the top level of a module; it sends simulated times, as
+    `reports` does, and then its result.
     """
-    worker = Worker(work, *arguments) if worth and usable_cores() >= 2 else None
+    worker = Worker(work, *arguments) if pays and usable_cores() >= 2 else None
     try:
         yield Background(worker, work, *arguments)
     finally:
@@ -166,7 +176,7 @@ class Background:
         if self._here is not None:
             self._report = report
             self._here()
-        while not wait([self._result], REPORT_S).done:
+        while not wait([self._result], _REPORT_S).done:
             if report is not None:
                 report(self.reached)
         return self._result.result()
@@ -188,5 +198,10 @@ class Background:
 
 
 def slowest(report: Report, background: list[Background]) -> Report:
-    """Return a report that tells the time which all work has reached: the caller's, and that in the background."""
-    return lambda t: report(min([t, *(work.reached for work in background if work.at_work)]))
+    """Return a report of the time that the caller and all work in the background have reached."""
+
+    def report_slowest(t: float) -> None:
+        reached = [work.reached for work in background if work.at_work]
+        report(min([t, *reached]))
+
+    return report_slowest

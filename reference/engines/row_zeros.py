@@ -1,14 +1,14 @@
-"""The zeros found in a row, guarded: what they say of its transits, or passages of a section, and highest points.
+"""Transits, passages of a section and highest points of a row, from the zeros found, with guards.
 
-A root finder such as heyoka's may lose a zero. A single one shows in the directions, which have to alternate from the
-release to the end. Of two close together the rate itself tells, at samples of the run: between two of them it may dip
-through zero.
+A root finder such as heyoka's may lose a zero. A single one that is lost shows in the directions,
+which have to alternate from the release to the end. Two close together show in samples of the form:
+between two of them it may dip through zero.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -21,12 +21,12 @@ from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAx
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
-RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
-FINER = 16  # parts of the time between two samples, where a form may dip to zero there
+_RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
+_FINER = 16  # parts of the time between two samples, where a form may dip to zero there
 # of a swing's period after the release: there heyoka may report the zero at the release
-QUIET = 1e-4
-# of a radian of the swing, as a zero of the height's rate was found: else its series tells little
-MOST_LATE = 1e-3
+_QUIET = 1e-4
+# of a radian of the swing: how far Newton's step may move a zero of the height's rate
+_MOST_LATE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -58,28 +58,33 @@ class RowMotion:
 
     @classmethod
     def of(cls, state: Any, k: Constants) -> Self:
-        """Return the motion in a state; of a small swing the rates of the height keep their digits."""
-        n, momentum = (state[0], state[1], state[2]), (state[3], state[4], state[5])
+        """Return the motion in a state; the height's rates of a small swing keep their digits."""
+        n = (state[0], state[1], state[2])
+        momentum = (state[3], state[4], state[5])
         rates = MODEL.derivatives((*n, *momentum), k, np)
-        v, torque = (rates[0], rates[1], rates[2]), (rates[3], rates[4], rates[5])
-        return cls(n, v, add(cross(torque, n), cross(subtract(momentum, k.turn), v)))
+        v = (rates[0], rates[1], rates[2])
+        torque = (rates[3], rates[4], rates[5])
+        a = add(cross(torque, n), cross(subtract(momentum, k.turn), v))
+        return cls(n, v, a)
 
     def form(self, form: Any) -> tuple[Any, Any]:
         """Return a form, as `PlumbAxes.forms` gives it, and its rate."""
-        a, b, n = form[:3], form[3:6], (self.n[0], self.n[1], self.n[2] + 1)
-        return minus(plus(dot(a, n), dot(b, self.v)), form[6]), plus(dot(a, self.v), dot(b, self.a))
+        a, b, d = form[:3], form[3:6], form[6]
+        n = (self.n[0], self.n[1], self.n[2] + 1)
+        value = minus(plus(dot(a, n), dot(b, self.v)), d)
+        rate = plus(dot(a, self.v), dot(b, self.a))
+        return value, rate
 
     def earlier(self, by: Array) -> Self:
         """Return the motion a little earlier than at its times, n'' as it is."""
-        return type(self)(
-            subtract(self.n, scale(by, self.v)), subtract(self.v, scale(by, self.a)), self.a
-        )
+        n = subtract(self.n, scale(by, self.v))
+        v = subtract(self.v, scale(by, self.a))
+        return type(self)(n, v, self.a)
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return the motion at some of its times."""
-        return type(self)(
-            *(tuple(part[chosen] for part in vector) for vector in (self.n, self.v, self.a))
-        )
+        vectors = [tuple(part[chosen] for part in vector) for vector in (self.n, self.v, self.a)]
+        return type(self)(*vectors)
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,8 @@ class RowRelease:
         length: of the cord, in m.
         end: of the span, in s.
         rate: of a small swing, in rad/s.
-        quiet: seconds after the release in which a zero is that of the release, if it has one by the exact inputs.
+        quiet: seconds after the release in which a zero is that of the release, if it has one by
+            the exact inputs.
         still: whether xdot is zero at all times by the exact inputs.
         forms: whose zeros are sought, of each kind.
         zero: of each kind of form, whether it is exactly zero at the release.
@@ -110,38 +116,75 @@ class RowRelease:
 
     @classmethod
     def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: RowMotion, form: Any) -> Self:
-        """Return what is known of a row whose motion at the release is given, and in these axes the form."""
-        rate, multiplicity, rising = (
-            np.sqrt(axes.size.high[row]),
-            rows.zeros_at_release[row],
-            rows.rising[row],
-        )
-        turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
+        """Build from rows and their plumb axes.
+
+        Args:
+            rows: the rows.
+            axes: their axes.
+            row: the number of this one.
+            motion: at its release.
+            form: whose zeros are the transits, in these axes.
+        """
+        rate = np.sqrt(axes.size.high[row])
+        multiplicity = rows.zeros_at_release[row]
+        rising = rows.rising[row]
         x, p, u = motion.n
-        east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0], -x, -turn[2] * p)[
-            multiplicity
-        ]
+        turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
+        # by the multiplicity of the zero: a number with the sign of xdot just after the release
+        leaving = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0], -x, -turn[2] * p)
         return cls(
             length=rows.length[row, 0],
             end=rows.t_end[row, 0],
             rate=rate,
-            quiet=QUIET * 2 * np.pi / (rate + axes.speed[row]),
+            quiet=_QUIET * 2 * np.pi / (rate + axes.speed[row]),
             still=bool(rows.still[row]),
-            forms={TRANSIT: form, HEIGHT: RISE},
+            forms={TRANSIT: form, HEIGHT: _RISE},
             zero={TRANSIT: multiplicity > 0, HEIGHT: rising == 0},
-            # at rest on the plumb line the bob can but rise
             signs={
-                TRANSIT: rows.leaves[row] or np.sign(east),
-                HEIGHT: rising or np.sign(motion.a[2]) or 1,
+                TRANSIT: rows.leaves[row] or np.sign(leaving[multiplicity]),
+                HEIGHT: rising or np.sign(motion.a[2]) or 1,  # at rest the bob can only rise
             },
             angle=np.arctan2(np.hypot(x, p), -u),
         )
 
     def after(self, zeros: RowZeros, kind: int) -> RowZeros:
-        """Return the zeros of a kind in the span, without that of the release, which it reports at 1e-17 s or so."""
-        has_none = self.still and kind == TRANSIT
-        least = np.inf if has_none else self.quiet if self.zero[kind] else 0.0
+        """Return the zeros of a kind in the span, without that of the release.
+
+        heyoka reports that one at 1e-17 s or so.
+        """
+        least = 0.0
+        if self.still and kind == TRANSIT:
+            least = np.inf
+        elif self.zero[kind]:
+            least = self.quiet
         return zeros[(zeros.times > least) & (zeros.times <= self.end)]
+
+
+@dataclass(frozen=True)
+class FoundZeros:
+    """The zeros of one kind that were found in a row, and the motion at them.
+
+    Attributes:
+        kind: `TRANSIT` or `HEIGHT`.
+        release: the row's release.
+        zeros: the zeros.
+        at: the motion at them.
+    """
+
+    kind: int
+    release: RowRelease
+    zeros: RowZeros
+    at: RowMotion
+
+    @property
+    def form(self) -> Any:
+        """The form whose zeros they are."""
+        return self.release.forms[self.kind]
+
+    @property
+    def signs(self) -> Array:
+        """Signs of the form just after the release and after each zero, shape (zeros + 1,)."""
+        return np.append(self.release.signs[self.kind], self.zeros.directions)
 
 
 @dataclass(frozen=True)
@@ -151,118 +194,121 @@ class Samples:
     times: Array
     motion: RowMotion
 
-    def lost(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> bool:
-        """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
-        signs = np.concatenate([[release.signs[kind]], zeros.directions])
-        expected = signs[np.searchsorted(zeros.times, self.times[1:])]
-        alternate = (signs[:-1] * signs[1:] < 0).all()
-        alternate = (
-            alternate and (self.motion.form(release.forms[kind])[0][1:] * expected > 0).all()
-        )
-        return not (alternate and not self._dips(zeros, at, release, kind)[0].size)
+    def lost(self, found: FoundZeros) -> bool:
+        """Return whether there may be zeros that were not found."""
+        signs = found.signs
+        if not (signs[:-1] * signs[1:] < 0).all():
+            return True
+        expected = signs[np.searchsorted(found.zeros.times, self.times[1:])]
+        values, _ = self.motion.form(found.form)
+        if not (values[1:] * expected > 0).all():
+            return True
+        starts, _ = self._dips(found)
+        return bool(starts.size)
 
-    def finer(self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int) -> Array:
-        """Return the times of samples, with more of them where the form of a kind may dip to zero."""
-        return np.union1d(
-            self.times, np.linspace(*self._dips(zeros, at, release, kind), FINER + 1)[1:-1]
-        )
+    def finer(self, found: FoundZeros) -> Array:
+        """Return the times of samples, with more of them where the form may dip to zero."""
+        starts, ends = self._dips(found)
+        between = np.linspace(starts, ends, _FINER + 1)[1:-1]
+        return np.union1d(self.times, between)
 
-    def _dips(
-        self, zeros: RowZeros, at: RowMotion, release: RowRelease, kind: int
-    ) -> tuple[Array, Array]:
-        """Return the neighbours among samples and zeros between which a form may go through zero and back.
+    def _dips(self, found: FoundZeros) -> tuple[Array, Array]:
+        """Return neighbours among samples and zeros between which a form may dip through zero.
 
-        The cubic through the values and slopes there says how low the minimum between them is, but for its error: that
-        of u' = A sin 2ωt is below A (2ωh)⁴/384.
+        The cubic through the values and slopes there says how low the minimum between them is, but
+        for its error: that of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
-        signs, times = (
-            np.append(release.signs[kind], zeros.directions),
-            np.append(self.times, zeros.times),
-        )
+        release = found.release
+        zeros = found.zeros
+        values, slopes = self.motion.form(found.form)
+        _, slopes_at_zeros = found.at.form(found.form)
+        tolerance = np.abs(values).max()  # A
+
+        # samples and zeros in the order of time
+        times = np.append(self.times, zeros.times)
         order = np.argsort(times, kind="stable")
-        rate, slope = self.motion.form(release.forms[kind])
-        sign, most = signs[np.cumsum(order >= len(rate))[:-1]], np.abs(rate).max()
         times = times[order]
+        values = np.append(values, 0 * zeros.times)[order]
+        slopes = np.append(slopes, slopes_at_zeros)[order]
+        is_zero = order >= len(self.times)
+        sign = found.signs[np.cumsum(is_zero)[:-1]]  # between neighbours
+
+        # the cubic between neighbours, of s from 0 to 1, with the sign that makes it positive
         length = np.diff(times)
-        rate = np.concatenate([rate, 0 * zeros.times])[order]
-        slope = np.concatenate([slope, at.form(release.forms[kind])[1]])[order]
-        left, right, before, after = sign * [
-            rate[:-1],
-            rate[1:],
-            slope[:-1] * length,
-            slope[1:] * length,
-        ]
-        if release.zero[kind]:
-            left[0], before[0] = 0, max(before[0], 0)
-        between = 3 * (right - left) - before - after
-        s = before / (before - between - np.sqrt(between**2 - before * after))
-        least = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * (
-            (3 - 2 * s) * right - (1 - s) * after
-        )
-        may = (s > 0) & (s < 1) & (least < most * (2 * release.rate * length) ** 4 / 384)
-        return times[:-1][may], times[1:][may]
+        left = sign * values[:-1]
+        right = sign * values[1:]
+        left_slope = sign * slopes[:-1] * length
+        right_slope = sign * slopes[1:] * length
+        if release.zero[found.kind]:
+            left[0] = 0
+            left_slope[0] = max(left_slope[0], 0)
+        between = 3 * (right - left) - left_slope - right_slope
+        root = np.sqrt(between**2 - left_slope * right_slope)
+        s = left_slope / (left_slope - between - root)  # of the minimum
+        least = (1 - s) ** 2 * ((1 + 2 * s) * left + s * left_slope)
+        least = least + s**2 * ((3 - 2 * s) * right - (1 - s) * right_slope)
+
+        error = tolerance * (2 * release.rate * length) ** 4 / 384
+        may_dip = (s > 0) & (s < 1) & (least < error)
+        return times[:-1][may_dip], times[1:][may_dip]
 
 
-def describe_transits(
-    outcomes: Outcomes,
-    row: int,
-    release: RowRelease,
-    zeros: RowZeros,
-    at: RowMotion,
-    samples: Samples,
-) -> None:
+def describe_transits(outcomes: Outcomes, row: int, found: FoundZeros, samples: Samples) -> None:
     """Fill in a row's transits: the zeros, and the motion at them."""
-    t, (_, ax) = zeros.times, at.form(release.forms[TRANSIT])
-    if samples.lost(zeros, at, release, TRANSIT) or (np.sign(ax) != zeros.directions).any():
+    t = found.zeros.times
+    _, ax = found.at.form(found.form)
+    if samples.lost(found) or (np.sign(ax) != found.zeros.directions).any():
         outcomes.fate[row] = DOUBTFUL
     outcomes.transits[row] = len(t)
     if len(t):
-        outcomes.t_first[row], outcomes.t_last[row] = t[0], t[-1]
-        outcomes.least_ax[row] = np.abs(ax).min() * release.length
-        outcomes.close_pairs[row] = np.count_nonzero(
-            np.diff(t) < CLOSE_PAIR * 2 * np.pi / release.rate
-        )
+        outcomes.t_first[row] = t[0]
+        outcomes.t_last[row] = t[-1]
+        outcomes.least_ax[row] = np.abs(ax).min() * found.release.length
+        close_s = CLOSE_PAIR * 2 * np.pi / found.release.rate
+        outcomes.close_pairs[row] = np.count_nonzero(np.diff(t) < close_s)
 
 
 def describe_highest_points(
-    outcomes: Outcomes,
-    row: int,
-    release: RowRelease,
-    zeros: RowZeros,
-    at: RowMotion,
-    samples: Samples,
+    outcomes: Outcomes, row: int, found: FoundZeros, samples: Samples
 ) -> None:
-    """Fill in a row's highest points, the zeros at which the height begins to fall, and its largest angle.
+    """Fill in a row's highest points and its largest angle.
 
-    The height's rate is a product: a small swing's, whose steps are long, is known worse by its own series, in which
-    the zeros were found, than by the motion, which is as exact as the step. One step of Newton's method goes from the
-    ones to the others; of u' = A sin 2ωt it leaves a third of the cube of what 2ωt was.
+    Highest points are the zeros at which the height begins to fall.
+
+    The height's rate is a product: a small swing's, whose steps are long, is known worse by its own
+    series, in which the zeros were found, than by the motion, which is as exact as the step. One
+    step of Newton's method goes from the ones to the others; of u' = A sin 2ωt it leaves a third of
+    the cube of what 2ωt was.
     """
-    high = zeros.directions < 0
-    t, fall, (x, p, u) = zeros.times[high], -at.a[2][high], (part[high] for part in at.n)
+    release = found.release
+    at = found.at
+    is_high = found.zeros.directions < 0
+    x, p, u = (part[is_high] for part in at.n)
     across = np.hypot(x, p)
-    east, north, up = (part[-1] for part in samples.motion.n)
-    ends = max(release.angle, np.arctan2(np.hypot(east, north), -up))
-    outcomes.largest_angle[row] = np.max(np.arctan2(across, -u), initial=ends)
+    end_x, end_p, end_u = (part[-1] for part in samples.motion.n)
+    end_angle = np.arctan2(np.hypot(end_x, end_p), -end_u)
+    angles = np.arctan2(across, -u)
+    outcomes.largest_angle[row] = np.max(angles, initial=max(release.angle, end_angle))
+
+    fall = -at.a[2][is_high]
     bend = np.min(fall / (release.rate * across) ** 2, initial=np.inf)
-    if not (len(t) and release.rate and bend >= LEAST_BEND):
+    if not (len(fall) and release.rate and bend >= LEAST_BEND):
         return
     late = at.v[2] / at.a[2]
-    zeros = RowZeros(zeros.times - late, zeros.directions)
-    if (
-        samples.lost(zeros, at, release, HEIGHT)
-        or not (np.abs(late) * release.rate < MOST_LATE).all()
-    ):
+    zeros = RowZeros(found.zeros.times - late, found.zeros.directions)
+    close = (np.abs(late) * release.rate < _MOST_LATE).all()
+    if samples.lost(replace(found, zeros=zeros)) or not close:
         outcomes.fate[row] = DOUBTFUL
         return
-    t, (x, p, _) = zeros.times[high], at.earlier(late)[high].n
+
+    t = zeros.times[is_high]
+    x, p, _ = at.earlier(late)[is_high].n
     azimuth = np.arctan2(p, x)
-    outcomes.apsides[row], outcomes.least_bend[row], outcomes.least_fall[row] = (
-        len(t),
-        bend,
-        fall.min(),
-    )
-    outcomes.apsis_first[row], outcomes.apsis_last[row] = t[0], t[-1]
     half_turns = np.round(np.diff(azimuth) / np.pi)
+    outcomes.apsides[row] = len(t)
+    outcomes.least_bend[row] = bend
+    outcomes.least_fall[row] = fall.min()
+    outcomes.apsis_first[row] = t[0]
+    outcomes.apsis_last[row] = t[-1]
     outcomes.turn[row] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)
     outcomes.same_side[row] = np.count_nonzero(half_turns % 2 == 0)

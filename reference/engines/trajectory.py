@@ -1,6 +1,9 @@
-"""Trajectories as binary64 from a single run that nothing confirms: of any autonomous system, and of the model.
+"""Trajectories as binary64 from a single run that nothing confirms.
 
-They are as good as their number type and tolerance, no better: `solver.solve` gives digits whose error is known.
+They are those of the model, or of any autonomous system.
+
+They are as good as their number type and tolerance, no better: `solver.solve` gives digits whose
+error is known.
 """
 
 from __future__ import annotations
@@ -21,16 +24,18 @@ from ..numbers.precision import DOUBLE, GUARD_BITS, Array, NumberType
 from ..scenes.inputs import Inputs
 from ..scenes.scene import AnyScene, as_scene
 
-# Of one run: 30 days of Paris take 1.2 million, but a variant may be much stiffer, and towards a singularity steps
-# shrink without end.
+# Of one run: 30 days of Paris take 1.2 million, but a variant may be much stiffer, and towards a
+# singularity steps shrink without end.
 MAX_STEPS = 3_000_000
 
 
 class Variants:
-    """The model in double, compiled once with every constant as a parameter, for runs with other inputs or constants.
+    """The model in double, compiled once, for runs with other inputs or constants.
 
-    `spin` is used because it takes each term of the force by itself, so that a change to one leaves the others alone,
-    and because it is neutral off the sphere at every angle.
+    Every constant is a parameter.
+
+    `spin` is used because it takes each term of the force by itself, so that a change to one leaves
+    the others alone, and because it is neutral off the sphere at every angle.
     """
 
     _MODEL = FORMULATIONS["spin"]
@@ -40,11 +45,11 @@ class Variants:
     )  # fmt: skip
 
     def __init__(self) -> None:
-        from .heyoka.propagator import Propagator
+        from .heyoka.propagator import AutonomousSystem, Propagator
 
-        self._propagator = Propagator(
-            self._MODEL.variables, self._rates, DOUBLE, parameters=len(self._PARAMETERS)
-        )
+        count = len(self._PARAMETERS)
+        system = AutonomousSystem(self._MODEL.variables, self._rates, count)
+        self._propagator = Propagator(system, DOUBLE)
 
     def states(
         self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None
@@ -63,17 +68,22 @@ class Variants:
             InputError: the release is beyond the cord's reach.
             IntegrationError: heyoka stops before the last time, or a state is not finite.
         """
-        if (
-            inputs.position is not None
-            and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2
-        ):
-            raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
+        if inputs.position is not None:
+            x, y, *_ = inputs.position
+            if x**2 + y**2 >= inputs.length**2:
+                raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
         start = Start.of(inputs, DOUBLE.prec + GUARD_BITS)
-        k = (start.k if alter is None else alter(start.k)).converted(float)
-        return self.run([float(value) for value in (*start.n, *start.v)], times, k)
+        k = start.k if alter is None else alter(start.k)
+        release = [float(value) for value in (*start.n, *start.v)]
+        return self.run(release, times, k.converted(float))
 
     def run(self, start: Sequence[float], times: Array, k: Constants) -> Array:
-        """Return the states of one run from position and velocity over l (six numbers) with any constants.
+        """Return the states of one run with any constants.
+
+        Args:
+            start: position and velocity over l, six numbers.
+            times: increasing, from 0, in s.
+            k: the constants.
 
         Returns:
             x, y, z in m and vx, vy, vz in m/s, shape (times, 6).
@@ -85,8 +95,9 @@ class Variants:
         state = [*start[:3], *np.cross(start[:3], start[3:])]
         parameters = [entries.get(name, 0.0) for name in self._PARAMETERS]
         rows = self._propagator.from_zero(state, times, parameters, MAX_STEPS)
-        n_rows, spin = rows[:, :3], rows[:, 3:]
-        return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
+        n = rows[:, :3]
+        spin = rows[:, 3:]
+        return np.hstack([n, np.cross(spin, n)]) * float(k.length)
 
     @classmethod
     def _rates(
@@ -97,9 +108,9 @@ class Variants:
 
 
 # most steps while the scene's fastest rate goes through a radian: a run takes one or two
-STEPS_PER_RADIAN = 100
-LEAST_STEPS = 10_000  # and of a whole run
-SINGULAR = {
+_STEPS_PER_RADIAN = 100
+_LEAST_STEPS = 10_000  # and of a whole run
+_SINGULAR = {
     "plane": "at the horizontal",
     "angles": "on the vertical",
     "lagrangian": "on the vertical",
@@ -120,7 +131,8 @@ def integrate(
 
     Args:
         variables: names of the state's variables.
-        derivatives: `derivatives(state, functions)` returns their rates; `functions` offers sqrt, sin, cos.
+        derivatives: `derivatives(state, functions)` returns their rates; `functions` offers sqrt,
+            sin, cos.
         start: the state at t = 0; mpf, Fraction or float.
         times: increasing, from 0, in s.
         number: type to compute in.
@@ -131,12 +143,13 @@ def integrate(
         The states as binary64, shape (times, variables).
 
     Raises:
-        InputError: times that do not increase from 0; a wrong number type, tolerance or `max_steps`; variables that
-            are no names; not as many rates, or numbers of `start`, as variables, or others than numbers.
-        IntegrationError: heyoka stops before the last time, also because `max_steps` do not suffice, or a state is
-            not finite.
+        InputError: times that do not increase from 0; a wrong number type, tolerance or
+            `max_steps`; variables that are no names; not as many rates, or numbers of `start`, as
+            variables, or others than numbers.
+        IntegrationError: heyoka stops before the last time, also because `max_steps` do not
+            suffice, or a state is not finite.
     """
-    from .heyoka.propagator import Propagator
+    from .heyoka.propagator import AutonomousSystem, Propagator
 
     _check_number(number)
     check_whole("max_steps", max_steps, 0, "a whole number of steps, or 0 for any number")
@@ -145,7 +158,8 @@ def integrate(
     names = list(variables) if isinstance(variables, Iterable) else []
     if not names or not all(isinstance(name, str) for name in names) or len({*names}) < len(names):
         raise InputError("variables", variables, "a name for each variable, no two alike")
-    propagator = Propagator(names, derivatives, number, tolerance=tolerance)
+    system = AutonomousSystem(names, derivatives)
+    propagator = Propagator(system, number, tolerance=tolerance)
     numbers = propagator.numbers
     state = _numbers("start", start, numbers, f"{len(names)} finite numbers, one a variable")
     if len(state) != len(names):
@@ -166,12 +180,14 @@ def trajectory(
     """Integrate a scene in one run.
 
     Args:
-        scene: a scene, its id, the path of a TOML file, or nested mappings; its exact inputs are used.
+        scene: a scene, its id, the path of a TOML file, or nested mappings; its exact inputs are
+            used.
         times: increasing, from 0, in s.
         formulation: a name of `model.formulations.FORMULATIONS`.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
-        alter: changes the model's constants, to see the motion that a program with another model would compute.
+        alter: changes the model's constants, to see the motion that a program with another model
+            would compute.
 
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
@@ -188,31 +204,31 @@ def trajectory(
         )
     _check_number(number)
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
-    start = start if alter is None else replace(start, k=alter(start.k))
+    if alter is not None:
+        start = replace(start, k=alter(start.k))
     from .heyoka.conversions import Numbers
     from .heyoka.model import RoundedModel
 
     try:
-        model = RoundedModel(
-            carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number
-        )
-        moments, state = _from_zero(times, model.numbers), model.release(start)
+        rounded = carried(FORMULATIONS[formulation], start, Numbers(number).of)
+        model = RoundedModel(rounded, start.k, number)
+        moments = _from_zero(times, model.numbers)
+        release = model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
     radians = start.fastest_rate * float(moments[-1])
+    max_steps = _LEAST_STEPS + math.ceil(_STEPS_PER_RADIAN * radians)
     propagator = model.propagator(tolerance, radians)
     try:
-        states = propagator.from_zero(
-            state, moments, max_steps=LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * radians)
-        )
+        states = propagator.from_zero(release, moments, max_steps=max_steps)
     except IntegrationError as error:
-        where = SINGULAR.get(formulation)
-        advice = (
-            f"The formulation {formulation} is singular {where}: take momentum." if where else ""
-        )
+        advice = ""
+        if formulation in _SINGULAR:
+            where = _SINGULAR[formulation]
+            advice = f"The formulation {formulation} is singular {where}: take momentum."
         raise IntegrationError(error.reason, advice) from None
     rows = model.doubles(states)
-    # a formulation rounds them
+    # a formulation rounds the release
     rows[0] = [float(part * start.k.length) for part in (*start.n, *start.v)]
     return rows
 
@@ -229,7 +245,8 @@ def _from_zero(times: Sequence[Any] | Array, numbers: Any) -> Any:
     expected = "numbers of seconds that increase, the first of them 0"
     moments = _numbers("times", times, numbers, expected)
     line = np.array(moments, dtype=numbers.dtype)
-    if not (line.ndim == 1 and line.size and line[0] == 0 and (line[1:] > line[:-1]).all()):
+    starts_at_zero = line.ndim == 1 and line.size and line[0] == 0
+    if not starts_at_zero or not (line[1:] > line[:-1]).all():
         raise InputError("times", times, expected)
     return moments
 
@@ -238,10 +255,6 @@ def _numbers(field: str, values: Any, numbers: Any, expected: str) -> Any:
     """Return what a caller gave as heyoka's numbers of a run's type."""
     try:
         return numbers.all_of(values)
-    except (
-        ArithmeticError,
-        AttributeError,
-        TypeError,
-        ValueError,
-    ):  # what is no number, infinity and NaN among them
+    # raised for what is no number, and for infinity and NaN
+    except (ArithmeticError, AttributeError, TypeError, ValueError):
         raise InputError(field, values, expected) from None

@@ -1,1 +1,1 @@
-"""Numbers: their types and precisions, fixed-point tables and their columns, Taylor steps, sums of two doubles."""
+"""Numbers: types and precisions, fixed-point tables and columns, Taylor steps, double-doubles."""

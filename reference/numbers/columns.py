@@ -21,14 +21,14 @@ RUN = (*STATE, "ax")  # an engine's results at each output time, and after t at 
 
 GRID = STATE  # of grid.csv, after t
 SECTION = ("t", *STATE)  # of sections.csv, beside section, number, direction and bound
-WHOLE = ("k", "direction")  # columns of whole numbers
+_WHOLE = ("k", "direction")  # columns of whole numbers
 TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
 
 # of the columns of each kind
 UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}
-# the columns of a column's kind, whose sizes are alike
+# the columns of a column's kind, which are alike in size
 KINDS = {name: kind for kind in UNITS for name in kind}
-# the same errors are assumed of both
+# columns that are assumed to have the same errors
 HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}
 
 
@@ -36,7 +36,7 @@ def place_of(name: str, columns: tuple[str, ...]) -> int:
     """Return the place of a column.
 
     Raises:
-        KeyError: there is none of that name; it says which there are.
+        KeyError: there is no column of that name; it says which there are.
     """
     if name not in columns:
         raise KeyError(f"{name!r} is no column; there are {', '.join(columns)}")
@@ -52,9 +52,8 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
     try:
         from pandas import DataFrame
     except ImportError:
-        raise InputError(
-            "to_pandas", "nothing", "the package pandas", "Install it: pip install pandas."
-        ) from None
+        advice = "Install it: pip install pandas."
+        raise InputError("to_pandas", "nothing", "the package pandas", advice) from None
     return DataFrame(columns)
 
 
@@ -70,13 +69,11 @@ class Framed:
         Raises:
             InputError: pandas is not installed.
         """
-        columns = {name: self.array(name) for name in self.columns}
-        return data_frame(
-            {
-                name: column.astype(int) if name in WHOLE else column
-                for name, column in columns.items()
-            }
-        )
+        columns = {}
+        for name in self.columns:
+            column = self.array(name)
+            columns[name] = column.astype(int) if name in _WHOLE else column
+        return data_frame(columns)
 
     def _repr_html_(self) -> str | None:
         try:
@@ -86,7 +83,7 @@ class Framed:
 
 
 class GridColumns(Framed):
-    """A solution or dataset whose table `grid` has a row for each of `times`: its columns are attributes."""
+    """A solution or dataset with a table `grid` of a row per time, whose columns are attributes."""
 
     grid: Any
     times: Any
@@ -120,6 +117,5 @@ class GridColumns(Framed):
             """Return a grid column, shape (rows,)."""
             if name in GRID:
                 return self.grid[name]
-            raise no_attribute(
-                f"a {type(self).__name__}", name, {*GRID, *(n for n in dir(self) if n[0] != "_")}
-            )
+            public = [attribute for attribute in dir(self) if attribute[0] != "_"]
+            raise no_attribute(f"a {type(self).__name__}", name, {*GRID, *public})

@@ -1,7 +1,9 @@
-"""Arrays of unevaluated sums of two doubles, about 106 bits: for constants of many rows at once, without FMA.
+"""Arrays of unevaluated sums of two doubles, about 106 bits, without FMA.
 
-Sums and products by Dekker (1971) and Knuth; relative errors of an operation are a few 2**-104 (Joldes, Muller and
-Popescu 2017), away from overflow and underflow.
+They serve the constants of many rows at once.
+
+Sums and products by Dekker (1971) and Knuth; relative errors of an operation are a few 2**-104
+(Joldes, Muller and Popescu 2017), away from overflow and underflow.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ _TURN = 144  # of them in a turn
 
 @dataclass(frozen=True)
 class DoubleDouble:
-    """Numbers high + low, |low| at most half an ulp of high; arrays of one shape, or of shapes that broadcast."""
+    """Numbers high + low, |low| at most half an ulp of high; arrays whose shapes broadcast."""
 
     high: Array
     low: Array
@@ -31,7 +33,7 @@ class DoubleDouble:
 
     @classmethod
     def of(cls, values: Iterable[Fraction]) -> Self:
-        """Return exact numbers, each rounded to the nearest sum of two doubles; inf where one has none."""
+        """Return exact numbers, rounded to the nearest sum of two doubles, or to inf."""
         pairs = np.array([_pair(value) for value in values]).reshape(-1, 2)
         return cls(pairs[:, 0].copy(), pairs[:, 1].copy())
 
@@ -58,9 +60,9 @@ class DoubleDouble:
             total, error = _sum(self.high, other)
             return type(self)(*_quick(total, error + self.low))
         total, error = _sum(self.high, other.high)
-        below, rest = _sum(self.low, other.low)
-        total, error = _quick(total, error + below)
-        return type(self)(*_quick(total, error + rest))
+        low, low_error = _sum(self.low, other.low)
+        total, error = _quick(total, error + low)
+        return type(self)(*_quick(total, error + low_error))
 
     __radd__ = __add__
 
@@ -71,52 +73,57 @@ class DoubleDouble:
         return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> Self:
-        top, bottom = (other.high, other.low) if isinstance(other, DoubleDouble) else (other, 0.0)
-        product, error = _product(self.high, top)
-        return type(self)(*_quick(product, error + (self.high * bottom + self.low * top)))
+        high, low = (other.high, other.low) if isinstance(other, DoubleDouble) else (other, 0.0)
+        product, error = _product(self.high, high)
+        return type(self)(*_quick(product, error + (self.high * low + self.low * high)))
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> Self:
         divisor = other if isinstance(other, DoubleDouble) else type(self)(other, 0.0 * other)
         first = self.high / divisor.high
-        rest = self - divisor * first
-        second = rest.high / divisor.high
-        rest = rest - divisor * second
-        return type(self)(*_quick(first, second)) + rest.high / divisor.high
+        remainder = self - divisor * first
+        second = remainder.high / divisor.high
+        remainder = remainder - divisor * second
+        return type(self)(*_quick(first, second)) + remainder.high / divisor.high
 
     def where(self, chosen: Any, other: Self) -> Self:
         """Return these numbers where `chosen`, the others elsewhere."""
-        return type(self)(
-            np.where(chosen, self.high, other.high), np.where(chosen, self.low, other.low)
-        )
+        high = np.where(chosen, self.high, other.high)
+        low = np.where(chosen, self.low, other.low)
+        return type(self)(high, low)
 
 
 def square_root(a: DoubleDouble) -> DoubleDouble:
     """Return the square root, of zero zero."""
     first = np.sqrt(a.high)
-    rest = a - DoubleDouble(*_product(first, first))
-    return DoubleDouble(
-        *_quick(
-            first, np.divide(0.5 * rest.high, first, out=np.zeros_like(first), where=first != 0)
-        )
-    )
+    remainder = a - DoubleDouble(*_product(first, first))
+    zero = np.zeros_like(first)
+    second = np.divide(0.5 * remainder.high, first, out=zero, where=first != 0)
+    return DoubleDouble(*_quick(first, second))
 
 
 def sine_and_cosine(degrees: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
-    """Return sine and cosine of angles of at most 2**40 degrees; exact zeros and ones at the quarters of a turn."""
+    """Return sine and cosine of angles of at most 2**40 degrees.
+
+    At the quarters of a turn they are exact.
+    """
     sines, cosines, radian = _known_angles()
     near = np.rint(degrees.high / _STEP)
     r = DoubleDouble(*_quick(degrees.high - near * _STEP, degrees.low)) * radian
+
+    # Taylor series; their terms of higher orders in double
     square = r * r
-    s, s2 = square, square.high
-    odd = s2 * (-1 / 5040 + s2 * (1 / 362880 + s2 * (-1 / 39916800 + s2 / 6227020800)))
-    even = s2 * (1 / 40320 + s2 * (-1 / 3628800 + s2 * (1 / 479001600 - s2 / 87178291200)))
-    sine = r + r * (s * (s * (_exactly(1, 120) + odd) - _exactly(1, 6)))
-    less = s * (s * (_exactly(1, 24) + s * (even - _exactly(1, 720))) - 0.5)  # cosine less 1
+    s = square.high
+    odd = s * (-1 / 5040 + s * (1 / 362880 + s * (-1 / 39916800 + s / 6227020800)))
+    even = s * (1 / 40320 + s * (-1 / 3628800 + s * (1 / 479001600 - s / 87178291200)))
+    sine = r + r * (square * (square * (_exactly(1, 120) + odd) - _exactly(1, 6)))
+    # the cosine less 1
+    cosine = square * (square * (_exactly(1, 24) + square * (even - _exactly(1, 720))) - 0.5)
+
     at = near.astype(np.int64) % _TURN
     sin, cos = (DoubleDouble(table.high[at], table.low[at]) for table in (sines, cosines))
-    return sin + (sin * less + cos * sine), cos + (cos * less - sin * sine)
+    return sin + (sin * cosine + cos * sine), cos + (cos * cosine - sin * sine)
 
 
 def in_radians(degrees: DoubleDouble) -> DoubleDouble:
@@ -134,8 +141,9 @@ def _known_angles() -> tuple[DoubleDouble, DoubleDouble, DoubleDouble]:
     """Return sine and cosine of the multiples of _STEP in a turn, and the radians of a degree."""
     ctx = context(160)
     angles = [ctx.mpf(_STEP) * k / 180 for k in range(_TURN)]
-    exact = map(ctx.sinpi, angles), map(ctx.cospi, angles), [ctx.pi / 180]
-    sines, cosines, radian = (DoubleDouble.of(map(to_fraction, numbers)) for numbers in exact)
+    sines = DoubleDouble.of(to_fraction(ctx.sinpi(angle)) for angle in angles)
+    cosines = DoubleDouble.of(to_fraction(ctx.cospi(angle)) for angle in angles)
+    radian = DoubleDouble.of([to_fraction(ctx.pi / 180)])
     return sines, cosines, radian
 
 
@@ -167,5 +175,7 @@ def _halves(a: Any) -> tuple[Any, Any]:
 
 def _product(a: Any, b: Any) -> tuple[Any, Any]:
     product = a * b
-    (a_high, a_low), (b_high, b_low) = _halves(a), _halves(b)
-    return product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+    a_high, a_low = _halves(a)
+    b_high, b_low = _halves(b)
+    error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+    return product, error

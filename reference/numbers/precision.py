@@ -1,6 +1,7 @@
-"""Number types (double, long double, MPFR: `cheapest_type`), bits, decimal digits, exact conversions, rounding.
+"""Number types (double, long double, MPFR), bits, decimal digits, exact conversions, rounding.
 
-Precision is always an argument: there is one mpmath context for each, and the global one is never touched.
+Precision is always an argument: each has an mpmath context of its own, and the global one is never
+touched.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def double_below(q: Fraction) -> float:
 
 @lru_cache(maxsize=64)
 def context(prec: int) -> Any:
-    """Return the mpmath context of `prec` bits, whose precision nobody changes: it takes 3 ms to make one."""
+    """Return the mpmath context of `prec` bits, which nobody may change; making one takes 3 ms."""
     ctx = mpmath.mp.clone()
     ctx.prec = prec
     return ctx
@@ -90,40 +91,51 @@ def bits_of(digits: float) -> int:
 
 
 def log2(value: float) -> float:
-    """Return the logarithm to base 2, the same on every machine: that of libm may differ in its last bit."""
+    """Return the logarithm to base 2, the same on every machine.
+
+    That of libm may differ in its last bit.
+    """
     return float(context(DOUBLE_BITS + GUARD_BITS).log(value, 2))
 
 
 def rounded(numerator: int, denominator: int) -> int:
     """Return the integer nearest to a quotient, ties to even; the denominator is above zero."""
     whole, remainder = divmod(numerator, denominator)
-    return whole + (2 * remainder > denominator or (2 * remainder == denominator and whole & 1))
+    twice = 2 * remainder
+    if twice > denominator or (twice == denominator and whole & 1):
+        return whole + 1
+    return whole
 
 
 def fixed_decimal(value: Fraction, decimals: int) -> str:
-    """Return `value`, rounded to nearest (ties to even), with `decimals` digits after the point; never "-0"."""
-    return with_decimal_point(rounded(value.numerator * 10**decimals, value.denominator), decimals)
+    """Return a number as text with `decimals` digits after the point, ties to even; never "-0"."""
+    whole = rounded(value.numerator * 10**decimals, value.denominator)
+    return with_decimal_point(whole, decimals)
 
 
 def with_decimal_point(whole: int, decimals: int) -> str:
-    """Return an integer as text with the decimal point `decimals` digits from its right; never "-0"."""
-    sign, digits = ("-" if whole < 0 else ""), str(abs(whole)).rjust(decimals + 1, "0")
-    return sign + (f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits)
+    """Return an integer as text with a decimal point before its last digits; never "-0"."""
+    sign = "-" if whole < 0 else ""
+    if not decimals:
+        return f"{sign}{abs(whole)}"
+    digits = str(abs(whole)).rjust(decimals + 1, "0")
+    return f"{sign}{digits[:-decimals]}.{digits[-decimals:]}"
 
 
 def outward(value: Fraction, side: int, decimals: int = 20) -> str:
     """Return the end of an interval as text, rounded down (side -1) or up (side 1)."""
-    whole = value * 10**decimals
-    return with_decimal_point(math.floor(whole) if side < 0 else math.ceil(whole), decimals)
+    scaled = value * 10**decimals
+    whole = math.floor(scaled) if side < 0 else math.ceil(scaled)
+    return with_decimal_point(whole, decimals)
 
 
 def decimals_for(largest: Fraction, digits: int) -> int:
-    """Return the digits after the point that give the largest number of a column `digits` significant ones."""
+    """Return the digits after the point that give a largest number `digits` significant ones."""
     return max(0, digits - 1 - magnitude(largest)) if largest else digits
 
 
 def magnitude(value: Fraction) -> int:
-    """Return floor(log10(value)) exactly: the power of ten of the leading digit of a positive number."""
+    """Return floor(log10(value)) of a positive number exactly: its leading digit's power of ten."""
     bits = value.numerator.bit_length() - value.denominator.bit_length()
     # the value is below 2**(bits + 1); texts of integers are limited
     guess = math.floor((bits + 1) * math.log10(2))
@@ -133,18 +145,21 @@ def magnitude(value: Fraction) -> int:
 
 
 def rounded_up(value: Fraction) -> str:
-    """Return a bound as text with two significant digits, never below `value`, such as "1.3e-45"."""
+    """Return a bound as text with two significant digits, rounded up, such as "1.3e-45"."""
     if value <= 0:
         return "0"
     power = magnitude(value)
     digits = math.ceil(value / Fraction(10) ** (power - 1))
     if digits == 100:
-        digits, power = 10, power + 1
+        digits = 10
+        power += 1
     return f"{digits // 10}.{digits % 10}e{power:+03d}"
 
 
 def digits_that_hold(value: float, error: float) -> str:
-    """Return a number with the digits that its error leaves, or ± the error where that is larger."""
+    """Return a number with the digits that its error leaves, or ± the error if that is larger."""
     if error >= abs(value):
         return f"± {error:.1e}"
-    return f"{value:.{math.floor(math.log10(abs(value))) - math.ceil(math.log10(error)) + 1}g}"
+    first = math.floor(math.log10(abs(value)))
+    last = math.ceil(math.log10(error))
+    return f"{value:.{first - last + 1}g}"

@@ -1,8 +1,7 @@
-"""Tables of exact numbers: named columns with bounds, how far two are apart, and how they are printed.
+"""Tables of exact numbers: named columns with bounds, the distance of two tables, and their text.
 
-How many decimals to print a solved scene says (solver/solution.py), how to round precision.py.
-
-Numbers are integers over a power of two. Whole columns of them can be put into formulas (`FixedPoint`).
+The number of decimals to print comes from solver/solution.py, rounding from precision.py. Numbers
+are integers over a power of two. Whole columns of them can be put into formulas (`FixedPoint`).
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ import math
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,12 +18,12 @@ from .columns import KINDS, Framed, place_of
 from .precision import Array, decimals_for, rounded, to_fraction, with_decimal_point
 
 Integers = Any  # an array of integers of any size: dtype object, shape (rows,)
-NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
+_NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
 
 
 @dataclass(frozen=True)
 class Table(Framed):
-    """Named columns of numbers, as integers over 2**bits, with error bounds in the same form where they are known.
+    """Named columns of numbers, as integers over 2**bits, with error bounds where they are known.
 
     `table["x"]` is a column as the nearest doubles, `len(table)` the number of rows.
 
@@ -44,14 +43,21 @@ class Table(Framed):
     def of_intervals(
         cls, columns: tuple[str, ...], rows: Iterable[Sequence[Any]], bits: int
     ) -> Table:
-        """Return the middles of intervals (exact ends `low`, `high`), and their half-widths as errors, rounded up."""
+        """Return the middles of intervals (exact ends `low`, `high`), with half-widths as errors.
+
+        The errors are rounded up.
+        """
         values, errors = [], []
         for row in rows:
-            lows = [(x.low.numerator << bits) // x.low.denominator for x in row]
-            highs = [-((-x.high.numerator << bits) // x.high.denominator) for x in row]
-            middles = tuple((low + high) // 2 for low, high in zip(lows, highs, strict=True))
-            values.append(middles)
-            errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
+            middles, halves = [], []
+            for interval in row:
+                low = (interval.low.numerator << bits) // interval.low.denominator
+                high = -((-interval.high.numerator << bits) // interval.high.denominator)
+                middle = (low + high) // 2
+                middles.append(middle)
+                halves.append(high - middle)
+            values.append(tuple(middles))
+            errors.append(tuple(halves))
         return cls(columns, bits, values, errors)
 
     def with_errors(self, errors: Mapping[str, Fraction]) -> Table:
@@ -65,7 +71,8 @@ class Table(Framed):
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
-        i, unit = place_of(name, self.columns), 1 << self.bits
+        i = place_of(name, self.columns)
+        unit = 1 << self.bits
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
 
     array = __getitem__
@@ -81,8 +88,9 @@ class Table(Framed):
         return [Fraction(row[i], 1 << self.bits) for row in self.errors]
 
     def whole(self, name: str, bits: int) -> list[int]:
-        """Return the values of a column as integers over 2**bits; `bits` is at least the table's."""
-        i, up = place_of(name, self.columns), bits - self.bits
+        """Return a column as integers over 2**bits; `bits` is at least the table's."""
+        i = place_of(name, self.columns)
+        up = bits - self.bits
         return [row[i] << up for row in self.values]
 
     def only(self, columns: tuple[str, ...]) -> Table:
@@ -90,21 +98,21 @@ class Table(Framed):
         if columns == self.columns:
             return self
         places = [place_of(name, self.columns) for name in columns]
-        values, errors = (
-            [tuple(row[i] for i in places) for row in rows] for rows in (self.values, self.errors)
-        )
+        values = [tuple(row[i] for i in places) for row in self.values]
+        errors = [tuple(row[i] for i in places) for row in self.errors]
         return Table(columns, self.bits, values, errors)
 
     def distance(self, other: Table) -> Table:
-        """Return the absolute differences of two tables with as many rows, in this table's columns."""
-        other, bits = other.only(self.columns), max(self.bits, other.bits)
-        up, other_up = bits - self.bits, bits - other.bits
-        rows = zip(self.values, other.values, strict=True)
-        gaps = [
-            tuple(abs((p << up) - (q << other_up)) for p, q in zip(a, b, strict=True))
-            for a, b in rows
-        ]
-        return Table(self.columns, bits, gaps)
+        """Return the absolute differences of tables of as many rows, in this table's columns."""
+        other = other.only(self.columns)
+        bits = max(self.bits, other.bits)
+        up = bits - self.bits
+        other_up = bits - other.bits
+        distances = []
+        for row, other_row in zip(self.values, other.values, strict=True):
+            pairs = zip(row, other_row, strict=True)
+            distances.append(tuple(abs((p << up) - (q << other_up)) for p, q in pairs))
+        return Table(self.columns, bits, distances)
 
     def largest(self) -> dict[str, Fraction]:
         """Return the largest absolute value of each column."""
@@ -115,67 +123,92 @@ class Table(Framed):
         return self._maxima(self.errors)
 
     def _maxima(self, rows: Sequence[tuple[int, ...]]) -> dict[str, Fraction]:
-        unit, columns = (
-            1 << self.bits,
-            zip(*rows, strict=True) if rows else ((0,) for _ in self.columns),
-        )
-        return {
-            name: Fraction(max(map(abs, column)), unit)
-            for name, column in zip(self.columns, columns, strict=True)
-        }
+        if not rows:
+            return dict.fromkeys(self.columns, Fraction(0))
+        unit = 1 << self.bits
+        maxima = {}
+        for name, column in zip(self.columns, zip(*rows, strict=True), strict=True):
+            maxima[name] = Fraction(max(map(abs, column)), unit)
+        return maxima
 
     def printed(self, decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
         """Return the rows as text, each number rounded to its column's digits after the point."""
+        unit = 1 << self.bits
         places = [decimals[name] for name in self.columns]
-        scales, unit = [10**count for count in places], 1 << self.bits
-        return [
-            tuple(
-                with_decimal_point(rounded(value * scale, unit), count)
-                for value, scale, count in zip(row, scales, places, strict=True)
+        scales = [10**count for count in places]
+        texts = []
+        for row in self.values:
+            numbers = zip(row, scales, places, strict=True)
+            texts.append(
+                tuple(
+                    with_decimal_point(rounded(value * scale, unit), count)
+                    for value, scale, count in numbers
+                )
             )
-            for row in self.values
-        ]
+        return texts
 
     def undecided(
         self, decimals: Mapping[str, int], exact: Container[str] = ()
-    ) -> tuple[Fraction, str, str] | None:
-        """Return the least known of the numbers of which the bounds do not decide each printed digit, or None.
+    ) -> UndecidedNumber | None:
+        """Return the number of widest bound whose printed digits are undecided, or None.
 
-        It comes as its bound in units of the last printed digit, its column and its text. A number is decided if every
-        number within the bound is printed alike. `exact` are columns whose first number is known exactly.
+        A number is decided if every number within its bound is printed alike.
+
+        Args:
+            decimals: digits after the point of each column.
+            exact: columns whose first number is known exactly.
         """
-        scales, unit = [10 ** decimals[name] for name in self.columns], 1 << self.bits
-        worst: tuple[Fraction, str, str] | None = None
+        unit = 1 << self.bits
+        scales = [10 ** decimals[name] for name in self.columns]
+        worst: UndecidedNumber | None = None
         for k, (row, errors) in enumerate(zip(self.values, self.errors, strict=True)):
             for name, value, error, scale in zip(self.columns, row, errors, scales, strict=True):
                 if k == 0 and name in exact:
                     continue
-                if rounded((value - error) * scale, unit) != rounded((value + error) * scale, unit):
-                    text = with_decimal_point(rounded(value * scale, unit), decimals[name])
-                    worst = max(
-                        (Fraction(error * scale, unit), name, text), worst or (Fraction(0), "", "")
-                    )
+                least = rounded((value - error) * scale, unit)
+                largest = rounded((value + error) * scale, unit)
+                if least == largest:
+                    continue
+                text = with_decimal_point(rounded(value * scale, unit), decimals[name])
+                number = UndecidedNumber(Fraction(error * scale, unit), name, text)
+                worst = number if worst is None else max(number, worst)
         return worst
+
+
+class UndecidedNumber(NamedTuple):
+    """A number whose bound does not decide its printed digits; wider bounds sort higher.
+
+    Attributes:
+        width: its bound, in units of the last printed digit.
+        column: its column.
+        text: as it would be printed.
+    """
+
+    width: Fraction
+    column: str
+    text: str
 
 
 def resolved(
     largest: Mapping[str, Fraction], errors: Mapping[str, Fraction]
 ) -> dict[str, Fraction]:
-    """Return the size of each column: its largest number, or that of its kind if it is nothing but error.
+    """Return the size of each column: its largest number, or that of its kind if it is all error.
 
-    A coordinate that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
+    A coordinate that vanishes by symmetry comes out of a run as rounding noise, and noise has no
+    significant digits.
     """
-    sizes = {
-        name: size if size > NOISE * errors[name] else Fraction(0) for name, size in largest.items()
-    }
-    return {
-        name: size or max(sizes.get(column, Fraction(0)) for column in KINDS[name])
-        for name, size in sizes.items()
-    }
+    sizes = {}
+    for name, size in largest.items():
+        is_noise = size <= _NOISE * errors[name]
+        sizes[name] = Fraction(0) if is_noise else size
+    of_kind = {}
+    for name, size in sizes.items():
+        of_kind[name] = size or max(sizes.get(column, Fraction(0)) for column in KINDS[name])
+    return of_kind
 
 
 def decimals_of(sizes: Mapping[str, Fraction], digits: int) -> dict[str, int]:
-    """Return the digits after the point that give the largest number of each column `digits` significant ones."""
+    """Return the digits after the point that give each column's size `digits` significant ones."""
     return {name: decimals_for(size, digits) for name, size in sizes.items()}
 
 
@@ -191,10 +224,12 @@ def bits_in(ratio: Fraction) -> int:
 class FixedPoint:
     """A number or a column of numbers; each operation rounds down to the unit 2**-bits.
 
-    It serves the equations of `model`, which take numbers of any type, and is many times as fast as number by number.
+    It serves the equations of `model`, which take numbers of any type, and is many times as fast as
+    number by number.
 
     Attributes:
-        values: an integer, or an array of integers of any size (dtype object), in units of 2**-bits.
+        values: an integer, or an array of integers of any size (dtype object), in units of
+            2**-bits.
         bits: the same for both operands of an operation.
     """
 
@@ -240,9 +275,8 @@ class FixedPoint:
 
     def sqrt(self) -> FixedPoint:
         """Return the square root of a column, 0 where a number is below zero."""
-        return FixedPoint(
-            integers(math.isqrt(max(0, value) << self.bits) for value in self.values), self.bits
-        )
+        roots = [math.isqrt(max(0, value) << self.bits) for value in self.values]
+        return FixedPoint(integers(roots), self.bits)
 
     def __getitem__(self, rows: Array) -> FixedPoint:
         """Return some of the numbers of a column."""

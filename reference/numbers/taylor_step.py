@@ -1,4 +1,4 @@
-"""The Taylor step: the polynomials of one step of an integrator, as integers over a power of two, or their digits."""
+"""The Taylor step: polynomials of an integrator's step, as integers or digits."""
 
 from __future__ import annotations
 
@@ -43,7 +43,9 @@ def whole(digits: npt.NDArray[Any]) -> Any:
 
 
 class TaylorStep(NamedTuple):
-    """Polynomials of s = (time - centre)/h for -1 <= low <= s <= high <= 1: a row of integers over 2**bits each.
+    """Polynomials of s = (time - centre)/h for -1 <= low <= s <= high <= 1.
+
+    Each is a row of integers over 2**bits.
 
     Attributes:
         centre: in s, exact.
@@ -51,8 +53,8 @@ class TaylorStep(NamedTuple):
         low: where the step begins, in units of h.
         high: where it ends.
         bits: coefficients are integers over 2**bits.
-        rows: a row of coefficients for each of `columns`, lowest order first; or a function that computes them, as a
-            proof reads only every second step of a run.
+        rows: a row of coefficients for each of `columns`, lowest order first; or a function that
+            computes them, as a proof reads only every second step of a run.
         columns: what the rows are: `LOCAL`, after which an engine may add further rows, or `EARTH`.
     """
 
@@ -66,5 +68,5 @@ class TaylorStep(NamedTuple):
 
     @property
     def coefficients(self) -> Sequence[Any]:
-        """The rows: lists of integers, `Digits`, or FLINT's polynomials; a function is called now."""
+        """The rows: lists of integers, `Digits`, or FLINT's polynomials; a function is called."""
         return self.rows() if callable(self.rows) else self.rows

@@ -1,4 +1,4 @@
-"""The zeros of a motion: of xdot, which are called transits, and of the forms of sections, by their words."""
+"""The zeros of a motion by word: of xdot, which are called transits, and of sections' forms."""
 
 from __future__ import annotations
 
@@ -19,10 +19,12 @@ class Zeros(NamedTuple, Generic[T]):
     """The zeros of xdot, or of a section's form.
 
     Attributes:
-        table: `columns_of(word)` at each zero, in SI units: a `Table`; of uncertain inputs `Intervals`, in each of
-            which every pendulum of the box has one, in order; the last one may come after the end for some.
+        table: `columns_of(word)` at each zero, in SI units: a `Table`. With uncertain inputs it is
+            `Intervals`: in each row every pendulum of the box has one zero, in order; for some the
+            last may come after the end of the run.
         directions: +1 where the form grows, per zero.
-        possible: intervals in s, each with a parity, that may hold zeros which a proof could not decide.
+        possible: intervals in s, each with the parity of the zeros in it, that a proof could not
+            decide.
     """
 
     table: T
@@ -31,7 +33,7 @@ class Zeros(NamedTuple, Generic[T]):
 
 
 def columns_of(word: str) -> tuple[str, ...]:
-    """Return the columns that are printed of zeros: of xdot those of transits.csv, else those of sections.csv."""
+    """Return the printed columns of zeros: for xdot those of transits.csv, else of sections.csv."""
     return TRANSITS if word == XDOT else SECTION
 
 
@@ -41,7 +43,7 @@ def sections_of(zeros: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class WithZeros(Generic[T]):
-    """A result whose `zeros` are kept by word: those of xdot as transits, the others as sections."""
+    """A result with `zeros` by word: those of xdot are its transits, the others its sections."""
 
     zeros: Mapping[str, Zeros[T]]
 
@@ -55,9 +57,11 @@ class WithZeros(Generic[T]):
 
     @property
     def transits(self) -> T:
-        """`columns.TRANSITS` at every zero of xdot; without rows if not asked for, or if xdot is identically zero.
+        """`columns.TRANSITS` at every zero of xdot.
 
-        Of uncertain inputs each row is an interval in which every pendulum has one zero; the last may come late.
+        It has no rows if they were not asked for, or if xdot is identically zero. With uncertain
+        inputs each row is an interval in which every pendulum has one zero; for some the last may
+        come after the end of the run.
         """
         return self._of_xdot.table
 
@@ -68,7 +72,7 @@ class WithZeros(Generic[T]):
 
     @property
     def possible(self) -> Undecided:
-        """Intervals in s, each with a parity, that may hold transits which the proof could not decide."""
+        """Intervals in s, each with a parity, in which the proof could not decide transits."""
         return self._of_xdot.possible
 
     @property

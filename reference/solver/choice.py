@@ -1,6 +1,7 @@
-"""Choose the run that a scene's digits come from: engine, form of the equations, and bits, which the pilot measured.
+"""Choose the run that a scene's digits come from: engine, formulation, and bits, from the pilot.
 
-`solve` and `foucault show --equations` both ask here, and so does a confirmation, for its sample of the grid.
+`solve` and `foucault show --equations` use it, and so does a confirmation, for its sample of the
+grid.
 """
 
 from __future__ import annotations
@@ -24,36 +25,39 @@ FINER_BITS = 16  # bits that the published run has more than the one it is compa
 # precisions are multiples of this, so that small changes of the pilot's errors do not show
 ROUND_TO_BITS = 8
 # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
-SAMPLES = 3
-HARDWARE_ENGINE = "heyoka"  # computes in double and long double
+_SAMPLES = 3
+_HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 
 
 def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> Pilot:
-    """Return the pilot of a scene: in hardware only where its level promises no bytes and its numbers are hardware's.
+    """Return the pilot of a scene.
 
-    That of a single run, which states what the pilot measured as its own errors, is of the same arithmetic.
+    It is in hardware numbers only if the level promises no bytes and the published numbers are in
+    hardware. A single run states as its errors those that the pilot measured, so that its pilot
+    uses the same engine.
 
     Raises:
         UnreachableError: as `run_pilot`.
     """
-    if (
-        scene.run.level in ("computed", "self_consistent")
-        and bits_of(scene.run.digits) <= LONG_DOUBLE.prec
-    ):
-        pilot = run_pilot(scene.exact, times, hardware=True)
-        if published_plan(
-            scene, times, pilot, first_prec(scene, pilot, engine), engine
-        ).number.hardware:
+    inputs = scene.exact
+    promises_bytes = scene.run.level not in ("computed", "self_consistent")
+    if not promises_bytes and bits_of(scene.run.digits) <= LONG_DOUBLE.prec:
+        pilot = run_pilot(inputs, times, hardware=True)
+        if _first_published(scene, times, pilot, engine).number.hardware:
             return pilot
     if scene.run.level != "computed":
-        return run_pilot(scene.exact, times)
-    pilot = run_pilot(scene.exact, times, samples=SAMPLES)
-    published = published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).engine
-    return (
-        pilot
-        if published == pilot.engine
-        else run_pilot(scene.exact, times, published, samples=SAMPLES)
-    )
+        return run_pilot(inputs, times)
+
+    pilot = run_pilot(inputs, times, samples=_SAMPLES)
+    published_engine = _first_published(scene, times, pilot, engine).engine
+    if published_engine == pilot.engine:
+        return pilot
+    return run_pilot(inputs, times, published_engine, samples=_SAMPLES)
+
+
+def _first_published(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str) -> Plan:
+    """Return the run that is published if the first precision suffices."""
+    return published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
 
 
 def need_flint() -> None:
@@ -81,26 +85,27 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot) -> Plan:
         from ..enclosure.prove import plan_for
 
         feed = Feed(scene.exact, times, AUTO, pilot.steps)
-        bits = (
-            plan_for(scene.exact, times[-1], first_radius(scene, pilot), None, feed.lost).bits
-            - COEFFICIENT_BITS
-        )
+        radius = first_radius(scene, pilot)
+        proof = plan_for(scene.exact, times[-1], radius, None, feed.lost)
+        bits = proof.bits - COEFFICIENT_BITS
         return fastest(bits, steps=pilot.steps, proof=True).plan(scene.exact, bits, times)
-    return published_plan(scene, times, pilot, first_prec(scene, pilot, AUTO), AUTO)
+    return _first_published(scene, times, pilot, AUTO)
 
 
 def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
-    """Return the bits that a scene's digits need: of the only run, or of the coarser of two that have to agree.
+    """Return the bits that a scene's digits need: of the only run, or of the coarser of two.
 
-    Where double serves, long double is compared with it, and nothing of higher precision is compiled; not with a proof.
+    Where double serves, it is compared with long double, and nothing of higher precision is
+    compiled; this does not hold for a proof.
     """
+    is_single = scene.run.level == "computed"
     span = scene.exact.t_end if scene.run.transits else None
-    more = second_order_bits(scene, pilot)
-    if scene.run.level == "computed":
-        prec = pilot.bits_for(scene.run.digits, span, checked=False) + more
+    prec = pilot.bits_for(scene.run.digits, span, checked=not is_single)
+    prec += second_order_bits(scene, pilot)
+    if is_single:
         return rounded_prec(prec) if prec > LONG_DOUBLE.prec else prec
-    prec = pilot.bits_for(scene.run.digits, span, checked=True) + more
-    if prec <= DOUBLE.prec and engine in (AUTO, HARDWARE_ENGINE) and scene.run.level != "enclosed":
+    may_be_double = engine in (AUTO, _HARDWARE_ENGINE) and scene.run.level != "enclosed"
+    if may_be_double and prec <= DOUBLE.prec:
         return DOUBLE.prec
     return rounded_prec(max(prec, LONG_DOUBLE.prec))
 
@@ -108,35 +113,43 @@ def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
 def published_plan(
     scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int, engine: str
 ) -> Plan:
-    """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
-    finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
-    bits = prec if scene.run.level == "computed" else finer
+    """Return the run that is published: in `prec` bits if it is the only one, else in more."""
+    if scene.run.level == "computed":
+        bits = prec
+    elif prec == DOUBLE.prec:
+        bits = LONG_DOUBLE.prec
+    else:
+        bits = prec + FINER_BITS
     return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.zeros)
 
 
 def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int) -> Plan:
     """Return heyoka's run that confirms another one: in another formulation, of `prec` bits.
 
-    It is `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed.
+    It is `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod
+    is pushed.
     """
-    number, formulation = (
-        DOUBLE if prec == DOUBLE.prec else real(prec),
-        "space" if pilot.tension > 0 else "spin",
-    )
+    number = DOUBLE if prec == DOUBLE.prec else real(prec)
+    formulation = "space" if pilot.tension > 0 else "spin"
     return Plan(scene.exact, formulation, number, times, scene.run.zeros)
 
 
 def drawn_intervals(scene: Scene) -> list[int]:
-    """Return the intervals of a scene's grid that a sampled confirmation integrates: the first is 0.
+    """Return the intervals of a grid, counted from 0, that a sampled confirmation integrates.
 
-    A tenth of them, rounded up: those with the least sha256 of "HASH K", where K counts intervals from 1, and HASH is
-    the sha256, in hexadecimal figures, of the scene's inputs as JSON without spaces.
+    A tenth of them, rounded up: those with the least sha256 of "HASH K", where K counts intervals
+    from 1, and HASH is the sha256, in hexadecimal figures, of the scene's inputs as JSON without
+    spaces.
     """
-    inputs = scene.model_dump_json(
-        include={"inputs", "pendulum", "site", "release", "run"}, exclude_none=True
-    )
-    word, count = sha256(inputs.encode()).hexdigest(), len(scene.exact.grid) - 1
-    drawn = sorted(range(count), key=lambda i: sha256(f"{word} {i + 1}".encode()).digest())
+    sections = {"inputs", "pendulum", "site", "release", "run"}
+    inputs = scene.model_dump_json(include=sections, exclude_none=True)
+    scene_hash = sha256(inputs.encode()).hexdigest()
+
+    def draw(i: int) -> bytes:
+        return sha256(f"{scene_hash} {i + 1}".encode()).digest()
+
+    count = len(scene.exact.grid) - 1
+    drawn = sorted(range(count), key=draw)
     return sorted(drawn[: ceil(Fraction(count, SAMPLED))])
 
 

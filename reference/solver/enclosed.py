@@ -1,15 +1,20 @@
-"""The level `enclosed`: a proof, its audit by FLINT alone, and heyoka's confirmation, of the whole or of a sample.
+"""The level `enclosed`: a proof, its audit by FLINT alone, and its confirmation by heyoka.
 
-A sampled run starts from the middles of proven intervals, not from the digits printed of them. By the theorem a motion
-that begins in the middle at one time passes through the interval at every later one. So nothing has to be allowed for
-how an interval of the grid amplifies half a unit of the last digit, and the run has to agree as closely as a whole one.
+A confirmation repeats the whole run, or a sample of the grid's intervals.
+
+A sampled run starts from the middles of proven intervals, not from the digits printed of them. By
+the theorem a motion that begins in the middle at one time passes through the interval at every
+later one. So nothing has to be allowed for how an interval of the grid amplifies half a unit of the
+last digit, and the run has to agree as closely as a whole one.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -17,6 +22,7 @@ from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import (
     WORTH_A_PROCESS,
+    Background,
     expected_s,
     in_background,
     reports,
@@ -29,82 +35,99 @@ from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
 from ..numbers.zeros import XDOT
 from ..scenes.fields import Confirmation
-from ..scenes.scene import Scene
 from ..system.workers import Emit, Parent
 from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .guard import guarded
 from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, proved
+from .request import SolveRequest
 from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
 
 # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
-AUDIT_STEPS = 2000
-LOWER = 5  # priority of that process, in steps of `nice`
-WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
+_AUDIT_STEPS = 2000
+_LOWER = 5  # priority of that process, in steps of `nice`
+_WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
 
 
-def solve_enclosed(
-    scene: Scene,
-    engine: str,
-    report: Report | None,
-    audit: bool,
-    confirm: Confirmation,
-    function: bool,
-) -> Solution:
-    """Enclose a scene's states and transits so tightly that every digit asked for is decided.
+def solve_enclosed(request: SolveRequest) -> Solution:
+    """Enclose a scene's states and zeros so tightly that every digit asked for is decided.
 
-    With `audit` FLINT alone proves the same run again, which has to give the same digits. Where `confirm` is "whole",
-    heyoka's run in another formulation has to agree to each of them. Both are done meanwhile, where that pays. Where it
-    is "sampled", heyoka has to reach the end of each drawn interval of the grid from its first row; if these are more
-    than the steps of a whole run, that is made. Where no whole run confirms every transit, one in a cheaper type may
-    refuse them. With `function` the golden function is made as well.
+    With `audit`, FLINT alone proves the same run again, which has to give the same digits. With
+    `confirm`:
+
+    - "whole": heyoka's run in another formulation has to agree to every digit and transit,
+    - "sampled": heyoka has to reach the end of each drawn interval of the grid from its first row.
+
+    Audit and whole confirmation run in the background where that pays. Unless a whole run confirms
+    every transit, a cheaper run with event detection must find the same ones (`guard`).
 
     Raises:
         InputError: python-flint is not installed.
-        UnreachableError: no balls are small enough, and it tells the radius that was reached; or heyoka's confirmation
-            is out of reach.
+        UnreachableError: no balls are small enough, and it tells the radius that was reached; or
+            heyoka's confirmation is out of reach.
         IntegrationError: a run lies outside the enclosure, or finds other transits or numbers.
     """
     need_flint()
     from .. import enclosure
 
+    scene = request.scene
+    options = request.proof
     enclosure.check_gates(scene.exact, scene.run.sections or ())
-    problem = ProofTask(scene, engine, run_pilot(scene.exact, tuple(scene.exact.grid)), function)
-    if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
-        # of a grid so fine a sample costs more: a step at least for each interval
-        confirm = "whole"
-    with ExitStack() as meanwhile:
-        plan = None if confirm == "none" else _confirming_plan(problem, confirm)
-        pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
-        confirming = (
-            meanwhile.enter_context(in_background(pays, send_run, plan))
-            if confirm == "whole"
-            else None
-        )
-        pays = problem.pilot.steps >= AUDIT_STEPS
-        again = in_background(pays, _send_digits, replace(problem, function=False))
-        second_proof = meanwhile.enter_context(again) if audit else None
-        report = report and slowest(
-            report, [child for child in (confirming, second_proof) if child is not None]
-        )
-        solution = proved(problem, enclosure.enclose, report)
-        if plan and confirm == "sampled":  # while the audit goes on
-            solution = confirmed(problem, solution, confirm, _sampled(plan, solution, report))
+    pilot = run_pilot(scene.exact, request.times)
+    task = ProofTask(scene, request.engine, pilot, options.function)
+    confirm = _affordable(options.confirm, task)
+
+    with ExitStack() as background:
+        plan = None if confirm == "none" else _confirming_plan(task, confirm)
+        whole_run = second_proof = None
+        if plan is not None and confirm == "whole":
+            pays = expected_s(plan, pilot.steps) >= WORTH_A_PROCESS
+            whole_run = background.enter_context(in_background(pays, send_run, plan))
+        if options.audit:
+            pays = pilot.steps >= _AUDIT_STEPS
+            work = in_background(pays, _send_digits, replace(task, function=False))
+            second_proof = background.enter_context(work)
+
+        report = _slowest_report(request.report, (whole_run, second_proof))
+        solution = proved(task, enclosure.enclose, report)
+        if plan is not None and confirm == "sampled":  # while the audit goes on
+            solution = confirmed(task, solution, confirm, _sampled(plan, solution, report))
         if second_proof is not None:
             solution = audited(solution, *second_proof.result(report))
-        if confirming is not None:
-            solution = confirmed(problem, solution, confirm, confirming.result(report))
-        return (
-            solution if confirming and not solution.possible else guarded(solution, problem.pilot)
-        )
+        if whole_run is not None:
+            solution = confirmed(task, solution, confirm, whole_run.result(report))
+
+        if whole_run is not None and not solution.possible:
+            return solution
+        return guarded(solution, pilot)
+
+
+def _affordable(confirm: Confirmation, task: ProofTask) -> Confirmation:
+    """Return "whole" in place of "sampled" on a grid so fine that a sample costs more."""
+    # each interval takes a step at least
+    if confirm == "sampled" and len(drawn_intervals(task.scene)) > task.pilot.steps:
+        return "whole"
+    return confirm
+
+
+def _slowest_report(report: Report | None, work: Iterable[Background | None]) -> Report | None:
+    """Return a report of the time that this process and work in the background have reached."""
+    if report is None:
+        return None
+    return slowest(report, [child for child in work if child is not None])
 
 
 def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:
-    """Return a proved solution as audited, given the digits that FLINT alone proves, and the CPU seconds it took.
+    """Return a proved solution as audited.
+
+    Args:
+        solution: the solution.
+        digits: those that FLINT alone proves, as of `proved_digits`.
+        cpu_s: CPU seconds that this took.
 
     Raises:
-        IntegrationError: they are others.
+        IntegrationError: the digits differ.
     """
     if digits != proved_digits(solution):
         raise IntegrationError("FLINT alone proves other digits.")
@@ -115,69 +138,76 @@ def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:
 def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
     tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
-    decided = {
-        word: (zeros.directions, [parity for *_, parity in zeros.possible])
-        for word, zeros in solution.zeros.items()
-    }
+    decided = {}
+    for word, zeros in solution.zeros.items():
+        parities = [parity for _, _, parity in zeros.possible]
+        decided[word] = (zeros.directions, parities)
     return tables, decided
 
 
-def _send_digits(emit: Emit, problem: ProofTask) -> None:
-    """Prove the digits by FLINT alone; in a process of its own give way: heyoka's run, the longest, needs a core."""
+def _send_digits(emit: Emit, task: ProofTask) -> None:
+    """Prove the digits by FLINT alone, and send them."""
     from ..enclosure import enclose
 
-    if isinstance(emit, Parent):
-        os.nice(LOWER)
-    again = proved(problem, partial(enclose, flint_only=True), reports(emit))
+    if isinstance(
+        emit, Parent
+    ):  # in a process of its own: leave the core to heyoka's run, the longest
+        os.nice(_LOWER)
+    again = proved(task, partial(enclose, flint_only=True), reports(emit))
     emit((proved_digits(again), again.cpu_s - again.pilot_s))
 
 
-def _confirming_plan(problem: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:
+def _confirming_plan(task: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:
     """Return heyoka's run in another formulation, in `prec` bits or in those that the digits need.
 
     Raises:
         UnreachableError: the run, or the sampled tenth of it, is out of reach.
     """
-    scene, pilot = problem.scene, problem.pilot
+    scene = task.scene
+    pilot = task.pilot
     bits = prec or first_prec(scene, pilot, AUTO)
-    check_reach(
-        pilot.steps // (SAMPLED if confirm == "sampled" else 1), bits, scene.run.digits, WITHOUT
-    )
+    steps = pilot.steps // SAMPLED if confirm == "sampled" else pilot.steps
+    check_reach(steps, bits, scene.run.digits, _WITHOUT)
     return confirming_plan(scene, tuple(scene.exact.grid), pilot, bits)
 
 
 def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Run:
-    """Return heyoka's run over the drawn intervals, each from the middle of the proven one at its first row."""
+    """Return heyoka's run over the drawn intervals of the grid.
+
+    Each starts from the middle of the proven interval at its first row.
+    """
     from ..engines.heyoka.run import run_between
 
     states_alone = replace(plan, zeros=())
     return run_between(states_alone, solution.grid, drawn_intervals(solution.scene), report)
 
 
-def confirmed(
-    problem: ProofTask, solution: Solution, confirm: Confirmation, witness: Run
-) -> Solution:
-    """Return a proved solution with the run that confirms it, at a precision that is raised until it agrees.
+def confirmed(task: ProofTask, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
+    """Return a proved solution with the run that confirms it, in more bits until it agrees.
 
     Raises:
         UnreachableError: a finer run, which it takes, is out of reach.
         IntegrationError: heyoka finds other numbers, or other transits.
     """
-    last, grid = None, solution.grid
+    grid = solution.grid
     if confirm == "sampled":
-        grid = replace(grid, values=[grid.values[i + 1] for i in drawn_intervals(solution.scene)])
+        rows = [grid.values[i + 1] for i in drawn_intervals(solution.scene)]
+        grid = replace(grid, values=rows)
+
+    last_m: Fraction | None = None
     for _ in range(MAX_RAISES):
-        check, missing = _compared(witness, solution, grid)
-        if not missing:
+        check, missing_bits = _compared(witness, solution, grid)
+        if not missing_bits:
             assert solution.proof is not None
             proof = replace(solution.proof, confirmed=confirm)
             return replace(solution, checks=(*solution.checks, check), proof=proof)
-        if last is not None and check.position_m >= last > 0:
-            break
-        last = check.position_m
+        if last_m is not None and check.position_m >= last_m > 0:
+            break  # a higher precision does not bring the run closer
+        last_m = check.position_m
+
         solution = replace(solution, discarded_s=solution.discarded_s + witness.cpu_s)
-        prec = max(LONG_DOUBLE.prec, rounded_prec(witness.plan.number.prec + missing))
-        plan = _confirming_plan(problem, confirm, prec)
+        prec = max(LONG_DOUBLE.prec, rounded_prec(witness.plan.number.prec + missing_bits))
+        plan = _confirming_plan(task, confirm, prec)
         witness = run(plan) if confirm == "whole" else _sampled(plan, solution)
     raise IntegrationError(
         f"heyoka does not confirm the proof: it is {float(check.position_m):.2g} m away."
@@ -185,18 +215,20 @@ def confirmed(
 
 
 def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck, int]:
-    """Return a run as a check of a solution, and the bits that it lacks to agree to a quarter of the last digit.
+    """Return a run as a check of a solution, and the bits that it lacks to agree with it.
 
-    `grid` are the solution's rows that the run has.
+    They agree if they differ by a quarter of the last digit at most. `grid` holds the rows of the
+    solution that the run has.
     """
-    gaps, late = grid.distance(witness.grid).largest(), None
+    gaps = grid.distance(witness.grid).largest()
     missing = [bits_lacking(gaps, grid_decimals(solution))]
+    transit_s = None
     for word, zeros in solution.zeros.items():
-        if word in witness.zeros and not zeros.possible:
-            lacking, apart = zeros_lacking(
-                zeros, witness.zeros[word], decimals_of_zeros(solution, word), witness
-            )
-            missing.append(lacking)
-            if word == XDOT and apart is not None:
-                late = apart.largest()["t"]
-    return CrossCheck.by(witness, gaps, late), max(missing)
+        if word not in witness.zeros or zeros.possible:
+            continue
+        decimals = decimals_of_zeros(solution, word)
+        lacking, distances = zeros_lacking(zeros, witness.zeros[word], decimals, witness)
+        missing.append(lacking)
+        if word == XDOT and distances is not None:
+            transit_s = distances.largest()["t"]
+    return CrossCheck.by(witness, gaps, transit_s), max(missing)

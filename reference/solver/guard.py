@@ -1,4 +1,7 @@
-"""A run with event detection beside a proof: it must find the zeros that were proved, and nothing rests on it."""
+"""A run with event detection beside a proof: it must find the zeros that were proved.
+
+The proof does not rely on it.
+"""
 
 from __future__ import annotations
 
@@ -20,13 +23,16 @@ from .pilot import ESTIMATE_FACTOR, Pilot, second_order_bits
 from .proving import EVALUATION_BITS
 from .solution import CrossCheck, Solution
 
-USUAL_DIGITS, FINER_DIGITS = 7, 27  # of the run with event detection, at first and on a second try
-MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
+_USUAL_DIGITS = 7  # of the run with event detection
+_FINER_DIGITS = 27  # of a second one, if the first fails
+_MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
 SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
 def guarded(solution: Solution, pilot: Pilot) -> Solution:
-    """Have a run with event detection, in the cheapest type that serves, see the transits of a proved solution.
+    """Have a run with event detection find the zeros of a proved solution.
+
+    It is made in the cheapest type that serves.
 
     What it measures is not the same on every machine, and goes into no dataset.
 
@@ -34,93 +40,108 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
         The solution with that run as its `guard`, or with the reason why it could not be made.
 
     Raises:
-        IntegrationError: the run finds other transits; names the first that differs.
+        IntegrationError: the run finds other zeros; names the first that differs.
     """
-    scene, times = solution.scene, solution.times
     if not solution.zeros:
         return solution
-    usual, finer = (
-        pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS)
-    )
-    least, more = _bits_to_see(solution.transits, times[-1], pilot), second_order_bits(scene, pilot)
+    inputs = solution.scene.exact
+    words = tuple(solution.zeros)
     contradiction: IntegrationError | None = None
-    units = {name: Fraction(1, 10**places) for name, places in pilot.decimals(USUAL_DIGITS).items()}
-    for prec in (max(usual + more, least), max(finer + more, least + finer - usual)):
-        if prec > MOST_CHECK_PREC:
+    for prec in _precisions(solution, pilot):
+        if prec > _MOST_CHECK_PREC:
             reason: Exception = UnreachableError(
                 f"A run would take {prec} bits to see transits so flat."
             )
             break
         try:
-            event_run = run(
-                Plan(scene.exact, "momentum", cheapest_type(prec), times, tuple(solution.zeros))
-            )
+            event_run = run(Plan(inputs, "momentum", cheapest_type(prec), solution.times, words))
         except (UnreachableError, OverflowError) as error:
             reason = error
             break
-        gaps = solution.grid.distance(event_run.grid).largest()
         try:
-            if any(gaps[name] > unit for name, unit in units.items()):
-                raise IntegrationError(
-                    f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure."
-                )
-            apart = _zero_gaps(event_run, solution, _between_rows(gaps))
-        except (
-            IntegrationError
-        ) as error:  # the motion may amplify errors too much for so few digits
+            return replace(solution, guard=_check(event_run, solution, pilot))
+        except IntegrationError as error:
+            # the motion may amplify errors too much for so few digits
             contradiction = reason = error
             solution = replace(solution, discarded_s=solution.discarded_s + event_run.cpu_s)
-        else:
-            return replace(solution, guard=CrossCheck.by(event_run, gaps, apart.get(XDOT)))
     if contradiction is not None:
         raise contradiction
     return replace(solution, not_checked=str(reason))
 
 
+def _precisions(solution: Solution, pilot: Pilot) -> tuple[int, int]:
+    """Return the bits of a run with event detection, and of a second one if the first fails."""
+    end = solution.times[-1]
+    usual = pilot.bits_for(_USUAL_DIGITS, end, checked=False)
+    finer = pilot.bits_for(_FINER_DIGITS, end, checked=False)
+    least = _bits_to_see(solution.transits, end, pilot)
+    more = second_order_bits(solution.scene, pilot)
+    return max(usual + more, least), max(finer + more, least + finer - usual)
+
+
+def _check(event_run: Run, solution: Solution, pilot: Pilot) -> CrossCheck:
+    """Return a run with event detection as a check of a solution.
+
+    Raises:
+        IntegrationError: its states are too far from the enclosure, or it finds other zeros.
+    """
+    gaps = solution.grid.distance(event_run.grid).largest()
+    for name, places in pilot.decimals(_USUAL_DIGITS).items():
+        if gaps[name] > Fraction(1, 10**places):
+            raise IntegrationError(
+                f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure."
+            )
+    zero_gaps = _zero_gaps(event_run, solution, _between_rows(gaps))
+    return CrossCheck.by(event_run, gaps, zero_gaps.get(XDOT))
+
+
 def _between_rows(gaps: Mapping[str, Fraction]) -> dict[str, Fraction]:
     """Return how far a run may be off in each column, from how far it is at the grid's rows.
 
-    From one row to the next the swing turns an error in one column into one in the others of its kind.
+    From one row to the next the swing turns an error in one column into one in the others of its
+    kind.
     """
-    largest = {kind: max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY)}
-    return {name: ESTIMATE_FACTOR * gap for kind, gap in largest.items() for name in kind}
+    errors: dict[str, Fraction] = {}
+    for kind in (POSITION, VELOCITY):
+        error = ESTIMATE_FACTOR * max(gaps[name] for name in kind)
+        errors |= dict.fromkeys(kind, error)
+    return errors
 
 
 def _zero_gaps(
     event_run: Run, solution: Solution, errors: Mapping[str, Fraction]
 ) -> dict[str, Fraction]:
-    """Return by word how far the zeros that a run found are from the enclosed ones, at most, in s.
+    """Return by word the largest distance in s of the zeros of a run from the enclosed ones.
 
-    `errors` are how far its states may be off.
+    `errors` is how far its states may be off.
 
     Raises:
         IntegrationError: the run finds other zeros.
     """
     gaps = {}
     for word, zeros in solution.zeros.items():
-        seen = with_zero_errors(event_run, errors, word, None)
-        found = event_run.zeros[word]._replace(table=seen)
+        table = with_zero_errors(event_run, errors, word, None)
+        found = event_run.zeros[word]._replace(table=table)
         gaps[word] = _zero_gap(word, zeros, found, event_run.plan.number.prec)
     return gaps
 
 
 def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
-    """Return the bits at which xdot between any two transits is far above a run's rounding errors."""
+    """Return the bits at which xdot between two transits is far above a run's rounding errors."""
     if not len(transits):
         return 0
     unit = 1 << transits.bits
     times = [0, *transits.whole("t", transits.bits), math.floor(end * unit)]
-    apart = min((b - a for a, b in pairwise(times) if b > a), default=times[-1])
-    least = Fraction(min(map(abs, transits.whole("ax", transits.bits))) * apart, unit**2)
-    return (
-        pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS
-        if least
-        else MOST_CHECK_PREC + 1
-    )
+    shortest = min((b - a for a, b in pairwise(times) if b > a), default=times[-1])
+    slope = min(map(abs, transits.whole("ax", transits.bits)))
+    least_xdot = Fraction(slope * shortest, unit**2)
+    if not least_xdot:
+        return _MOST_CHECK_PREC + 1
+    return pilot.prec + bits_in(pilot.cautious["vx"] / least_xdot) + SEEN_BITS
 
 
 def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) -> Fraction:
-    """Return how far the zeros that a run found are from the enclosed ones, at most, in s.
+    """Return the largest distance of the zeros that a run found from the enclosed ones, in s.
 
     Args:
         word: of the zeros.
@@ -132,28 +153,27 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
         IntegrationError: the run has others.
     """
     name = "transit" if word == XDOT else f"{word} passage"
-    seen = found.table
-    if len(seen) != len(zeros.directions) and not zeros.possible:
+    if len(found.table) != len(zeros.directions) and not zeros.possible:
         raise IntegrationError(
-            f"heyoka finds {len(seen)} {name}s, the enclosure {len(zeros.directions)}."
+            f"heyoka finds {len(found.table)} {name}s, the enclosure {len(zeros.directions)}."
         )
-    bits = max(zeros.table.bits, seen.bits)
+    bits = max(zeros.table.bits, found.table.bits)
     rounding = zeros.table.largest()["t"] * Fraction(2) ** (EVALUATION_BITS - prec)
-    late = [math.floor((bound + rounding) * 2**bits) for bound in seen.bound("t")]
-    remaining = iter(zip(seen.whole("t", bits), late, found.directions, strict=True))
+    errors = [math.floor((bound + rounding) * 2**bits) for bound in found.table.bound("t")]
     bounds = [math.ceil(bound * 2**bits) for bound in zeros.table.bound("t")]
-    gaps = [0]
-    rows = zip(zeros.table.whole("t", bits), bounds, zeros.directions, strict=True)
-    for k, (t, bound, direction) in enumerate(rows, 1):
-        near = (
-            abs(t - time)
-            for time, off, sign in remaining
-            if sign == direction and abs(t - time) <= bound + off
-        )
-        gap = next(near, None)
-        if gap is None:
+    enclosed = zip(zeros.table.whole("t", bits), bounds, zeros.directions, strict=True)
+    # those that come after the last one that was matched
+    candidates = iter(zip(found.table.whole("t", bits), errors, found.directions, strict=True))
+
+    largest = 0
+    for k, (t, bound, direction) in enumerate(enclosed, 1):
+        for time, error, sign in candidates:
+            gap = abs(t - time)
+            if sign == direction and gap <= bound + error:
+                largest = max(largest, gap)
+                break
+        else:
             raise IntegrationError(
                 f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s."
             )
-        gaps.append(gap)
-    return Fraction(max(gaps), 2**bits)
+    return Fraction(largest, 2**bits)

@@ -1,9 +1,10 @@
-"""Pilot runs: how fast rounding errors grow on a scene, the bits that it needs, and what is out of reach.
+"""Pilot runs: how fast rounding errors grow on a scene, and the bits and steps that it needs.
 
-Two cheap runs that differ in precision show how many digits are lost between release and end. From them follow bits,
-number types and formulations, and so the bytes of a dataset. So they are made in arithmetic that is the same on every
-machine, in limbs or heyoka's `real`; in double and long double only where the result itself is in these types. A scene
-that would take too many steps, because it is stiff or long, is refused by the pace of the first steps.
+Two cheap runs that differ in precision show how many digits are lost between release and end. From
+them follow bits, number types and formulations, and so the bytes of a dataset. So they are made in
+arithmetic that is the same on every machine, in limbs or heyoka's `real`; in double and long double
+only where the result itself is in these types. A scene that would take too many steps, because it
+is stiff or long, is refused by the pace of the first steps.
 """
 
 from __future__ import annotations
@@ -11,9 +12,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 from ..engines import AUTO
-from ..engines.plan import Plan
+from ..engines.plan import Plan, Run
 from ..engines.registry import fastest, run
 from ..errors import BeyondDoublesError, UnreachableError
 from ..model.start import Start
@@ -23,7 +25,7 @@ from ..numbers.table import Table, bits_in, decimals_of, resolved
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 
-PILOT_PREC = 47  # of the first exact run: three limbs
+_PILOT_PREC = 47  # of the first exact run: three limbs
 PILOT_GAP_BITS = 22  # bits between it and the second: a limb
 LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
 # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
@@ -32,19 +34,19 @@ MARGIN_BITS = 14
 CLOSE_TRANSIT_BITS = 12
 # safety factor from the pilot's error to that of a run which no second one checks
 ESTIMATE_FACTOR = 16
-LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
+_LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
 # the pilot runs are compared at more times than this, so that no error is small by luck
-LEAST_TIMES = 64
+_LEAST_TIMES = 64
 # an error above this part of the largest position or speed leaves no digit
-LOST = Fraction(1, 1 << 12)
+_LOST = Fraction(1, 1 << 12)
 STILL_PREC = 128  # bits from which a velocity that is exactly zero is that of rest
 # bits from which a position or velocity that shrinks with the precision is taken for zero
 ZERO_PREC = 512
 MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_RAISES = 6  # of the precision, before giving up
 MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
-PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
-SETTLED = 10  # with drag γ the pace may change until t = SETTLED/γ
+_PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
+_SETTLED = 10  # with drag γ the pace may change until t = _SETTLED/γ
 
 
 @dataclass(frozen=True)
@@ -71,29 +73,32 @@ class Pilot:
 
     @property
     def sizes(self) -> dict[str, Fraction]:
-        """Size of each column: its largest number, or that of its kind if the column is only rounding noise."""
+        """Size of each column: its largest number, or that of its kind if it is rounding noise."""
         return resolved(self.largest, self.errors)
 
     @property
     def cautious(self) -> dict[str, Fraction]:
-        """Errors to assume where no second run checks them: with a safety factor, a floor, and the same for x and y."""
-        least = {name: LEAST_ULPS * size / 2**self.prec for name, size in self.largest.items()}
-        floored = {
-            name: ESTIMATE_FACTOR * max(error, least[name]) for name, error in self.errors.items()
-        }
-        return {
-            name: max(floored[column] for column in HORIZONTAL.get(name, (name,)))
-            for name in floored
-        }
+        """Errors to assume where no second run checks them, in SI units.
+
+        They have a safety factor and a floor, and are the same for x and y.
+        """
+        floored = {}
+        for name, error in self.errors.items():
+            least = _LEAST_ULPS * self.largest[name] / 2**self.prec
+            floored[name] = ESTIMATE_FACTOR * max(error, least)
+        cautious = {}
+        for name in floored:
+            alike = HORIZONTAL.get(name, (name,))
+            cautious[name] = max(floored[column] for column in alike)
+        return cautious
 
     def estimates(self, prec: int) -> dict[str, Fraction]:
         """Return the errors to state for a single run at a precision."""
-        return {
-            name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()
-        }
+        factor = Fraction(2) ** (self.prec - prec)
+        return {name: error * factor for name, error in self.cautious.items()}
 
     def decimals(self, digits: int) -> dict[str, int]:
-        """Return the decimals of each column with which its largest number has `digits` significant digits."""
+        """Return the decimals that give the largest number of each column `digits` digits."""
         return decimals_of(self.sizes, digits)
 
     def bits_for(self, digits: int, t_end: Fraction | None, *, checked: bool) -> int:
@@ -102,7 +107,8 @@ class Pilot:
         Args:
             digits: significant digits of each column's largest number.
             t_end: end of the run in s if the times of transits need their digits too, else None.
-            checked: whether a second run will check the result; if not, `cautious` errors are assumed.
+            checked: whether a second run will check the result; if not, `cautious` errors are
+                assumed.
         """
         needed = 0
         expected = self.errors if checked else self.cautious
@@ -133,89 +139,188 @@ def run_pilot(
         times: output times in s, from 0.
         engine: whose errors to measure; "auto" for the fastest, which shows how errors grow.
         samples: how many coarser runs, a bit apart, the largest error of which counts.
-        hardware: begin with double and long double, for a result in these types; its errors are measured, and not the
-            same on every machine.
+        hardware: begin with double and long double, for a result in these types; its errors are
+            measured, and not the same on every machine.
 
     Raises:
-        UnreachableError: the run takes too many steps, or rounding grows so fast that no affordable run keeps a digit.
+        UnreachableError: the run takes too many steps, or rounding grows so fast that no affordable
+            run keeps a digit.
     """
-    if len(times) <= LEAST_TIMES:
-        times = tuple(times[-1] * k / LEAST_TIMES for k in range(LEAST_TIMES + 1))
-    pair = (
-        (DOUBLE.prec, LONG_DOUBLE.prec) if hardware else (PILOT_PREC, PILOT_PREC + PILOT_GAP_BITS)
-    )
+    if len(times) <= _LEAST_TIMES:
+        times = tuple(times[-1] * k / _LEAST_TIMES for k in range(_LEAST_TIMES + 1))
+    pair = _PilotPair(inputs, times, engine, _PILOT_PREC, _PILOT_PREC + PILOT_GAP_BITS)
+    if hardware:
+        pair = replace(pair, prec=DOUBLE.prec, fine_prec=LONG_DOUBLE.prec, hardware=True)
+
     pace: Pace | None = Pace(inputs, times[-1])
-    last_prec, good_until, steps = 0, Fraction(0), 0
-    while pair[1] <= MAX_PREC and effort(steps, pair[1]) <= MAX_STEPS:
-        prec = pair[0]
-        try:
-            coarse = run(_plan(inputs, times, prec, engine, hardware), pace=pace)
-            fine = run(_plan(inputs, times, pair[1], engine, hardware))
-            further = [
-                run(_plan(inputs, times, prec + i, engine, hardware)) for i in range(1, samples)
-            ]
-            tension = coarse.tension
-        except OverflowError:
-            raise BeyondDoublesError from None
-        pace, steps = None, coarse.steps
-        grid = fine.grid.only(GRID)
-        gaps, largest = grid.distance(coarse.grid), grid.largest()
-        errors = gaps.largest()
-        for i, other in enumerate(further, 1):
-            apart = grid.distance(other.grid).largest()
-            errors = {name: max(error, apart[name] * 2**i) for name, error in errors.items()}
-        if not _lost(errors, largest, inputs.length, prec):
-            drifted = {name: largest[name] * steps / 2**prec for name in largest}
-            errors = (
-                errors
-                if hardware
-                else {name: max(error, drifted[name]) for name, error in errors.items()}
-            )
-            cpu_s = sum(done.cpu_s for done in (coarse, fine, *further))
-            return Pilot(prec, errors, largest, tension, cpu_s, steps, coarse.plan.engine)
-        last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
-        next_prec = max(
-            2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1])
+    last_prec = 0
+    good_until = Fraction(0)
+    steps = 0
+    while pair.fine_prec <= MAX_PREC and effort(steps, pair.fine_prec) <= MAX_STEPS:
+        runs = pair.run(samples, pace)
+        pace = None  # the first pair has shown it
+        steps = runs.coarse.steps
+        if not runs.lost():
+            return runs.pilot()
+
+        last_good_until = good_until
+        good_until = runs.good_until()
+        extrapolated = _extrapolated_prec(
+            (last_prec, last_good_until), (pair.prec, good_until), times[-1]
         )
-        pair, last_prec, hardware = (next_prec, next_prec + LATER_GAP_BITS), prec, False
+        last_prec = pair.prec
+        prec = max(2 * LONG_DOUBLE.prec, 2 * pair.prec, extrapolated)
+        pair = _PilotPair(inputs, times, engine, prec, prec + LATER_GAP_BITS)
     raise UnreachableError(
         f"Rounding grows so fast that runs keep no digit beyond t = {float(good_until):.3g} s; "
-        f"to the end it takes about {pair[0]} bits, which is out of reach.",
+        f"to the end it takes about {pair.prec} bits, which is out of reach.",
         "Ask for a shorter run: run.t_end.",
     )
 
 
-def _plan(
-    inputs: Inputs, times: tuple[Fraction, ...], prec: int, engine: str, hardware: bool
-) -> Plan:
-    """Return a pilot run, in limbs or in heyoka's `real` unless it is to be one in hardware."""
-    if hardware:
-        return Plan(inputs, "momentum", DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE, times)
-    # about one a step
-    radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(times[-1]))
-    plan = fastest(max(prec, LONG_DOUBLE.prec + 1), engine, 2 * radians).plan(inputs, prec, times)
-    return replace(plan, number=real(prec)) if plan.number.hardware else plan
+@dataclass(frozen=True)
+class _PilotPair:
+    """Two pilot runs that are to be made.
+
+    Attributes:
+        inputs: the exact inputs of a scene.
+        times: output times in s, from 0.
+        engine: that makes them; "auto" for the fastest.
+        prec: bits of the coarse run.
+        fine_prec: bits of the fine run.
+        hardware: whether they are in double and long double.
+    """
+
+    inputs: Inputs
+    times: tuple[Fraction, ...]
+    engine: str
+    prec: int
+    fine_prec: int
+    hardware: bool = False
+
+    def run(self, samples: int, pace: Pace | None) -> _PilotRuns:
+        """Make the runs, and coarse ones of a few more bits up to `samples` in all.
+
+        Raises:
+            UnreachableError: at its pace the coarse run takes too many steps.
+        """
+        try:
+            coarse = run(self._plan(self.prec), pace=pace)
+            fine = run(self._plan(self.fine_prec))
+            further = [run(self._plan(self.prec + i)) for i in range(1, samples)]
+            tension = coarse.tension
+        except OverflowError:
+            raise BeyondDoublesError from None
+        return _PilotRuns(self, coarse, fine, further, tension)
+
+    def _plan(self, prec: int) -> Plan:
+        """Return a pilot run, in limbs or in heyoka's `real` unless it is to be in hardware."""
+        if self.hardware:
+            number = DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE
+            return Plan(self.inputs, "momentum", number, self.times)
+        # about one a step
+        start = Start.of(self.inputs, LONG_DOUBLE.prec)
+        radians = math.ceil(start.fastest_rate * float(self.times[-1]))
+        engine = fastest(max(prec, LONG_DOUBLE.prec + 1), self.engine, 2 * radians)
+        plan = engine.plan(self.inputs, prec, self.times)
+        return replace(plan, number=real(prec)) if plan.number.hardware else plan
+
+
+@dataclass(frozen=True)
+class _PilotRuns:
+    """Pilot runs that have been made.
+
+    Attributes:
+        pair: what was to be made.
+        coarse: the run whose errors are measured.
+        fine: the run that it is compared with.
+        further: coarse runs of 1, 2, ... bits more.
+        tension: least tension of the cord over l in the coarse run, in 1/s².
+    """
+
+    pair: _PilotPair
+    coarse: Run
+    fine: Run
+    further: list[Run]
+    tension: float
+
+    @cached_property
+    def _grid(self) -> Table:
+        return self.fine.grid.only(GRID)
+
+    @cached_property
+    def _gaps(self) -> Table:
+        """Differences of the coarse run from the fine one."""
+        return self._grid.distance(self.coarse.grid)
+
+    @cached_property
+    def _largest(self) -> dict[str, Fraction]:
+        return self._grid.largest()
+
+    @cached_property
+    def _errors(self) -> dict[str, Fraction]:
+        """The largest error in each column, scaled to the bits of the coarse run."""
+        errors = self._gaps.largest()
+        for bits, other in enumerate(self.further, 1):
+            gaps = self._grid.distance(other.grid).largest()
+            errors = {name: max(error, gaps[name] * 2**bits) for name, error in errors.items()}
+        return errors
+
+    def lost(self) -> bool:
+        """Return whether position or velocity keeps no digit."""
+        return _lost(self._errors, self._largest, self.pair.inputs.length, self.pair.prec)
+
+    def good_until(self) -> Fraction:
+        """Return the time in s until which both position and velocity keep a digit."""
+        return _good_until(self._gaps, self.pair.times, self._largest)
+
+    def pilot(self) -> Pilot:
+        """Return what the runs have measured."""
+        errors = self._errors
+        if not self.pair.hardware:
+            # no error is taken to be less than that of a last bit a step, always in one direction
+            drift = Fraction(self.coarse.steps, 2**self.pair.prec)
+            sizes = self._largest
+            errors = {name: max(error, sizes[name] * drift) for name, error in errors.items()}
+        return Pilot(
+            prec=self.pair.prec,
+            errors=errors,
+            largest=self._largest,
+            tension=self.tension,
+            cpu_s=sum(done.cpu_s for done in (self.coarse, self.fine, *self.further)),
+            steps=self.coarse.steps,
+            engine=self.coarse.plan.engine,
+        )
 
 
 def _lost(
     errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int
 ) -> bool:
-    """Return whether position or velocity keeps no digit; one that shrinks with the precision is zero, not lost.
+    """Return whether position or velocity keeps no digit.
 
-    Nor does one keep it that is exactly zero in few bits: numbers with a fixed point may not show so slow a motion.
+    One that shrinks with the precision is zero, not lost.
+
+    Nor does one keep it that is exactly zero in few bits: numbers with a fixed point may not show
+    so slow a motion.
     """
-    pairs = [
-        (max(errors[name] for name in kind), max(largest[name] for name in kind))
-        for kind in (POSITION, VELOCITY)
-    ]
     zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(0)
-    return any(error > size * LOST if size > zero else prec < STILL_PREC for error, size in pairs)
+    for kind in (POSITION, VELOCITY):
+        size = max(largest[name] for name in kind)
+        error = max(errors[name] for name in kind)
+        if size > zero and error > size * _LOST:
+            return True
+        if size <= zero and prec < STILL_PREC:
+            return True
+    return False
 
 
 def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], end: Fraction) -> int:
-    """Return the bits that keep a digit to the end, from two precisions and how long each kept one; 0 if unknown.
+    """Return the bits that keep a digit to the end; 0 if that is unknown.
 
-    The pair in double is not used: a single fall from the top may cost all its digits, and what follows little.
+    It is extrapolated from two precisions, each with the time in s until which it kept a digit.
+
+    The pair in double is not used: a single fall from the top may cost all its digits, and what
+    follows little.
     """
     (less, sooner), (more, later) = last, now
     if less <= LONG_DOUBLE.prec or later <= sooner:
@@ -225,21 +330,25 @@ def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], en
 
 def _good_until(gaps: Table, times: tuple[Fraction, ...], largest: dict[str, Fraction]) -> Fraction:
     """Return the time in s until which both position and velocity keep a digit."""
-    most = {
-        name: LOST * max(largest[column] for column in kind)
-        for kind in (POSITION, VELOCITY)
-        for name in kind
-    }
-    columns = [(gaps.exact(name), limit) for name, limit in most.items()]
-    lost = (i for i in range(len(times)) if any(column[i] > limit for column, limit in columns))
-    first = next(lost, len(times))
-    return times[first - 1] if first else Fraction(0)
+    columns = []
+    for kind in (POSITION, VELOCITY):
+        limit = _LOST * max(largest[name] for name in kind)
+        columns += [(gaps.exact(name), limit) for name in kind]
+    good_until = Fraction(0)
+    for i, time in enumerate(times):
+        if any(column[i] > limit for column, limit in columns):
+            break
+        good_until = time
+    return good_until
 
 
 def effort(steps: int, prec: int) -> int:
-    """Return the number of steps at 160 bits that cost as much, if a step's cost grows with the cube of the bits.
+    """Return the number of steps at 160 bits that cost as much.
 
-    That is cautious, for a limit: at a few hundred bits it grows more like the square (`Engine.expected_s`).
+    A step's cost is taken to grow with the cube of the bits.
+
+    That is cautious, for a limit: at a few hundred bits it grows more like the square
+    (`Engine.expected_s`).
     """
     return steps * max(1, prec // 32) ** 3 // 125
 
@@ -274,32 +383,46 @@ class Pace:
     """
 
     def __init__(self, inputs: Inputs, end: Fraction) -> None:
-        self._inputs, self._end, self._before, self._watching = inputs, float(end), (0, 0.0), True
+        self._inputs = inputs
+        self._end = float(end)
+        self._last_steps = 0
+        self._last_t = 0.0
+        self._watching = True
 
     def __call__(self, steps: int, t: float) -> None:
         """Measure the pace once, or with drag again and again."""
-        steps_before, t_before = self._before
-        if not self._watching or steps - steps_before < PACE_STEPS:
+        more_steps = steps - self._last_steps
+        if not self._watching or more_steps < _PACE_STEPS:
             return
-        self._before, pace = (
-            (steps, t),
-            (steps - steps_before) / (t - t_before) if t > t_before else math.inf,
-        )
-        needed, drag = steps + (self._end - t) * pace, self._inputs.drag
+        pace = more_steps / (t - self._last_t) if t > self._last_t else math.inf
+        self._last_steps = steps
+        self._last_t = t
+
+        needed = steps + (self._end - t) * pace
         self._watching = needed > MAX_STEPS
-        if self._watching and (steps >= MAX_STEPS or drag * Fraction(t) >= SETTLED or not drag):
+        if self._watching and (steps >= MAX_STEPS or self._settled(t)):
             most = 0.95 * (t + (MAX_STEPS - steps) / pace)
             advice = f"Ask for a shorter run (run.t_end up to about {most:.2g}) or less drag."
             raise UnreachableError(_reason(self._inputs, needed, pace), advice)
 
+    def _settled(self, t: float) -> bool:
+        """Return whether drag does not change the pace any more."""
+        drag = self._inputs.drag
+        return not drag or drag * Fraction(t) >= _SETTLED
+
 
 def _reason(inputs: Inputs, needed: float, pace: float) -> str:
-    """Return why a run takes too many steps: it is long, or strong drag makes it stiff (rates far apart in size)."""
+    """Return why a run takes too many steps: it is long, or strong drag makes it stiff.
+
+    Stiff is a motion whose rates are far apart in size.
+    """
     altogether = f"{needed:.1e} steps, and at most {MAX_STEPS:.1e} are taken."
     start = Start.of(inputs, LONG_DOUBLE.prec)
-    swing, drag = float(start.ctx.norm(start.k.pull)) ** 0.5, float(inputs.drag)
+    swing = float(start.ctx.norm(start.k.pull)) ** 0.5
+    drag = float(inputs.drag)
     if 2 * swing >= drag:
         return f"The run takes {pace:.1e} steps per simulated second, altogether {altogether}"
+
     fast = drag * (1 + math.sqrt(1 - (2 * swing / drag) ** 2)) / 2
     slow = swing**2 / fast
     then = "nothing moves any more"
@@ -312,10 +435,13 @@ def _reason(inputs: Inputs, needed: float, pace: float) -> str:
 
 
 def second_order_bits(scene: Scene, pilot: Pilot) -> int:
-    """Return the bits that highest and lowest points need besides: the height is of second order in the amplitude."""
-    fastest_speed = max(pilot.sizes[name] for name in VELOCITY)
-    if not fastest_speed or not {"highest", "lowest"} & {*(scene.run.sections or ())}:
+    """Return the bits that highest and lowest points need besides.
+
+    The height is of second order in the amplitude.
+    """
+    speed = max(pilot.sizes[name] for name in VELOCITY)
+    needs_height = {"highest", "lowest"} & {*(scene.run.sections or ())}
+    if not speed or not needs_height:
         return 0
-    return bits_in(
-        scene.exact.length * Fraction(Start.of(scene.exact, DOUBLE.prec).rate) / fastest_speed
-    )
+    swing_rate = Fraction(Start.of(scene.exact, DOUBLE.prec).rate)
+    return bits_in(scene.exact.length * swing_rate / speed)

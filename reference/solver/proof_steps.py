@@ -1,7 +1,8 @@
-"""The approximant of a proof: the Taylor steps of an engine's run, computed in a child process if they are dear.
+"""The approximant of a proof: the Taylor steps of an engine's run, in a child process if costly.
 
-A polynomial serves both sides of its centre, so only every other step is sent. The proof consumes the polynomials as
-they arrive; the pipe provides back-pressure. The proof bounds the defect of every polynomial, so none need be trusted.
+A polynomial serves both sides of its centre, so only every other step is sent. The proof consumes
+the polynomials as they arrive; the pipe provides back-pressure. The proof bounds the defect of
+every polynomial, and relies on none.
 """
 
 from __future__ import annotations
@@ -21,16 +22,17 @@ from ..system.workers import Emit, Worker
 # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 COEFFICIENT_BITS = 20
 BATCH = 32  # steps sent at once
-# A step of heyoka is as long as its epsilon allows: one radius that encloses such a run comes out up to 10 bits wider
-# than `MARGIN_BITS` counts on, and a proof that begins with too few bits is made a second time. Columns begin too low
-# as well, but `inverted_rest` ships with the bits that they take so.
+# A step of heyoka is as long as its epsilon allows: one radius that encloses such a run is up to 10
+# bits wider than `MARGIN_BITS` assumes, and a proof that begins with too few bits is made a second
+# time. Columns begin with too few bits as well, but the shipped bytes of `inverted_rest` depend on
+# that.
 HEYOKA_BITS = 8
 
-Sent = tuple[TaylorStep | Run, float]
+_Sent = tuple[TaylorStep | Run, float]
 
 
 class EngineChanged(Exception):
-    """The engine that a proof began with is not the one to go on with: that is `engine`."""
+    """A proof has to go on with another engine than it began with: `engine`."""
 
     def __init__(self, engine: str) -> None:
         super().__init__(engine)
@@ -38,12 +40,15 @@ class EngineChanged(Exception):
 
 
 class Feed:
-    """The run whose Taylor steps a proof takes: called with the proof's bits, it starts one and returns its steps."""
+    """The run whose Taylor steps a proof takes.
+
+    Called with the proof's bits, it starts a run and returns its steps.
+    """
 
     def __init__(
         self, inputs: Inputs, times: tuple[Fraction, ...], engine: str, steps: int = MANY_STEPS
     ) -> None:
-        """Declare the run.
+        """Prepare the run.
 
         Args:
             inputs: the scene's exact inputs.
@@ -51,10 +56,14 @@ class Feed:
             engine: name of the engine, where it has the bits; "auto" for the fastest.
             steps: about how many steps it takes in double.
 
-        `run_s` and `proof_s` are the CPU seconds of the last run, as far as it has come, and of what was done with its
-        steps; `discarded_s` those of all runs before.
+        `begun` is the engine of the last run, "" before the first. `run_s` and `proof_s` are the
+        CPU seconds of the last run so far, and of the work with its steps; `discarded_s` are those
+        of all earlier runs.
         """
-        self._inputs, self._times, self._engine, self._count = inputs, times, engine, steps
+        self._inputs = inputs
+        self._times = times
+        self._engine = engine
+        self._count = steps
         self.begun = ""
         self._worker: Worker | None = None
         self._steps = self._only_steps(())
@@ -65,19 +74,21 @@ class Feed:
         """Start the run for a proof in so many bits and return its steps, in order from t = 0.
 
         Raises:
-            EngineChanged: another engine has to do it than at the first call. All that a proof has tried is to be of
-                the engine that its dataset names, so that `--engine` gives the same bytes again.
+            EngineChanged: another engine has to make this run than the first. All runs of a proof
+                have to be by the engine that its dataset names, so that `--engine` gives the same
+                bytes again.
         """
         self.stop()
-        self._steps.close()  # which ends its clock
+        self._steps.close()  # this stops its clock
         self.discarded_s += self.run_s + self.proof_s
         self.run_s = self.proof_s = 0.0
         prec = bits - COEFFICIENT_BITS
         engine = fastest(prec, self._engine, self._count, proof=True)
         if self.begun not in ("", engine.name):
             raise EngineChanged(engine.name)
-        self.begun, self._run = engine.name, None
-        run = engine.name, self._inputs, self._times, prec
+        self.begun = engine.name
+        self._run = None
+        run = (engine.name, self._inputs, self._times, prec)
         if engine.own_process and engine.expected_s(self._count, prec) >= WORTH_A_PROCESS:
             self._worker = Worker(_send, *run)
             self._steps = self._only_steps(chain.from_iterable(self._worker))
@@ -86,7 +97,7 @@ class Feed:
         return self._steps
 
     def lost(self, bits: int) -> int:
-        """Return how many bits a run of so many loses besides those that a proof counts on."""
+        """Return how many bits a run in `bits` bits loses besides those that a proof allows for."""
         engine = fastest(bits - COEFFICIENT_BITS, self._engine, self._count, proof=True)
         return HEYOKA_BITS if engine.name == "heyoka" else 0
 
@@ -103,7 +114,7 @@ class Feed:
         if self._worker is not None:
             self._worker.stop()
 
-    def _only_steps(self, items: Iterable[Sent]) -> Generator[TaylorStep]:
+    def _only_steps(self, items: Iterable[_Sent]) -> Generator[TaylorStep]:
         for item, self.run_s in items:
             if isinstance(item, Run):
                 self._run = item
@@ -117,28 +128,26 @@ class Feed:
 
 def _steps_and_run(
     engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int
-) -> Iterator[Sent]:
-    """Yield the steps of an engine's run, in the axes of a proof and paired, and at last the run.
+) -> Iterator[_Sent]:
+    """Yield the steps of an engine's run, in the axes of a proof and paired, and finally the run.
 
-    Beside each stand the CPU seconds since the first, before which code is compiled.
+    With each come the CPU seconds since the first, before which code is compiled.
     """
     from ..enclosure import pair, turned
 
     runs: list[Run] = []
 
     def steps() -> Iterator[TaylorStep]:
-        runs.append(
-            (
-                yield from engines()[engine].taylor_steps(
-                    inputs, times, prec, prec + COEFFICIENT_BITS
-                )
-            )
-        )
+        coefficient_bits = prec + COEFFICIENT_BITS
+        run = yield from engines()[engine].taylor_steps(inputs, times, prec, coefficient_bits)
+        runs.append(run)
 
     items: Iterator[TaylorStep | Run] = chain(pair(turned(inputs, steps())), runs)
-    cpu_s, begun = 0.0, None
+    cpu_s = 0.0
+    begun: float | None = None
     for item in items:
-        cpu_s += 0.0 if begun is None else process_time() - begun
+        if begun is not None:
+            cpu_s += process_time() - begun
         yield item, cpu_s
         begun = process_time()
 

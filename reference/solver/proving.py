@@ -1,12 +1,14 @@
-"""One proof: enclosing balls, made smaller until each printed digit is decided, and the runs that may refuse it.
+"""One proof: enclosing balls, made smaller until each printed digit is decided.
 
-Nothing that is proved rests on a run. One that contradicts the proof refuses it: the approximant, by heyoka or limbs,
-whose states must lie in the balls, and one with event detection, which must find the same transits.
+Nothing that is proved rests on a run, but a run that contradicts the proof refuses it: the
+approximant, by heyoka or limbs, whose states must lie in the balls, and a run with event detection,
+which must find the same transits (`guard`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -22,6 +24,7 @@ from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, second_order_bits
 from .proof_steps import EngineChanged, Feed
+from .request import progress_report
 from .solution import (
     CrossCheck,
     Proof,
@@ -36,12 +39,13 @@ from .solution import (
 MOST_DIED = 1024
 # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 ROUNDING_BITS = 20
-ROUNDING_TRIES = 8  # radii that are tried before giving up
-FINER = 2**16  # the next radius is smaller by this factor at least,
-# and at least so small that the widest undecided number is known to this part of its last digit
-SPARE = 2**20
+_ROUNDING_TRIES = 8  # radii that are tried before giving up
+# the next radius is smaller by this factor at least, and so small that the widest undecided number
+# is known to one part in _SPARE of its last digit
+_FINER = 2**16
+_SPARE = 2**20
 # of the last digit: a number that lies so near to the middle of two decimals is a tie
-TIE = Fraction(1, 2**40)
+_TIE = Fraction(1, 2**40)
 # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
 TABLE_BITS = 64
 # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
@@ -65,11 +69,11 @@ class ProofTask:
     function: bool = False
 
 
-def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> Solution:
+def proved(task: ProofTask, enclose: Any, report: Report | None = None) -> Solution:
     """Return a solution with every digit decided.
 
     Args:
-        problem: what is to be proved.
+        task: what is to be proved.
         enclose: that of enclosure/prove.py, or the same by FLINT alone.
         report: called with the simulated time reached, in s.
 
@@ -77,95 +81,129 @@ def proved(problem: ProofTask, enclose: Any, report: Report | None = None) -> So
         UnreachableError: no balls are small enough, and it tells the radius that was reached.
         IntegrationError: the run lies outside the enclosure.
     """
-    scene, pilot = problem.scene, problem.pilot
-    times, span = tuple(scene.exact.grid), float(scene.exact.t_end)
-    radius = first = first_radius(scene, pilot)
-    # `enclose` calls it with bits: it starts the run and gives its steps, paired (enclosure/approximant.py)
-    feed = Feed(scene.exact, times, problem.engine, pilot.steps)
+    scene = task.scene
+    # called with bits, it starts the run and gives its steps, paired (enclosure/approximant.py)
+    feed = Feed(scene.exact, tuple(scene.exact.grid), task.engine, task.pilot.steps)
     try:
-        for _ in range(ROUNDING_TRIES):
-            enclosed = enclose(
-                scene.exact,
-                times,
-                radius=radius,
-                zeros=scene.run.zeros,
-                approximant=feed,
-                lost=feed.lost,
-                function=problem.function,
-                progress=report and (lambda part: report(part * span)),
-            )
-            try:
-                solution = _solution(scene, times, enclosed, feed.finished(), pilot)
-                check_decided(solution)
-            except UndecidedRounding as undecided:
-                tried, reason, advice = radius, str(undecided), "Ask for fewer digits."
-                if undecided.width < TIE:
-                    advice = "It lies between two decimals as nearly as can be told: ask for one digit more."
-                    break
-                radius = radius / max(FINER, math.ceil(SPARE * undecided.width))
-                if undecided.column == "t":
-                    radius = min(radius, late_radius(first, scene.exact))
-            else:
-                return replace(solution, discarded_s=feed.discarded_s)
+        solution = _decided(task, partial(enclose, approximant=feed, lost=feed.lost), feed, report)
+        return replace(solution, discarded_s=feed.discarded_s)
     except EngineChanged as changed:
-        again = proved(replace(problem, engine=changed.engine), enclose, report)
+        again = proved(replace(task, engine=changed.engine), enclose, report)
         return replace(again, discarded_s=again.discarded_s + feed.discarded_s)
     finally:
         feed.stop()
-    raise UnreachableError(f"{reason} Balls of {rounded_up(tried)} m were tried.", advice)
 
 
-def _solution(
-    scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot
-) -> Solution:
+def _decided(task: ProofTask, enclose: Any, feed: Feed, report: Report | None) -> Solution:
+    """Return a solution with every digit decided, in balls that are made smaller until then.
+
+    Raises:
+        UnreachableError: the last radius that is tried leaves a digit undecided.
+    """
+    scene = task.scene
+    times = tuple(scene.exact.grid)
+    radius = first = first_radius(scene, task.pilot)
+    for _ in range(_ROUNDING_TRIES):
+        enclosed = enclose(
+            scene.exact,
+            times,
+            radius=radius,
+            zeros=scene.run.zeros,
+            function=task.function,
+            progress=progress_report(report, scene.exact.t_end),
+        )
+        solution = _solution(task, enclosed, feed.finished())
+        try:
+            check_decided(solution)
+            return solution
+        except UndecidedRounding as undecided:
+            reason = f"{undecided} Balls of {rounded_up(radius)} m were tried."
+            if undecided.width < _TIE:
+                advice = (
+                    "The value is a rounding tie at this precision: "
+                    f"ask for one digit more, {scene.run.digits + 1}."
+                )
+                raise UnreachableError(reason, advice) from None
+            radius = radius / max(_FINER, math.ceil(_SPARE * undecided.width))
+            if undecided.column == "t":
+                radius = min(radius, late_radius(first, scene.exact))
+    raise UnreachableError(reason, "Ask for fewer digits.")
+
+
+def _solution(task: ProofTask, enclosed: Any, approximant: Run) -> Solution:
+    """Return an enclosure as a solution, which `approximant` agrees with.
+
+    Raises:
+        IntegrationError: a state of the approximant lies outside its ball.
+    """
     bits = enclosed.bits + TABLE_BITS
+    times = tuple(task.scene.exact.grid)
     grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
-    gaps = checked_states(grid, times, approximant).largest()
+    zeros = {}
+    for word, of_word in enclosed.proved.zeros.items():
+        zeros[word] = separated(of_word, word, times[-1], partial(Table.of_intervals, bits=bits))
+    transit_radius = None
+    if XDOT in zeros:
+        transit_radius = max(zeros[XDOT].table.bound("t"), default=None)
+
+    gaps = _checked_states(grid, times, approximant).largest()
     # no further run, so no further cost
     check = replace(CrossCheck.by(approximant, gaps, None), cpu_s=0.0)
-    table = partial(Table.of_intervals, bits=bits)
-    zeros = {
-        word: separated(of_word, word, times[-1], table)
-        for word, of_word in enclosed.proved.zeros.items()
-    }
-    size, gap = (max(columns[name] for name in POSITION) for columns in (grid.largest(), gaps))
-    transit_radius = max(zeros[XDOT].table.bound("t"), default=None) if XDOT in zeros else None
-    proof = Proof(
-        enclosed, transit_radius, -bits_in(gap / size) if gap else approximant.plan.number.prec
+    return Solution(
+        scene=task.scene,
+        times=times,
+        grid=grid,
+        zeros=zeros,
+        run=Source.of(approximant),
+        checks=(check,),
+        pilot_s=task.pilot.cpu_s,
+        proof=Proof(enclosed, transit_radius, _agreement_bits(grid, gaps, approximant)),
     )
-    return Solution(scene, times, grid, zeros, Source.of(approximant), (check,), pilot.cpu_s, proof)
+
+
+def _agreement_bits(grid: Table, gaps: Mapping[str, Fraction], approximant: Run) -> int:
+    """Return the bits to which the positions of a run agree with the middles of the balls."""
+    sizes = grid.largest()
+    gap = max(gaps[name] for name in POSITION)
+    if not gap:
+        return approximant.plan.number.prec
+    return -bits_in(gap / max(sizes[name] for name in POSITION))
 
 
 def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
     """Return the radius in m of the balls that a proof of a scene begins with.
 
-    It is a small part of the last digit's unit in the middle position or velocity column; smaller ones have smaller
-    balls.
+    It is a small part of the last digit's unit in the middle position or velocity column; smaller
+    ones have smaller balls.
     """
     decimals = pilot.decimals(scene.run.digits)
-    unit = Fraction(
-        1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY))
-    )
+    _, position, _ = sorted(decimals[name] for name in POSITION)
+    _, velocity, _ = sorted(decimals[name] for name in VELOCITY)
+    unit = Fraction(1, 10 ** max(position, velocity))
     return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
 
 
 def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
-    """Return the radius in m that tells a damped scene's last transits as closely as `radius` tells the first ones.
+    """Return the radius in m for a damped scene's last transits, from that for its first ones.
 
-    A small swing dies as exp(-r t), where r = γ/2; where drag is too strong for a swing, r = γ/2 - (γ²/4 - g/l)^(1/2).
+    A small swing dies as exp(-r t), where r = γ/2; where drag is too strong for a swing, r = γ/2 -
+    (γ²/4 - g/l)^(1/2).
     """
-    half, stiffness = float(inputs.drag) / 2, float(inputs.gravity / inputs.length)
-    rate = half - math.sqrt(max(half**2 - stiffness, 0.0))
-    return radius / (1 << math.ceil(min(rate * float(inputs.t_end) * log2(math.e), MOST_DIED)))
+    half_drag = float(inputs.drag) / 2
+    stiffness = float(inputs.gravity / inputs.length)
+    rate = half_drag - math.sqrt(max(half_drag**2 - stiffness, 0.0))
+    bits = rate * float(inputs.t_end) * log2(math.e)
+    return radius / (1 << math.ceil(min(bits, MOST_DIED)))
 
 
-def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
+def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
     """Return how far the run's states are from the middles of the balls.
 
     Raises:
         IntegrationError: one lies outside its ball by more than the rounding of its evaluation.
     """
-    rounding = max(grid.largest().values()) / 2 ** (approximant.plan.number.prec - EVALUATION_BITS)
+    exact_bits = approximant.plan.number.prec - EVALUATION_BITS
+    rounding = max(grid.largest().values()) / 2**exact_bits
     gaps = grid.distance(approximant.grid)
     for name in grid.columns:
         for t, gap, radius in zip(times, gaps.exact(name), grid.bound(name), strict=True):

@@ -1,7 +1,8 @@
-"""Sensitivity of a trajectory to its inputs: to each by variational equations, and the digits lost by the end.
+"""Sensitivity of a trajectory to its inputs: the response to each, and the digits lost by the end.
 
-The equations of `momentum` are varied along one direction of their constants and start (Ω, c, γ, n, H) at a time. How
-these depend on a scene's inputs (length, latitude, …) comes in by the chain rule, from differences in 320 bits.
+The equations of `momentum` are varied along one direction of their constants and start (Ω, c, γ, n,
+H) at a time. How these depend on a scene's inputs (length, latitude, …) comes in by the chain rule,
+from differences in 320 bits.
 """
 
 from __future__ import annotations
@@ -27,20 +28,30 @@ from ..scenes.scene import Scene
 from .pilot import MAX_PREC, run_pilot
 
 # a change above this part of a column's size is no longer proportional to the perturbation
-DIVERGED = Fraction(1, 64)
-# In which each input is nudged: most get smaller, as x, y and the angle must, to stay on the sphere; length and
-# gravity, which set the swing's frequency, change in opposite directions.
-_WAYS = {"y": Fraction(-1, 2), "azimuth": Fraction(-1, 2)}
-_WAYS |= dict.fromkeys(("vx", "angle_rate", "length", "rotation_rate", "altitude"), Fraction(1))
+_DIVERGED = Fraction(1, 64)
+# Factors of the nudge of each input. Most get smaller, as x, y and the angle must, to stay on the
+# sphere; length and gravity, which set the swing's frequency, change in opposite directions.
+_NUDGE_FACTORS = {"y": Fraction(-1, 2), "azimuth": Fraction(-1, 2)}
+_NUDGE_FACTORS |= dict.fromkeys(
+    ("vx", "angle_rate", "length", "rotation_rate", "altitude"), Fraction(1)
+)
+_PREC = 320  # bits
+_NUDGE = Fraction(1, 1 << 100)  # central differences in 320 bits: exact to about 2**-200
+_TOLERANCE = 1e-11  # of the variational equations, whose results are used to three digits
+_MODEL = FORMULATIONS["momentum"]
+_CONSTANTS = ("turn_1", "turn_2", "pull_1", "pull_2", "drag")
 
 
 def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool = True) -> float:
-    """Return the decimal digits that the motion costs: n digits of every result need n + this many in the inputs.
+    """Return the decimal digits that the motion costs.
 
-    Three runs are compared: the scene's own, one with a perturbed release, and one with perturbed constants. At a
-    precision of p bits the perturbation is a relative 2**-(p // 2). The column that changes most counts, its change
-    over its largest number. An input that is zero, or a latitude where a term vanishes, is taken as exact. If the
-    perturbed runs diverge, they are repeated at a higher precision.
+    For n digits of every result the inputs need n + this many.
+
+    Three runs are compared: the scene's own, one with a perturbed release, and one with perturbed
+    constants. At a precision of p bits the perturbation is a relative 2**-(p // 2). The column that
+    changes most counts, its change over its largest number. An input that is zero, or a latitude
+    where a term vanishes, is taken as exact. If the perturbed runs diverge, they are repeated at a
+    higher precision.
 
     Args:
         inputs: the exact inputs of a scene.
@@ -54,44 +65,46 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
     number = DOUBLE if pilot.prec <= DOUBLE.prec else real(2 * LONG_DOUBLE.prec)
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))
-        changed = [
-            _perturbed(inputs, nudge, release=release) for release in (True, False)[: 1 + constants]
-        ]
-        base, *perturbed = (
-            run(Plan(each, "momentum", number, times)) for each in (inputs, *changed)
-        )
-        changes = [base.grid.only(GRID).distance(other.grid).largest() for other in perturbed]
-        worst = max(
-            change[name] / size for change in changes for name, size in pilot.sizes.items() if size
-        )
-        if worst <= DIVERGED:
-            ratio = worst / nudge
-            return (
-                max(0.0, math.log10(ratio.numerator) - math.log10(ratio.denominator))
-                if ratio
-                else 0.0
-            )
+        perturbed = [_perturbed(inputs, nudge, release=True)]
+        if constants:
+            perturbed.append(_perturbed(inputs, nudge, release=False))
+
+        base = run(Plan(inputs, "momentum", number, times)).grid.only(GRID)
+        worst = Fraction(0)
+        for changed in perturbed:
+            grid = run(Plan(changed, "momentum", number, times)).grid
+            changes = base.distance(grid).largest()
+            relative = [changes[name] / size for name, size in pilot.sizes.items() if size]
+            worst = max([worst, *relative])
+        if worst <= _DIVERGED:
+            return _positive_log10(worst / nudge)
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(
-        f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be measured.",
+        f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be "
+        "measured.",
         "Ask for a shorter run: run.t_end.",
     )
 
 
+def _positive_log10(ratio: Fraction) -> float:
+    """Return the decimal logarithm of a number, or 0 for one below 1."""
+    if ratio <= 1:
+        return 0.0
+    return math.log10(ratio.numerator) - math.log10(ratio.denominator)
+
+
 def _perturbed(inputs: Inputs, nudge: Fraction, *, release: bool) -> Inputs:
-    """Change each number of the release, or each constant, by a factor; a latitude where a term vanishes is exact."""
+    """Change each number of the release, or each constant, by a factor.
+
+    A latitude where a term vanishes is exact.
+    """
     for name, value in inputs.by_name.items():
         section, key = name.split(".")
-        if (section == "release") == release and not (key == "latitude" and value % 90 == 0):
-            inputs = with_value(inputs, name, value * (1 + _WAYS.get(key, -1) * nudge))
+        is_exact = key == "latitude" and value % 90 == 0
+        if (section == "release") == release and not is_exact:
+            factor = 1 + _NUDGE_FACTORS.get(key, -1) * nudge
+            inputs = with_value(inputs, name, value * factor)
     return inputs
-
-
-_PREC = 320  # bits
-_NUDGE = Fraction(1, 1 << 100)  # central differences in 320 bits: exact to about 2**-200
-_TOLERANCE = 1e-11  # of the variational equations, whose results are used to three digits
-_MODEL = FORMULATIONS["momentum"]
-_CONSTANTS = ("turn_1", "turn_2", "pull_1", "pull_2", "drag")
 
 
 @dataclass(frozen=True)
@@ -107,76 +120,96 @@ class Sensitivity:
     times: Sequence[float] | Array
 
     def derivative(self, name: str) -> Array:
-        """Return the derivatives of x, y, z (m) and vx, vy, vz (m/s) with respect to one input, shape (times, 6).
+        """Return the derivatives of x, y, z (m) and vx, vy, vz (m/s) with respect to one input.
 
-        Per SI unit of the input (degrees for angles); relative error about 1e-9.
+        Shape (times, 6); per SI unit of the input (degrees for angles); relative error about 1e-9.
         """
         return self._along(self._slope(name))
 
     def rounding(self) -> Array:
-        """Return how far rounding every input to binary64 moves the trajectory, shape (times, 6)."""
-        changes = {
-            name: Fraction(float(value)) - value for name, value in self.scene.exact.by_name.items()
-        }
-        slopes = [float(change) * self._slope(name) for name, change in changes.items() if change]
-        return self._along(np.sum(slopes, axis=0)) if slopes else np.zeros((len(self.times), 6))
+        """Return how far rounding all inputs to binary64 moves the trajectory, shape (times, 6)."""
+        slopes = []
+        for name, value in self.scene.exact.by_name.items():
+            change = Fraction(float(value)) - value
+            if change:
+                slopes.append(float(change) * self._slope(name))
+        if not slopes:
+            return np.zeros((len(self.times), 6))
+        return self._along(np.sum(slopes, axis=0))
 
     def _slope(self, name: str) -> Array:
         """Return the derivative of start, constants and length with respect to one input."""
-        inputs, value = self.scene.exact, self.scene.exact.by_name[name]
+        inputs = self.scene.exact
+        value = inputs.by_name[name]
         nudge = _NUDGE * max(abs(value), Fraction(1))
-        ahead, behind = (_parts(with_value(inputs, name, value + side * nudge)) for side in (1, -1))
-        return np.array(
-            [float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)]
-        )
+        ahead = _numbers_of(with_value(inputs, name, value + nudge))
+        behind = _numbers_of(with_value(inputs, name, value - nudge))
+        differences = [to_fraction(p - q) for p, q in zip(ahead, behind, strict=True)]
+        return np.array([float(difference / (2 * nudge)) for difference in differences])
 
     def _along(self, slope: Array) -> Array:
-        """Return the response to a change of start, constants and length."""
-        from ..engines.heyoka.propagator import Propagator
+        """Return the response to a change of start, constants and length, shape (times, 6)."""
+        from ..engines.heyoka.propagator import AutonomousSystem, Propagator
 
         size = len(_MODEL.variables)
-        base = np.array([float(part) for part in _parts(self.scene.exact)])
-        start, turn, length = base[:size], np.array([0.0, *base[size : size + 2]]), base[-1]
+        base = np.array([float(number) for number in _numbers_of(self.scene.exact)])
+        start, constants, length = base[:size], base[size:-1], base[-1]
+        start_slope, constants_slope, length_slope = slope[:size], slope[size:-1], slope[-1]
+
         # keeps the derivative near 1, for the step size
         strength = max(1.0, float(np.abs(slope).max()))
-        parameters = [0.0, *base[size:-1], *(slope[size:-1] / strength)]
-        count = len(parameters)
-        propagator = Propagator(
-            _MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True
-        )
-        rows = propagator.from_zero([*start, *(slope[:size] / strength)], self.times, parameters)
+        parameters = [0.0, *constants, *(constants_slope / strength)]
+        system = AutonomousSystem(_MODEL.variables, _rates, len(parameters), varied=True)
+        propagator = Propagator(system, DOUBLE, tolerance=_TOLERANCE)
+        initial = [*start, *(start_slope / strength)]
+        rows = propagator.from_zero(initial, self.times, parameters)
         n, momentum, dn, dmomentum = np.split(rows, 4, axis=1)
-        dn, dspin = strength * dn, strength * dmomentum - np.array([0.0, *slope[size : size + 2]])
-        v, dv = np.cross(momentum - turn, n), np.cross(dspin, n) + np.cross(momentum - turn, dn)
-        return np.hstack([slope[-1] * n + length * dn, slope[-1] * v + length * dv])
+
+        # the spin is H - Ω, and n' = spin × n
+        turn = np.array([0.0, *constants[:2]])
+        turn_slope = np.array([0.0, *constants_slope[:2]])
+        spin = momentum - turn
+        dn = strength * dn
+        dspin = strength * dmomentum - turn_slope
+        v = np.cross(spin, n)
+        dv = np.cross(dspin, n) + np.cross(spin, dn)
+        return np.hstack([length_slope * n + length * dn, length_slope * v + length * dv])
 
 
 def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
-    """Return the rates of `momentum` with constants c + ε d as parameters, also those that are zero in the scene."""
-    epsilon, *pairs = parameters
-    values, direction = pairs[: len(_CONSTANTS)], pairs[len(_CONSTANTS) :]
-    varied = {
-        name: c + epsilon * d for name, c, d in zip(_CONSTANTS, values, direction, strict=True)
-    }
+    """Return the rates of `momentum` with constants c + ε d as parameters.
+
+    All constants are there, also those that are zero in the scene.
+    """
+    epsilon, *numbers = parameters
+    values = numbers[: len(_CONSTANTS)]
+    direction = numbers[len(_CONSTANTS) :]
+    varied = {}
+    for name, c, d in zip(_CONSTANTS, values, direction, strict=True):
+        varied[name] = c + epsilon * d
     return _MODEL.derivatives(state, Constants.of(varied), functions)
 
 
-def _parts(inputs: Inputs) -> list[Any]:
+def _numbers_of(inputs: Inputs) -> list[Any]:
     """Return start (n, H), constants and length that follow from the inputs."""
     start = Start.of(inputs, _PREC)
     entries = start.k.entries()
-    k = (entries.get(name, 0) for name in (*_CONSTANTS, "length"))
-    return [start.ctx.mpf(part) for part in (*start.state(_MODEL), *k)]
+    constants = [entries.get(name, 0) for name in (*_CONSTANTS, "length")]
+    return [start.ctx.mpf(number) for number in (*start.state(_MODEL), *constants)]
 
 
 def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
-    """Return the inputs with one of `Inputs.by_name` replaced, unchecked, so that a mistaken value can be tried."""
+    """Return the inputs with one of `Inputs.by_name` replaced.
+
+    The value is not checked, so that a mistaken one can be tried.
+    """
     section, key = name.split(".")
-    fields: dict[str, Any] = {key: value}
+    changes: dict[str, Any] = {key: value}
     if key == "inverse_flattening":
-        fields = {"flattening": 1 / value}
+        changes = {"flattening": 1 / value}
     elif section == "release":
         kind = next(kind for kind, names in RELEASES.items() if key in names)
-        old = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
-        fields = {kind: tuple(value if name == key else before for name, before in old)}
-    return replace(inputs, **fields)
+        release = dict(zip(RELEASES[kind], getattr(inputs, kind), strict=True))
+        release[key] = value
+        changes = {kind: tuple(release.values())}
+    return replace(inputs, **changes)

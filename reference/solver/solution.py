@@ -1,4 +1,4 @@
-"""A solved scene: tables of numbers with bounds, the decimals to print of each column, the runs or proof behind them.
+"""A solved scene: tables of numbers with bounds, their decimals, and the runs or proof behind them.
 
 The decimals follow from the bounds, and so does whether a proof decides each digit; `Table` rounds.
 """
@@ -17,7 +17,7 @@ from ..engines.plan import Run
 from ..errors import InputError, UnreachableError, counted
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
-from ..numbers.table import Table, decimals_of, resolved
+from ..numbers.table import Table, UndecidedNumber, decimals_of, resolved
 from ..numbers.zeros import WithZeros, Zeros, columns_of
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
@@ -43,21 +43,20 @@ class Source:
     @classmethod
     def of(cls, run: Run) -> Source:
         """Build from a run."""
-        plan = run.plan
         return cls(
-            plan.engine,
-            plan.formulation,
-            str(plan.number),
-            run.order,
-            run.steps,
-            run.cpu_s,
-            run.compile_s,
+            engine=run.plan.engine,
+            formulation=run.plan.formulation,
+            number=str(run.plan.number),
+            order=run.order,
+            steps=run.steps,
+            cpu_s=run.cpu_s,
+            compile_s=run.compile_s,
         )
 
 
 @dataclass(frozen=True)
 class CrossCheck(Source):
-    """A run that checks the published numbers, and its largest disagreement with them, in m, m/s and s."""
+    """A run that checks the published numbers, and its largest distance from them, in m, m/s, s."""
 
     position_m: Fraction
     velocity_m_s: Fraction
@@ -67,30 +66,28 @@ class CrossCheck(Source):
     def by(
         cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None
     ) -> CrossCheck:
-        """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
-        position_m, velocity_m_s = (
-            max(gaps[name] for name in kind) for kind in (POSITION, VELOCITY)
-        )
+        """Build from a run and its largest differences, by grid column, and of transit times."""
         return cls(
             **vars(Source.of(witness)),
-            position_m=position_m,
-            velocity_m_s=velocity_m_s,
+            position_m=max(gaps[name] for name in POSITION),
+            velocity_m_s=max(gaps[name] for name in VELOCITY),
             transit_s=transit_s,
         )
 
 
 @dataclass(frozen=True)
 class Proof:
-    """A proof, and what stands beside it.
+    """A proof, its audit and its confirmation.
 
     Attributes:
-        enclosure: the `Enclosure`: method, size, largest radii in m and m/s, and what trusted code returned, which it
-            compares with what is written.
+        enclosure: the `Enclosure`: method, size, largest radii in m and m/s, and what trusted code
+            returned, which is compared with what is written.
         transit_radius: the largest radius of a transit's time in s.
         agreement_bits: bits to which its run agrees with it.
         audited: whether FLINT alone proves it too.
-        confirmed: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
-            transit, or a sample: a tenth of the grid's intervals, each from its first row.
+        confirmed: what heyoka's run in another formulation agrees with to every printed digit:
+            "whole", all rows and transits; "sampled", a tenth of the grid's intervals, each from
+            its first row; or "none".
         audit_s: CPU seconds of the audit.
     """
 
@@ -110,21 +107,21 @@ class Solution(GridColumns, WithZeros[Table]):
         scene: the scene as solved.
         times: grid times in s, exact.
         grid: `columns.GRID` at those times, in SI units.
-        zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections; without xdot where
-            that is identically zero.
+        zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections;
+            without xdot where that is identically zero.
         run: the run that the numbers come from.
         checks: runs that agree with it.
         pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
         proof: the enclosure, at the level enclosed.
-        guard: at the level enclosed, where no run confirms every transit, one with event detection that found them
-            all, in the cheapest type that serves; it goes into no dataset.
+        guard: at the level enclosed, where no run confirms every transit, one with event detection
+            that found them all, in the cheapest type that serves; it goes into no dataset.
         discarded_s: CPU seconds of runs and proofs in too few bits, whose numbers are not used.
-        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest on it, and a run
-            that finds other transits is an error.
+        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest
+            on it, and a run that finds other transits is an error.
 
-    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,), `solution.exact("x")` are
-    fractions; both tables have `table["x"]`, `table.exact("x")`, the same, and `table.bound("x")`. With a golden
-    function `solution.at(t)` is the motion at any time.
+    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,),
+    `solution.exact("x")` are fractions; both tables have `table["x"]`, `table.exact("x")`, the
+    same, and `table.bound("x")`. With a golden function `solution.at(t)` is the motion at any time.
     """
 
     scene: Scene
@@ -150,8 +147,10 @@ class Solution(GridColumns, WithZeros[Table]):
     @property
     def check_s(self) -> float:
         """CPU seconds of the runs that check the numbers, of the proof, and of its audit."""
-        runs = sum(check.cpu_s for check in (*self.checks, self.guard) if check)
-        return runs + (self.proof.enclosure.cpu_s + self.proof.audit_s if self.proof else 0.0)
+        cpu_s = sum(check.cpu_s for check in (*self.checks, self.guard) if check)
+        if self.proof:
+            cpu_s += self.proof.enclosure.cpu_s + self.proof.audit_s
+        return cpu_s
 
     @property
     def cpu_s(self) -> float:
@@ -160,7 +159,7 @@ class Solution(GridColumns, WithZeros[Table]):
 
     @property
     def swing(self) -> Swing | None:
-        """Frequency and precession as intervals, with the section `highest`; None without it, or where it is open."""
+        """Frequency and precession as intervals from highest points; None without a swing."""
         return self.swing_or_reason if isinstance(self.swing_or_reason, Swing) else None
 
     @cached_property
@@ -171,19 +170,26 @@ class Solution(GridColumns, WithZeros[Table]):
             return NO_SECTION
         if passages.possible:
             return UNDECIDED
-        table, names = passages.table, ("t", "x", "y", "z")
-        pairs = (zip(table.exact(name), table.bound(name), strict=True) for name in names)
-        ends = ([(q - bound, q + bound) for q, bound in column] for column in pairs)
-        return swing_or_reason([*zip(*ends, strict=True)], self.scene.exact, table.bits)
+        table = passages.table
+        columns = []
+        for name in ("t", "x", "y", "z"):
+            pairs = zip(table.exact(name), table.bound(name), strict=True)
+            columns.append([(middle - bound, middle + bound) for middle, bound in pairs])
+        points = [*zip(*columns, strict=True)]
+        return swing_or_reason(points, self.scene.exact, table.bits)
 
     @cached_property
     def function(self) -> GoldenFunction | None:
         """The golden function, if it was asked for."""
         proved = self.proof and self.proof.enclosure.function
-        return GoldenFunction.of(proved.facts, proved.bounds, proved.data) if proved else None
+        if not proved:
+            return None
+        return GoldenFunction.of(proved.facts, proved.bounds, proved.data)
 
     def at(self, t: npt.ArrayLike) -> States:
-        """Return the states at times in s, of any shape and in any order, by the golden function; with their bounds.
+        """Return the states, with their bounds, at times in s of any shape and in any order.
+
+        They are those of the golden function.
 
         Raises:
             InputError: the solution has no golden function, or a time lies outside of its span.
@@ -195,19 +201,23 @@ class Solution(GridColumns, WithZeros[Table]):
 
     def __repr__(self) -> str:
         """Return scene, level, digits, and the numbers of rows and transits."""
-        run, transits = self.scene.run, counted(len(self.directions), "transit")
+        run = self.scene.run
         times = counted(len(self.times), "grid time")
+        transits = counted(len(self.directions), "transit")
         return f"Solution({self.scene.id}: {run.level}, {run.digits} digits, {times}, {transits})"
 
 
 def grid_decimals(solution: Solution) -> dict[str, int]:
-    """Return the digits after the point of each column of the grid: its largest number gets the digits asked for."""
-    grid = solution.grid
-    return decimals_of(resolved(grid.largest(), grid.largest_bounds()), solution.scene.run.digits)
+    """Return the digits after the point of each column of the grid.
+
+    Its largest number gets the significant digits asked for.
+    """
+    sizes = resolved(solution.grid.largest(), solution.grid.largest_bounds())
+    return decimals_of(sizes, solution.scene.run.digits)
 
 
 def decimals_of_zeros(solution: Solution, word: str) -> dict[str, int]:
-    """Return those of the zeros of a word; empty where there are none."""
+    """Return the digits after the point of each column of a word's zeros; empty without zeros."""
     if word not in solution.zeros:
         return {}
     tables = {other: zeros.table for other, zeros in solution.zeros.items()}
@@ -224,49 +234,56 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
 
 
 def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
-    """Return the tables of grid, transits and sections, each with the digits after the point of its columns."""
-    of_zeros = [
-        (zeros.table, decimals_of_zeros(solution, word)) for word, zeros in solution.zeros.items()
-    ]
-    return [(solution.grid, grid_decimals(solution)), *of_zeros]
+    """Return the tables of grid, transits and sections, each with the decimals of its columns."""
+    tables = [(solution.grid, grid_decimals(solution))]
+    for word, zeros in solution.zeros.items():
+        tables.append((zeros.table, decimals_of_zeros(solution, word)))
+    return tables
 
 
 def separated(
     zeros: Sequence[Any], word: str, end: Fraction, table: Callable[[tuple[str, ...], Any], T]
 ) -> Zeros[T]:
-    """Return what a proof found up to `end`: single zeros as a table of intervals, and what it left open.
+    """Return what a proof found up to `end`: single zeros, as a table, and undecided ones.
 
-    Zeros lie in (0, end], and the ball of a cluster may be a little wider.
+    Zeros lie in (0, end], to which the ball of an undecided cluster is cut.
     """
-    single = [z for z in zeros if z.kind == "one"]
-    undecided = [z for z in zeros if z.kind != "one"]
-    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in undecided)
     columns = columns_of(word)
-    rows = tuple(tuple(getattr(z, name) for name in columns) for z in single)
-    return Zeros(table(columns, rows), [z.direction for z in single], possible)
+    rows, directions, possible = [], [], []
+    for zero in zeros:
+        if zero.kind == "one":
+            rows.append(tuple(getattr(zero, name) for name in columns))
+            directions.append(zero.direction)
+        else:
+            interval = (max(zero.t.low, Fraction(0)), min(zero.t.high, end))
+            possible.append((*interval, zero.parity))
+    return Zeros(table(columns, tuple(rows)), directions, tuple(possible))
 
 
 def check_decided(solution: Solution) -> None:
-    """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit.
+    """Raise `UndecidedRounding` for the widest interval that does not decide a printed digit.
 
-    What the scene itself gives of the release is exact, and rounded as it is.
+    The numbers of the release that the scene itself gives are exact, and rounded as they are.
     """
-    (grid, decimals), *others = tables_of(solution)
-    every = [grid.undecided(decimals, solution.scene.exact.released)]
-    every += [table.undecided(places) for table, places in others]
-    undecided = [number for number in every if number]
+    (grid, decimals), *zeros = tables_of(solution)
+    widest = [grid.undecided(decimals, solution.scene.exact.released)]
+    widest += [table.undecided(places) for table, places in zeros]
+    undecided = [number for number in widest if number]
     if undecided:
-        raise UndecidedRounding(*max(undecided))
+        raise UndecidedRounding(max(undecided))
 
 
 class UndecidedRounding(UnreachableError):
-    """A proven interval holds a number halfway between two printed ones: a finer enclosure is needed.
+    """A proven interval holds a number halfway between two decimals: a finer enclosure is needed.
 
     Attributes:
-        width: half-width of the widest of these intervals, in units of the last printed digit.
-        column: the column that it stands in.
+        width: half-width of the widest such interval, in units of the last printed digit.
+        column: the column of its number.
     """
 
-    def __init__(self, width: Fraction, column: str, text: str) -> None:
-        super().__init__(f"The enclosure of {column} = {text} does not decide its last digit.")
-        self.width, self.column = width, column
+    def __init__(self, number: UndecidedNumber) -> None:
+        super().__init__(
+            f"The enclosure of {number.column} = {number.text} does not decide its last digit."
+        )
+        self.width = number.width
+        self.column = number.column

@@ -19,43 +19,55 @@ from ..numbers.precision import GUARD_BITS, to_fraction, to_mpf
 from ..scenes.inputs import Inputs
 
 # of a right angle: how near to it the turn from one highest point to the next may come
-CERTAIN = 1e-6
-# times as far as the rest position is off the plumb line is where a swing's highest points are its ends
-CLEAR = 16
+_CERTAIN = 1e-6
+# highest points are the ends of a swing this many times as wide as the rest position is off the
+# line
+_CLEAR = 16
 HOUR = 3600
 # Why there is no swing, no precession or no full turn
 NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
 LEAN = (
-    f"its last swing is less than {CLEAR} times as wide as the rest position is off the plumb line"
+    f"its last swing is less than {_CLEAR} times as wide as the rest position is off the plumb line"
 )
 NO_SECTION = "the section highest was not asked for, from which the swing follows"
 UNDECIDED = "it is not decided which of its points are the highest"
 ONE_SIDE = (
     "highest points that follow one another lie on one side: they are not the ends of a swing"
 )
-FAST = "the site may turn by a right angle and more from one highest point to the next: nobody can tell which way"
+FAST = (
+    "the site may turn by a right angle or more from one highest point to the next: "
+    "nobody can tell which way"
+)
 SMALL = "the plane turns by less than it may seem to, since the rest position is off the plumb line"
-LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
-# a little more than π/3, and than a radian in degrees
-ARC, DEGREES = Fraction(21, 20), Fraction(573, 10)
-
-Ends = tuple[Fraction, Fraction]
+_LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
+_ARC = Fraction(21, 20)  # a little more than π/3
+_DEGREES = Fraction(573, 10)  # a little more than a radian in degrees
 
 
-class Seen(NamedTuple):
+_Point = Sequence[tuple[Fraction, Fraction]]  # intervals of coordinates
+
+
+class Ends(NamedTuple):
+    """The exact ends of an interval."""
+
+    low: Fraction
+    high: Fraction
+
+
+class _Apsis(NamedTuple):
     """A highest point as it is seen along the plumb line.
 
     Attributes:
         azimuth: in radians.
-        off: how far off the point may be across the line, in m.
-        wide: its distance from the line, in m.
-        far: its distance from the line's lower end on the sphere, in m.
+        error_m: how far off the point may be across the line.
+        width_m: its distance from the line.
+        distance_m: its distance from the line's lower end on the sphere.
     """
 
     azimuth: Any
-    off: Any
-    wide: Any
-    far: Any
+    error_m: Any
+    width_m: Any
+    distance_m: Any
 
 
 @dataclass(frozen=True)
@@ -64,8 +76,9 @@ class Swing:
 
     Attributes:
         hz: swings a second: half of the highest points a second, from the first to the last.
-        precession: their turn about the plumb line, east to north, in degrees an hour; None where they turn by less
-            than they may be off, or one so far to the next, up to the half turn between sides, that none can follow it.
+        precession: their turn about the plumb line, east to north, in degrees an hour; None where
+            they turn by less than they may be off, or one so far to the next, up to the half turn
+            between sides, that none can follow it.
         reason: why there is no precession.
     """
 
@@ -76,69 +89,83 @@ class Swing:
     @property
     def period(self) -> Ends:
         """Time of a swing to and fro in s."""
-        return 1 / self.hz[1], 1 / self.hz[0]
+        return Ends(1 / self.hz.high, 1 / self.hz.low)
 
     @property
     def full_turn(self) -> Ends | None:
-        """Hours in which the plane turns once, whichever way; None where the precession may be 0."""
-        if self.precession is None or self.precession[0] <= 0 <= self.precession[1]:
+        """Hours in which the plane turns once, either way; None where the precession may be 0."""
+        if self.precession is None or self.precession.low <= 0 <= self.precession.high:
             return None
         low, high = sorted(360 / abs(rate) for rate in self.precession)
-        return low, high
+        return Ends(low, high)
 
     def near(self, other: Swing | None, far: Fraction) -> Swing:
-        """Return this swing with the part of its precession that is at most `far` from another's."""
+        """Return this swing, its precession cut to what is at most `far` from another's."""
         if self.precession is None or other is None or other.precession is None:
             return self
-        (low, high), (least, most) = self.precession, other.precession
-        return replace(self, precession=(max(low, least - far), min(high, most + far)))
+        low = max(self.precession.low, other.precession.low - far)
+        high = min(self.precession.high, other.precession.high + far)
+        return replace(self, precession=Ends(low, high))
 
 
 def swing_of(
-    points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)
+    points: Sequence[_Point], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)
 ) -> Swing | None:
-    """Return the swing from the highest points of a run, or None; arguments are those of `swing_or_reason`."""
+    """Return the swing of `swing_or_reason`, or None."""
     swing = swing_or_reason(points, inputs, bits, lean)
     return swing if isinstance(swing, Swing) else None
 
 
 def swing_or_reason(
-    points: Sequence[Sequence[Ends]], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)
+    points: Sequence[_Point], inputs: Inputs, bits: int, lean: Fraction = Fraction(0)
 ) -> Swing | str:
     """Return the swing from the highest points of a run, or a sentence that says why there is none.
 
-    There is none with fewer than two, where their times overlap, and where they are not the ends of a swing: it is too
-    small beside how far the rest position is off the plumb line (`offset`), or two on one side follow one another.
+    There is none with fewer than two, where their times overlap, and where they are not the ends of
+    a swing: it is too small beside how far the rest position is off the plumb line (`offset`), or
+    two on one side follow one another.
 
     Args:
         points: intervals of t, x, y and z of each, in s and m.
         inputs: those of the scene, about whose plumb line they turn.
         bits: that angles are computed with.
-        lean: how far unit vectors across the plumb line are from the scene's, at most, where other inputs move it.
+        lean: how far unit vectors across the plumb line are from the scene's, at most, where other
+            inputs move it.
     """
     if len(points) < 2:
         return NO_SWING
-    if points[-1][0][0] <= points[0][0][1]:
+    first_low, first_high = points[0][0]
+    last_low, last_high = points[-1][0]
+    if last_low <= first_high:
         return UNDECIDED
     start = Start.of(inputs, bits + GUARD_BITS)
-    seen = [_seen(point, start, lean) for _, *point in points]
-    off = offset(start, min(point.far for point in seen))
-    if off > 1:
+    apses = [_apsis(position, start, lean) for _, *position in points]
+    offset_rad = offset(start, min(apsis.distance_m for apsis in apses))
+    if offset_rad > 1:
         return LEAN
-    (first, last), half = (points[i][0] for i in (0, -1)), Fraction(len(points) - 1, 2)
-    spans = last[0] - first[1], last[1] - first[0]
-    hz = half / spans[1], half / spans[0]
-    if turns_too_far(start, max(b[0][1] - a[0][0] for a, b in pairwise(points))):
+
+    swings = Fraction(len(points) - 1, 2)
+    spans = (last_low - first_high, last_high - first_low)
+    hz = Ends(swings / spans[1], swings / spans[0])
+    if turns_too_far(start, _longest_gap(points)):
         return Swing(hz, None, FAST)
-    if any(count % 2 == 0 for count in _halves(seen)):
+    half_turns = _half_turns(apses)
+    if any(count % 2 == 0 for count in half_turns):
         return ONE_SIDE
-    turn = _turn(seen, start.ctx, bits)
+
+    turn = _turn(apses, half_turns, start.ctx, bits)
     if turn is None:
-        return Swing(hz, None, LOST)
-    if 2 * Fraction(off) * DEGREES > abs(turn[0] + turn[1]):
+        return Swing(hz, None, _LOST)
+    # both ends may be off by the offset; the middle of the turn is half the sum
+    if 2 * Fraction(offset_rad) * _DEGREES > abs(turn.low + turn.high):
         return Swing(hz, None, SMALL)
     rates = [angle / span * HOUR for angle in turn for span in spans]
-    return Swing(hz, (min(rates), max(rates)))
+    return Swing(hz, Ends(min(rates), max(rates)))
+
+
+def _longest_gap(points: Sequence[_Point]) -> Fraction:
+    """Return the longest time between neighbours that their intervals allow, in s."""
+    return max(later[0][1] - earlier[0][0] for earlier, later in pairwise(points))
 
 
 def left_out(reason: str, still: bool) -> dict[str, str]:
@@ -155,63 +182,86 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
 
 def left_out_texts(reasons: dict[str, str]) -> list[str]:
     """Return what `left_out` gives as words of a line."""
-    groups = {
-        reason: [name for name in reasons if reasons[name] == reason] for reason in reasons.values()
-    }
-    return [f"no {' and no '.join(names)} ({reason})" for reason, names in groups.items()]
+    texts = []
+    for reason in dict.fromkeys(reasons.values()):
+        names = [name for name in reasons if reasons[name] == reason]
+        texts.append(f"no {' and no '.join(names)} ({reason})")
+    return texts
 
 
 def offset(start: Start, far: Any) -> float:
-    """Return how far a swing's highest points may lie from its ends, in radians of azimuth; above 1: anywhere.
+    """Return how far a swing's highest points may lie from its ends, in radians of azimuth.
 
-    They are farthest along the plumb line at the pivot. The rest position, about which the bob swings, is off this
-    line, as the centrifugal force at the bob is another.
+    Above 1 they may lie anywhere.
+
+    They are farthest along the plumb line at the pivot. The rest position, about which the bob
+    swings, is off this line, as the centrifugal force at the bob is another.
 
     Args:
         start: of the scene.
         far: least distance of a highest point from the lowest one, in m.
     """
-    with suppress(UnreachableError):
-        return float(CLEAR * start.lean * start.k.length / far) if far else math.inf
+    with suppress(UnreachableError):  # no rest position
+        lean = start.lean
+        return float(_CLEAR * lean * start.k.length / far) if far else math.inf
     return 0.0
 
 
 def turns_too_far(start: Start, seconds: Any) -> bool:
-    """Return whether the site's rotation may turn a swing by a right angle or more from one highest point to the next.
+    """Return whether the site may turn a swing by a right angle between highest points.
 
     Then nobody can tell which way it turned.
     """
     return float(abs(start.k.rate)) * float(seconds) >= math.pi / 2
 
 
-def _seen(point: Sequence[Ends], start: Start, lean: Fraction) -> Seen:
-    ctx, (_, north, up) = start.ctx, start.k.pull
+def _apsis(position: _Point, start: Start, lean: Fraction) -> _Apsis:
+    """Return a highest point as seen along the plumb line, from the intervals of x, y and z."""
+    ctx = start.ctx
+    x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in position)
+    dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in position)
+    _, north, up = start.k.pull
     strength = ctx.sqrt(north**2 + up**2)
-    x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in point)
-    dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in point)
-    p = (north * z - up * y) / strength  # up is below 0: along the meridian, northwards
-    dp = (abs(north) * dz + abs(up) * dy) / strength + to_mpf(lean, ctx) * (
-        abs(y) + dy + abs(z) + dz
+
+    # p lies along the meridian, northwards; up is below 0
+    p = (north * z - up * y) / strength
+    dp = (abs(north) * dz + abs(up) * dy) / strength
+    dp += to_mpf(lean, ctx) * (abs(y) + dy + abs(z) + dz)
+    width = ctx.hypot(x, p)
+    drop = start.k.length - (north * y + up * z) / strength
+    return _Apsis(
+        azimuth=ctx.atan2(p, x),
+        error_m=ctx.hypot(dx, dp),
+        width_m=width,
+        distance_m=ctx.hypot(width, drop),
     )
-    wide, drop = ctx.hypot(x, p), start.k.length - (north * y + up * z) / strength
-    return Seen(ctx.atan2(p, x), ctx.hypot(dx, dp), wide, ctx.hypot(wide, drop))
 
 
-def _halves(seen: Sequence[Seen]) -> list[int]:
-    """Return by how many half turns each point is from the one before; even ones are on its side."""
-    return [round(float(b.azimuth - a.azimuth) / math.pi) for a, b in pairwise(seen)]
+def _half_turns(apses: Sequence[_Apsis]) -> list[int]:
+    """Return how many half turns lie between neighbours: an even number on one side."""
+    turns = [later.azimuth - earlier.azimuth for earlier, later in pairwise(apses)]
+    return [round(float(turn) / math.pi) for turn in turns]
 
 
-def _turn(seen: Sequence[Seen], ctx: Any, bits: int) -> Ends | None:
-    """Return the turn from the first highest point to the last in degrees; None where it cannot be followed."""
-    if any(point.wide <= 2 * point.off for point in seen):
+def _turn(apses: Sequence[_Apsis], half_turns: Sequence[int], ctx: Any, bits: int) -> Ends | None:
+    """Return the turn from the first highest point to the last in degrees, an interval.
+
+    None where it cannot be followed.
+    """
+    if any(apsis.width_m <= 2 * apsis.error_m for apsis in apses):
         return None
-    angles, halves = [point.azimuth for point in seen], _halves(seen)
     # asin s <= (π/3) s up to 1/2
-    errors = [to_fraction(point.off / point.wide) * ARC + Fraction(1, 1 << bits) for point in seen]
-    for (a, b), (e, f), half in zip(pairwise(angles), pairwise(errors), halves, strict=True):
-        if abs(float(b - a) / math.pi - half) + float(e + f) > 0.5 - CERTAIN:
+    errors = [
+        to_fraction(apsis.error_m / apsis.width_m) * _ARC + Fraction(1, 1 << bits)
+        for apsis in apses
+    ]
+    azimuths = [apsis.azimuth for apsis in apses]
+    for i, half_turn in enumerate(half_turns):
+        turn = float(azimuths[i + 1] - azimuths[i]) / math.pi - half_turn
+        if abs(turn) + float(errors[i] + errors[i + 1]) > 0.5 - _CERTAIN:
             return None
-    whole = to_fraction((angles[-1] - angles[0] - sum(halves) * ctx.pi) * 180 / ctx.pi)
-    most = DEGREES * (errors[0] + errors[-1])
-    return whole - most, whole + most
+
+    radians = azimuths[-1] - azimuths[0] - sum(half_turns) * ctx.pi
+    degrees = to_fraction(radians * 180 / ctx.pi)
+    error = _DEGREES * (errors[0] + errors[-1])
+    return Ends(degrees - error, degrees + error)

@@ -1,1 +1,1 @@
-"""Needs of the machine and its libraries: work in other processes, files and locks, compiled code, late imports."""
+"""Needs of the machine: other processes, signals, files and locks, compiled code, late imports."""

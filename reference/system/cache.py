@@ -1,7 +1,7 @@
 """Cache results between runs in `$FOUCAULT_CACHE` or the user's cache folder.
 
-An entry is put in place at once, so that it is never incomplete; a damaged one is made again. A cache that cannot be
-used costs time only, and one line says so.
+An entry is put in place at once, so that it is never incomplete; a damaged one is made again. A
+cache that cannot be used costs time only, and one line says so.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from platformdirs import user_cache_path
@@ -34,13 +35,12 @@ def root() -> Path:
     Raises:
         RuntimeError: this user has no home folder.
     """
-    return Path(
-        os.environ.get("FOUCAULT_CACHE") or user_cache_path("foucault", appauthor=False)
-    ).expanduser()
+    path = os.environ.get("FOUCAULT_CACHE") or user_cache_path("foucault", appauthor=False)
+    return Path(path).expanduser()
 
 
 def entry(kind: str, name: str) -> Path | None:
-    """Return the path of an entry, which may be damaged; None if there is none, or if it is not trusted.
+    """Return the path of an entry, which may be damaged; None if it is missing or not trusted.
 
     Args:
         kind: the folder of the entry.
@@ -51,7 +51,10 @@ def entry(kind: str, name: str) -> Path | None:
 
 
 def store(kind: str, name: str, put: Callable[[Path], object]) -> Path | None:
-    """Have `put(path)` write an entry, all or nothing; return its path, or None if the cache cannot be used."""
+    """Have `put(path)` write an entry, all or nothing; return its path.
+
+    Return None if the cache cannot be used.
+    """
     folder = _folder(kind)
     if folder is None:
         return None
@@ -65,7 +68,10 @@ def store(kind: str, name: str, put: Callable[[Path], object]) -> Path | None:
 
 
 def kept(kind: str, name: str, put: Callable[[Path], object]) -> Path:
-    """Return the path of an entry, which `put(path)` writes if need be: where there is no cache, for this process."""
+    """Return the path of an entry, which `put(path)` writes if need be.
+
+    Without a cache it lasts as long as this process.
+    """
     path = entry(kind, name) or store(kind, name, put)
     if path is None:
         path = temporary() / name
@@ -75,17 +81,20 @@ def kept(kind: str, name: str, put: Callable[[Path], object]) -> Path:
 
 
 def check() -> None:
-    """Find out whether the cache can be used before child processes do; if it cannot, give them a temporary one.
+    """Check that the cache can be used before child processes do; else give them a temporary one.
 
-    So only one line says so, they compile once for all, and leave nothing where they are killed.
+    Then only one line says so, they compile once for all, and leave nothing behind if they are
+    killed.
     """
-    path = store(
-        "generated", ".room", lambda path: replace_file(path, lambda stream: stream.write(_ROOM))
-    )
+    path = store("generated", ".room", _write_room)
     if path is not None:
         discard(path)
     else:
         os.environ["FOUCAULT_CACHE"] = str(temporary())
+
+
+def _write_room(path: Path) -> None:
+    replace_file(path, lambda stream: stream.write(_ROOM))
 
 
 def _folder(kind: str) -> Path | None:
@@ -107,7 +116,7 @@ def _folder(kind: str) -> Path | None:
 
 
 def _distrust(folder: Path) -> str:
-    """Return why what stands in the cache, code among it, is not read back; empty if it may be."""
+    """Return why the contents of the cache, code among them, are not trusted; empty if they are."""
     status = folder.stat()
     if status.st_uid != os.getuid():
         return f"{folder} belongs to another user"
@@ -125,7 +134,7 @@ def _say(why: str) -> None:
 
 @functools.cache
 def temporary() -> Path:
-    """Return a folder that goes with this process, for what has to stand on a disk where the cache cannot be used."""
+    """Return a folder that is removed with this process, for what needs a disk but has no cache."""
     stack = contextlib.ExitStack()
     atexit.register(stack.close)
     return stack.enter_context(workspace(Path(tempfile.gettempdir()), "foucault"))
@@ -151,18 +160,15 @@ def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[s
                 path.touch()
             return stored
         discard(path)
-    made = make()
-    path = store(
-        kind,
-        name,
-        lambda path: replace_file(
-            path, lambda stream: np.savez(stream, allow_pickle=False, **made)
-        ),
-    )
+    computed = make()
+
+    def write(stream: BinaryIO) -> None:
+        np.savez(stream, allow_pickle=False, **computed)
+
+    path = store(kind, name, lambda path: replace_file(path, write))
     if path is not None:
         with contextlib.suppress(OSError):  # another process may be deleting as well
-            for old in sorted(path.parent.glob("[!.]*"), key=lambda path: path.stat().st_mtime)[
-                :-KEEP
-            ]:
+            entries = sorted(path.parent.glob("[!.]*"), key=lambda entry: entry.stat().st_mtime)
+            for old in entries[:-KEEP]:
                 old.unlink()
-    return made
+    return computed

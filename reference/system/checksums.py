@@ -1,6 +1,7 @@
-"""Checksums that find accidents in a folder of results: of its files in SHA256SUMS, and of each line of a journal.
+"""Checksums that find accidents in results: of files, in SHA256SUMS, and of each line of a journal.
 
-`sha256sum -c SHA256SUMS` checks the files too. A journal grows line by line, so that each line carries its own seal.
+`sha256sum -c SHA256SUMS` checks the files too. A journal grows line by line, so that each line
+carries its own seal.
 """
 
 from __future__ import annotations
@@ -16,28 +17,28 @@ from .documents import regular
 
 SUMS = "SHA256SUMS"
 JOURNALS = "*.jsonl"
-SEAL = "seal"
-MOST_BYTES = 1 << 30  # of a file
+_SEAL = "seal"
+_MOST_BYTES = 1 << 30  # of a file
 _LINE = re.compile(r"([0-9a-f]{64})  ([^/]+)")
 _SEAL_HEX = 16  # hexadecimal digits of the seal of a line
 
 
 def sums_text(files: Mapping[str, bytes]) -> str:
     """Return the content of SHA256SUMS for files by name."""
-    return "".join(f"{sha256(data).hexdigest()}  {name}\n" for name, data in sorted(files.items()))
+    lines = [f"{sha256(data).hexdigest()}  {name}\n" for name, data in sorted(files.items())]
+    return "".join(lines)
 
 
 def sealed_line(record: Mapping[str, Any]) -> dict[str, Any]:
     """Return the record of a line of a journal with its seal."""
-    text = json.dumps(
-        {name: value for name, value in record.items() if name != SEAL}, sort_keys=True
-    )
-    return {**record, SEAL: sha256(text.encode()).hexdigest()[:_SEAL_HEX]}
+    unsealed = {name: value for name, value in record.items() if name != _SEAL}
+    text = json.dumps(unsealed, sort_keys=True)
+    return {**record, _SEAL: sha256(text.encode()).hexdigest()[:_SEAL_HEX]}
 
 
 def is_sound(record: Mapping[str, Any]) -> bool:
-    """Return whether the record of a line is as it was sealed; earlier versions wrote lines without a seal."""
-    return SEAL not in record or sealed_line(record) == record
+    """Return whether the record of a line matches its seal; earlier versions wrote none."""
+    return _SEAL not in record or sealed_line(record) == record
 
 
 def check_sums(folder: Path) -> list[str]:
@@ -47,7 +48,7 @@ def check_sums(folder: Path) -> list[str]:
         FileNotFoundError: there is no SHA256SUMS.
         InputError: it is no regular file.
     """
-    with regular(folder / SUMS, "PATH", MOST_BYTES, SUMS) as stream:
+    with regular(folder / SUMS, "PATH", _MOST_BYTES, SUMS) as stream:
         lines = stream.read().decode(errors="replace").splitlines()
     problems = [] if lines else [f"{SUMS} is empty"]
     matches = [_LINE.fullmatch(line) for line in lines]
@@ -56,7 +57,7 @@ def check_sums(folder: Path) -> list[str]:
     for match in filter(None, matches):
         expected, name = match.groups()
         try:
-            with regular(folder / name, "PATH", MOST_BYTES, "a file") as stream:
+            with regular(folder / name, "PATH", _MOST_BYTES, "a file") as stream:
                 found = sha256(stream.read()).hexdigest()
         except FileNotFoundError:
             problems.append(f"{name} is missing, which {SUMS} lists")
@@ -67,7 +68,7 @@ def check_sums(folder: Path) -> list[str]:
 
 
 def verify_report(folder: Path) -> tuple[list[str], list[str]]:
-    """Return what is wrong with the files of a report and with its journals, and what cannot be told."""
+    """Return what is wrong with the files and journals of a report, and what cannot be decided."""
     problems, undecided = [], []
     try:
         problems += check_sums(folder)
@@ -81,17 +82,19 @@ def verify_report(folder: Path) -> tuple[list[str], list[str]]:
 
 
 def _check_journal(path: Path) -> tuple[list[str], list[str]]:
-    """Return what is wrong with a journal, and what cannot be told."""
-    with regular(path, "PATH", MOST_BYTES, "a journal") as stream:
+    """Return what is wrong with a journal, and what cannot be decided."""
+    with regular(path, "PATH", _MOST_BYTES, "a journal") as stream:
         lines = stream.read().splitlines()
-    damaged, cut_short, unsealed = [], 0, 0
+    damaged = []
+    cut_short = 0
+    unsealed = 0
     for number, line in enumerate(lines, 1):
         record = _record(line)
         if record is None and not line.endswith(b"}"):
             cut_short += 1
         elif record is None or not is_sound(record):
             damaged.append(number)
-        elif SEAL not in record:
+        elif _SEAL not in record:
             unsealed += 1
     problems = [
         f"{path.name}: line {number} is not as it was written, and not used: delete it"
@@ -108,7 +111,7 @@ def _check_journal(path: Path) -> tuple[list[str], list[str]]:
 
 
 def _record(line: bytes) -> dict[str, Any] | None:
-    """Return the record of a line; None if it is none."""
+    """Return the record of a line; None if it has none."""
     try:
         record = json.loads(line)
     except (ValueError, RecursionError):

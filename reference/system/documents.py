@@ -1,4 +1,4 @@
-"""Read files that a stranger may have written: regular ones of a bounded size; TOML and JSON of bounded depth."""
+"""Read files that a stranger may have written: regular, of bounded size, TOML and JSON not deep."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ _DEEP_KEY = re.compile(rf"(?<![\w\\-]){_WORD}(?:[ \t]*\.[ \t]*{_WORD}){{{MAX_DEP
 
 
 def open_at_once(path: Path) -> BinaryIO:
-    """Open a file for reading; a pipe is returned unblocked, so that a read tells whether anybody writes to it.
+    """Open a file for reading; a pipe is opened at once, whether or not anybody writes to it.
 
     Raises:
-        OSError: it cannot be opened; also for a path that no file can have, such as one with a zero byte.
+        OSError: it cannot be opened; also for a path that no file can have, such as one with a zero
+            byte.
     """
     try:
         return open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK))
@@ -47,7 +48,8 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: there is no such file.
-        InputError: it is no regular file, cannot be read, is larger than `MAX_BYTES`, or is no TOML.
+        InputError: it is no regular file, cannot be read, is larger than `MAX_BYTES`, or is no
+            TOML.
     """
     data = _read(path, field, MAX_BYTES, "a TOML file")
     try:
@@ -62,7 +64,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
 
 
 def texts_of(module: str) -> dict[str, Any]:
-    """Return what a module keeps in a TOML file of its name beside it; the module is given by its `__file__`."""
+    """Return the TOML file of a module's name beside it; the module is given by its `__file__`."""
     return tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
@@ -79,7 +81,7 @@ def json_document(path: Path, field: str) -> dict[str, Any]:
 
 
 def json_lines(path: Path, field: str) -> Iterator[dict[str, Any]]:
-    """Yield the dictionaries of a file of JSON lines; a line that is none, such as one cut short, is left out.
+    """Yield the dictionaries of a file of JSON lines, without other lines, such as one cut short.
 
     Arguments and errors are those of `toml_document`.
     """

@@ -1,4 +1,4 @@
-"""Imports made late: public names at their first use, declarations found in a folder, packages that may be missing."""
+"""Late imports: public names at first use, declarations of a folder, optional packages."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from ..errors import InputError, NotInstalledError, no_attribute, unknown
 
-PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
+_PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
 
 
 def lazy(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """Return `__getattr__`, `__dir__` and `__all__` of a package, whose names are imported at their first use.
+    """Return `__getattr__`, `__dir__` and `__all__` of a package that imports names at first use.
 
     The names, and the modules that define them, are those that its stub, `__init__.pyi`, imports.
     """
@@ -34,9 +34,8 @@ def lazy(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], l
         raise no_attribute(f"module {package!r}", name, homes)
 
     def names() -> list[str]:
-        return sorted(
-            {*homes, *(name for name in vars(sys.modules[package]) if name.startswith("__"))}
-        )
+        special = {name for name in vars(sys.modules[package]) if name.startswith("__")}
+        return sorted({*homes, *special})
 
     return attribute, names, sorted(homes)
 
@@ -53,7 +52,7 @@ D = TypeVar("D", bound=Declaration)
 
 
 class Registry(UserDict[str, D]):
-    """Declarations by id, in the order of `group`, then of the files' names, then as they stand in the file.
+    """Declarations by id, in the order of `group`, then of the files' names, then of the file.
 
     Args:
         package: name of the package whose files declare.
@@ -63,18 +62,19 @@ class Registry(UserDict[str, D]):
     """
 
     def __init__(self, package: str, variable: str, what: str, group: Callable[[D], Any]) -> None:
-        self._package, self._variable, self._what, self._group = package, variable, what, group
+        self._package = package
+        self._variable = variable
+        self._what = what
+        self._group = group
 
     @cached_property
     def data(self) -> dict[str, D]:  # type: ignore[override]
         """The declarations, imported at the first look."""
-        names = sorted(
-            module.name for module in iter_modules(import_module(self._package).__path__)
-        )
-        modules = [import_module(f"{self._package}.{name}") for name in names]
-        declared: list[D] = [
-            entry for module in modules for entry in getattr(module, self._variable, ())
-        ]
+        folder = import_module(self._package).__path__
+        declared: list[D] = []
+        for name in sorted(module.name for module in iter_modules(folder)):
+            module = import_module(f"{self._package}.{name}")
+            declared += getattr(module, self._variable, ())
         by_id = {entry.id: entry for entry in sorted(declared, key=self._group)}
         if len(by_id) < len(declared):
             raise ValueError(f"two files of {self._package} declare the same id")
@@ -105,15 +105,14 @@ def needed(module: str, extra: str, field: str, purpose: str, instead: str = "")
         InputError: it is not.
     """
     if missing([module]):
-        raise NotInstalledError(field, purpose, PACKAGES.get(module, module), extra, instead)
+        raise NotInstalledError(field, purpose, _PACKAGES.get(module, module), extra, instead)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:
     """Return the environment variable that stops one of the modules from compiling, or None."""
     variable = "NUMBA_DISABLE_JIT"
-    return (
-        variable if "numba" in modules and os.environ.get(variable, "0") not in ("", "0") else None
-    )
+    is_set = os.environ.get(variable, "0") not in ("", "0")
+    return variable if "numba" in modules and is_set else None
 
 
 def _installed(module: str) -> bool:
@@ -149,7 +148,8 @@ class OptionalEngine:
             InputError: it is not.
         """
         without = "The engine heyoka does without"
-        if variable := switched_off(self.requires):
+        variable = switched_off(self.requires)
+        if variable:
             raise InputError("--engine", self.name, f"{variable} unset", f"Unset it. {without}.")
         for module in self.requires:
             needed(module, self.extra, "--engine", f"the engine {self.name}", f". {without}")

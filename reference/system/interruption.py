@@ -1,4 +1,4 @@
-"""Signals that end a run (Ctrl-C, SIGTERM, SIGHUP): turned into exceptions, or held back for a moment."""
+"""Signals that end a run (Ctrl-C, SIGTERM, SIGHUP): turned into exceptions, or held back."""
 
 from __future__ import annotations
 
@@ -11,20 +11,24 @@ from types import FrameType
 from typing import Any
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-ENDS = (KeyboardInterrupt, SystemExit)
-AGAIN_S = 0.25  # seconds between two looks whether the exception of a signal was lost
+_ENDS = (KeyboardInterrupt, SystemExit)
+_AGAIN_S = 0.25  # seconds after which the exception of a signal, which may be lost, is raised again
 
 
 @contextmanager
 def _replaced(
     handler: Callable[..., object], chosen: Callable[[Any], bool]
 ) -> Iterator[dict[int, Any]]:
-    """Replace those handlers that are chosen meanwhile, in the main thread; yield them by their signals' numbers."""
-    main = threading.current_thread() is threading.main_thread()
-    numbers = [*SIGNALS, signal.SIGALRM] if main else []
-    before: dict[int, Any] = {
-        number: usual for number in numbers if chosen(usual := signal.getsignal(number))
-    }
+    """Replace the handlers for which `chosen` is true; yield these by their signals' numbers.
+
+    Outside the main thread, which alone may change handlers, none is replaced.
+    """
+    before: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():
+        for caught in (*SIGNALS, signal.SIGALRM):
+            usual = signal.getsignal(caught)
+            if chosen(usual):
+                before[caught] = usual
     try:
         for number in before:
             signal.signal(number, handler)
@@ -36,10 +40,11 @@ def _replaced(
 
 @contextmanager
 def held() -> Iterator[None]:
-    """Hold the signals back: a process or a thread that is started meanwhile begins with them held back too.
+    """Hold signals back; processes and threads that start meanwhile begin with them blocked.
 
-    In the main thread their handlers wait as well, whichever thread a signal reaches: an exception out of one of them
-    can leave a lock of Python's `threading` taken, for which another thread then waits without end.
+    In the main thread the handlers wait as well, whichever thread a signal reaches: an exception
+    raised by one can leave a lock of Python's `threading` taken, and another thread would then wait
+    for it forever.
     """
     received: list[int] = []
     with _replaced(lambda number, _: received.append(number), callable) as handlers:
@@ -54,32 +59,41 @@ def held() -> Iterator[None]:
 
 @contextmanager
 def terminable() -> Iterator[list[int]]:
-    """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away; note SIGINT as well.
+    """Turn SIGTERM and SIGHUP into SystemExit, so that unfinished work is cleared away.
 
-    Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
-    thread. The exception of a signal can be lost: Python ignores those in a finaliser, and code in C drops one that it
-    meets as it looks for an attribute. Hence it is raised again every `AGAIN_S`, by an alarm, until this is left; while
-    it is handled, neither the alarm nor a further signal changes anything.
+    SIGINT is recorded as well.
+
+    Signals that already have a handler, or that are ignored (nohup), are left alone; outside the
+    main thread all are. The exception of a signal can be lost: Python ignores it in a finaliser,
+    and code in C drops one that it meets while it looks for an attribute. Hence an alarm raises it
+    again every `_AGAIN_S` until the context is left. While the exception is handled, neither the
+    alarm nor a further signal has an effect.
 
     Yields:
-        The numbers of the signals that have come, then those of alarms. The exception that arrives does not always
-        tell: code in C that is interrupted while it is imported raises an ImportError instead.
+        The numbers of the signals received, then those of alarms. The exception that arrives is not
+        always the one raised here: code in C that is interrupted during its import raises an
+            ImportError instead.
     """
     received: list[int] = []
 
     def stop(number: int, _: FrameType | None) -> None:
         received.append(number)
-        if not _ends(sys.exc_info()[1]):  # else what was begun is being cleared away
-            if signal.getsignal(signal.SIGALRM) is stop:
-                signal.setitimer(signal.ITIMER_REAL, AGAIN_S, AGAIN_S)
-            raise (
-                KeyboardInterrupt if received[0] == signal.SIGINT else SystemExit(128 + received[0])
-            )
+        if _ends(sys.exc_info()[1]):  # unfinished work is being cleared away
+            return
+        if signal.getsignal(signal.SIGALRM) is stop:
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN_S, _AGAIN_S)
+        first = received[0]
+        if first == signal.SIGINT:
+            raise KeyboardInterrupt
+        raise SystemExit(128 + first)
 
     usual_hook = sys.unraisablehook
-    sys.unraisablehook = lambda lost: (
-        None if received and _ends(lost.exc_value) else usual_hook(lost)
-    )
+
+    def hook(lost: sys.UnraisableHookArgs) -> None:
+        if not (received and _ends(lost.exc_value)):
+            usual_hook(lost)
+
+    sys.unraisablehook = hook
     with _replaced(stop, (signal.SIG_DFL, signal.default_int_handler).__contains__):
         try:
             yield received
@@ -90,5 +104,5 @@ def terminable() -> Iterator[list[int]]:
 
 
 def _ends(error: BaseException | None) -> bool:
-    """Return whether an exception ends the run, or came while such a one was handled."""
-    return error is not None and (isinstance(error, ENDS) or _ends(error.__context__))
+    """Return whether an exception ends the run, or was raised while one that does was handled."""
+    return error is not None and (isinstance(error, _ENDS) or _ends(error.__context__))

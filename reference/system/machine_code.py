@@ -1,7 +1,8 @@
-"""Machine code that numba keeps on disk, in a folder for the very sources that it is made of; it is announced.
+"""Machine code that numba keeps on disk, in a folder named by the sources that it is compiled from.
 
-numba itself looks at the file of a function alone: after a change of what the function calls it would take old machine
-code for new. Of several processes that need a function one compiles it; the others wait and take what it has kept.
+numba itself checks only the file of a function: after a change of what the function calls it would
+use old machine code. If several processes need a function, one compiles it; the others wait and
+load what it has kept.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from threading import Lock
 from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-HERE = Path(__file__).parent
-PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
+_HERE = Path(__file__).parent
+_PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
 _declaring = Lock()
 _listeners: list[Callable[[str], None]] = []
 _announced: set[str] = set()
@@ -24,7 +25,7 @@ _announced: set[str] = set()
 
 @contextmanager
 def announced_to(listener: Callable[[str], None]) -> Iterator[None]:
-    """Have `listener` called with one sentence for each piece of work that is done for the first time meanwhile."""
+    """Have `listener` called with a sentence for each piece of work done for the first time."""
     _listeners.append(listener)
     try:
         yield
@@ -32,8 +33,8 @@ def announced_to(listener: Callable[[str], None]) -> Iterator[None]:
         _listeners.remove(listener)
 
 
-def announce(what: str, seconds: int) -> None:
-    """Tell the last listener, once in a process, that `what` is compiled, and that this takes about `seconds`."""
+def _announce(what: str, seconds: int) -> None:
+    """Tell the last listener, once in a process, that `what` is compiled in about `seconds`."""
     if what not in _announced and _listeners:
         _announced.add(what)
         _listeners[-1](
@@ -42,17 +43,18 @@ def announce(what: str, seconds: int) -> None:
 
 
 def folder_of(sources: Iterable[Path]) -> Path | None:
-    """Return the folder for machine code that is made of these files, or None if it can be kept nowhere.
+    """Return the folder for machine code compiled from these files; None if it cannot be kept.
 
-    It is in `$NUMBA_CACHE_DIR`, in `__pycache__` here, or in the cache where this package cannot be written.
+    It is in `$NUMBA_CACHE_DIR`; else in `__pycache__` here; else, if this package cannot be
+    written, in the user's cache.
     """
     hashes = [sha256(path.read_bytes()).digest() for path in sorted(sources)]
     name = f"foucault-{sha256(b''.join(hashes)).hexdigest()[:32]}"
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
         return Path(chosen, name)
-    if os.access(HERE, os.W_OK):
-        return HERE / "__pycache__" / name
+    if os.access(_HERE, os.W_OK):
+        return _HERE / "__pycache__" / name
     from .cache import store  # and NumPy, which `foucault --help` does not need
 
     return store("machine_code", name, lambda path: path.mkdir(exist_ok=True))
@@ -77,12 +79,13 @@ def kept(*sources: Path, **options: Any) -> Callable[[Function], Function]:
         folder = folder_of(sources or [Path(function.__code__.co_filename)])
         if folder is not None:
             with _declaring, suppress(RuntimeError):  # numba finds no folder at all
-                before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
+                before = config.CACHE_DIR
+                config.CACHE_DIR = str(folder)
                 try:
                     compiled = njit(cache=True, **options)(function)
                 finally:
                     config.CACHE_DIR = before
-                # else numba chose one for any age
+                # otherwise numba chose a folder of its own, which does not depend on the sources
                 if Path(compiled.stats.cache_path).is_relative_to(folder):
                     return compiled
         return njit(**options)(function)
@@ -102,17 +105,17 @@ def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
     from filelock import FileLock
     from numba import typeof
 
-    types, folder = tuple(map(typeof, arguments)), function.stats.cache_path
+    types = tuple(map(typeof, arguments))
+    folder = function.stats.cache_path
     if types in function.signatures:
         return
     if kept_variants(function.__name__, folder) <= len(function.signatures):
-        announce(what, seconds)
+        _announce(what, seconds)
     with ExitStack() as turn:
         if folder is not None:
-            # it takes too long, or the disk has no locks: then it is compiled twice
+            lock = FileLock(Path(folder, f"{function.__name__}.lock"), timeout=_PATIENCE_S)
+            # after a long wait, or on a disk without locks, it is compiled a second time
             with suppress(OSError):
-                turn.enter_context(
-                    FileLock(Path(folder, f"{function.__name__}.lock"), timeout=PATIENCE_S)
-                )
+                turn.enter_context(lock)
         with suppress(OSError):  # the disk is full: it is compiled, and not kept
             function.compile(types)

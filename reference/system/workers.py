@@ -1,7 +1,8 @@
-"""Work in other processes: a worker that streams its results, a pool of them, and one loop over what is done.
+"""Work in other processes: a worker that streams results, a pool of workers, a loop over results.
 
-Neither loky nor `multiprocessing` starts the processes, whose own a worker of dask is: it may start no others. Besides,
-`multiprocessing` runs the caller's script again in each. Its connections are used.
+Processes are started by subprocess, not by multiprocessing or loky: a worker of dask is daemonic
+and may not start theirs, and multiprocessing runs the caller's script again in each. Only its
+connections are used.
 """
 
 from __future__ import annotations
@@ -29,12 +30,17 @@ from .interruption import SIGNALS, held
 Emit = Callable[[Any], None]
 Item = TypeVar("Item")
 
-_START = "import sys; sys.path[:] = sys.argv[2:]; from reference.system.workers import serve; serve(int(sys.argv[1]))"
-STDERR = 2
-LEAVE_S = 0.5  # seconds in which a worker whose parent has ended can end what it has started itself
-GRACE_S = 10.0  # seconds in which a worker has to end once its parent has left it
-TRIES = 2  # of what a pool does: the first process may have been killed from outside
-CHECK_S = 5.0  # between two looks whether anything can still come
+_START = (
+    "import sys; sys.path[:] = sys.argv[2:]; "
+    "from reference.system.workers import serve; serve(int(sys.argv[1]))"
+)
+_STDERR = 2
+_LEAVE_S = (
+    0.5  # seconds in which a worker whose parent has ended can end what it has started itself
+)
+_GRACE_S = 10.0  # seconds in which a worker has to end once its parent has left it
+_TRIES = 2  # of what a pool does: the first process may have been killed from outside
+_CHECK_S = 5.0  # between two looks whether anything can still come
 
 
 def usable_cores() -> int:
@@ -47,28 +53,28 @@ class WorkerDied(Exception):
 
 
 class Worker:
-    """A process that runs `function(parent, *arguments)`; iterating yields the objects it sends, in order.
+    """A process that runs `function(parent, *arguments)`; iterating yields the objects it sends.
 
     Args:
-        function: stands at the top level of a module; its first argument is a `Parent`.
+        function: defined at the top level of a module; its first argument is a `Parent`.
         arguments: any objects that can be pickled.
-        env: variables of its environment besides this process's own, or instead of them.
+        env: variables that are added to this process's environment, or replace some of it.
     """
 
     def __init__(
         self, function: Callable[..., None], *arguments: Any, env: dict[str, str] | None = None
     ) -> None:
-        self._connection, theirs = Pipe()
-        line = theirs.fileno()
-        with held(), theirs:
+        self._connection, child_connection = Pipe()
+        line = child_connection.fileno()
+        with held(), child_connection:
             self._process = subprocess.Popen(
                 [sys.executable, "-c", _START, str(line), *sys.path],
                 stdin=subprocess.DEVNULL,
-                stdout=STDERR,  # what a library prints there may not mix with the program's results
+                stdout=_STDERR,  # what a library prints must not mix with the results
                 pass_fds=[line],
                 env={**os.environ, **(env or {})},
             )
-        with contextlib.suppress(BrokenPipeError):  # a death is noticed when its results are read
+        with contextlib.suppress(BrokenPipeError):  # its end is noticed when results are read
             self.send((function, arguments))
 
     def send(self, item: Any) -> None:
@@ -103,7 +109,10 @@ class Worker:
             yield item
 
     def stop(self) -> None:
-        """Leave the process, which ends it if it is still at work, and wait for its end; kill it after `GRACE_S`."""
+        """Close the line, which ends the process if it is still at work, and wait for its end.
+
+        After `_GRACE_S` it is killed.
+        """
         if self._connection.closed:
             return
         with (
@@ -113,7 +122,7 @@ class Worker:
             # unlike closing, this wakes a thread that waits for a result
             line.shutdown(socket.SHUT_RDWR)
         try:
-            self._process.wait(GRACE_S)
+            self._process.wait(_GRACE_S)
         except subprocess.TimeoutExpired:
             self.kill()
             self._process.wait()
@@ -130,15 +139,15 @@ class Worker:
 
 
 class Pool:
-    """Processes that each do one thing at a time; one that dies costs what it was at, which is tried once more.
+    """Processes that each do one call at a time; a call whose process dies is tried once more.
 
     Args:
         workers: how many processes at most; each starts when it is needed.
     """
 
     def __init__(self, workers: int) -> None:
-        # by the thread that each works for
-        self._processes, self._ended = dict[int, Worker](), threading.Event()
+        self._processes: dict[int, Worker] = {}  # by the thread that each works for
+        self._ended = threading.Event()
         self._threads = ThreadPoolExecutor(workers, thread_name_prefix="pool")
 
     def __enter__(self) -> Self:
@@ -158,22 +167,23 @@ class Pool:
                 process.stop()
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """Begin a call of a function that stands at the top level of a module.
+        """Begin a call of a function that is defined at the top level of a module.
 
-        Its future has the function's result, or raises its OSError; or `WorkerDied`, also after another error; or
-        `CancelledError`, where the pool ended it.
+        Its future has the function's result, or raises the function's OSError; `WorkerDied`, also
+        after any other error; or `CancelledError` if the pool ended it.
         """
         return self._threads.submit(self._call, function, arguments)
 
     def _call(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        thread, reason = threading.get_ident(), ""
-        for _ in range(TRIES):
-            idle = self._processes.get(thread)
-            if idle is None or idle.ended:  # one that was killed while idle costs no try
-                self._processes[thread] = Worker(_answer)
-            if self._ended.is_set():  # asked when `__exit__` can see the process
+        thread = threading.get_ident()
+        reason = ""
+        for _ in range(_TRIES):
+            worker = self._processes.get(thread)
+            if worker is None or worker.ended:  # one that was killed while idle costs no try
+                worker = Worker(_answer)
+                self._processes[thread] = worker
+            if self._ended.is_set():  # asked after `__exit__` can see the process
                 break
-            worker = self._processes[thread]
             try:
                 worker.send((function, arguments))
                 result, error = worker.receive()
@@ -202,16 +212,22 @@ def as_done(
         at_once: how many are begun and not yet yielded, at most.
         check: called now and then while nothing is done; raises if nothing will come any more.
     """
-    waiting, done, begun = iter(items), queue.SimpleQueue[tuple[Item, Future[Any]]](), 0
+    waiting = iter(items)
+    done: queue.SimpleQueue[tuple[Item, Future[Any]]] = queue.SimpleQueue()
+
+    def put_when_done(item: Item) -> None:
+        begin(item).add_done_callback(lambda future: done.put((item, future)))
+
+    begun = 0
     while True:
         with held():
             for item in islice(waiting, at_once - begun):
-                begin(item).add_done_callback(lambda future, item=item: done.put((item, future)))  # type: ignore[misc]
+                put_when_done(item)
                 begun += 1
         if not begun:
             return
         try:
-            yield done.get(timeout=CHECK_S)
+            yield done.get(timeout=_CHECK_S)
             begun -= 1
         except queue.Empty:
             if check is not None:
@@ -219,17 +235,18 @@ def as_done(
 
 
 class Parent:
-    """A worker's view of its parent: call it to send an object, iterate over it to take those that the parent sends."""
+    """A worker's view of its parent: a call sends an object, iterating receives objects."""
 
     def __init__(self, connection: Connection, received: queue.SimpleQueue[Any]) -> None:
-        self._connection, self._received = connection, received
+        self._connection = connection
+        self._received = received
 
     def __call__(self, item: Any) -> None:
         """Send an object to the parent."""
         self._connection.send(item)
 
     def __iter__(self) -> Iterator[Any]:
-        """Yield the objects that the parent sends, for as long as the parent wants them; the process ends with it."""
+        """Yield the objects that the parent sends; the process ends with the parent."""
         while True:
             yield self._received.get()
 
@@ -238,12 +255,12 @@ def _answer(parent: Parent) -> None:
     for function, arguments in parent:
         try:
             parent((function(*arguments), None))
-        except OSError as error:  # a full disk is no death
+        except OSError as error:  # such as a full disk: the process goes on
             parent((None, error))
 
 
 def serve(line: int) -> None:
-    """Run in the worker: take the function and its arguments from the parent, call it, and end when the parent ends."""
+    """Run in the worker: receive a function and its arguments, call it, and end with the parent."""
     ended = _leave_ending_to_parent()
     connection = Connection(line)
     try:
@@ -265,19 +282,24 @@ def serve(line: int) -> None:
     except Exception:
         if not ended.is_set():
             raise
-        os._exit(0)  # code in C that is told to end while it is imported raises an ImportError
+        os._exit(0)  # code in C that is interrupted during its import raises an ImportError
 
 
 def _leave_ending_to_parent() -> threading.Event:
-    """Take signals that a terminal or a service manager sends to the whole group: this process ends with its parent.
+    """Catch signals that a terminal or a service manager sends to the whole group; return an event.
 
-    They are taken and not ignored, so that a program that is started here has its own way with them. Once the event
-    that is returned is set, they end this process by an exception, so that it can end such a program.
+    This process ends with its parent, not by such a signal. They are caught rather than ignored, as
+    a program that is started here would inherit that. Once the event is set, they end this process
+    by an exception, so that it can end such a program.
     """
     ended = threading.Event()
     usual = sys.unraisablehook
-    # the exception met a finaliser
-    sys.unraisablehook = lambda lost: None if ended.is_set() else usual(lost)
+
+    def unless_ended(lost: sys.UnraisableHookArgs) -> None:
+        if not ended.is_set():  # else the exception met a finaliser
+            usual(lost)
+
+    sys.unraisablehook = unless_ended
 
     def take(*_: object) -> None:
         if ended.is_set():
@@ -292,11 +314,11 @@ def _leave_ending_to_parent() -> threading.Event:
 def _receive(
     connection: Connection, received: queue.SimpleQueue[Any], ended: threading.Event
 ) -> None:
-    """Take what the parent sends; leave with the parent, which has ended or left when there is no more."""
+    """Receive what the parent sends; end this process once the parent has closed the line."""
     with contextlib.suppress(EOFError, OSError):
         while True:
             received.put(connection.recv())
     ended.set()
     signal.pthread_kill(cast("int", threading.main_thread().ident), signal.SIGTERM)
-    time.sleep(LEAVE_S)
+    time.sleep(_LEAVE_S)
     os._exit(0)

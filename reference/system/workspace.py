@@ -1,7 +1,8 @@
-"""Write a file or a folder whole or not at all: in a hidden folder beside it, renamed, and cleared away after a kill.
+"""Write a file or a folder whole or not at all: in a hidden folder beside it, then renamed.
 
-A folder in use is locked by a file in it: a process number would say nothing where they repeat, in containers, or where
-several machines share a disk. On a disk without locks none is cleared away.
+What killed processes left behind is removed later. A folder in use is locked by a file in it.
+Process numbers would not do: they repeat in containers, and where several machines share a disk. On
+a disk without locks nothing is removed.
 """
 
 from __future__ import annotations
@@ -19,25 +20,25 @@ from .interruption import held
 
 OLD = "old"  # what stood in the place of the target, while it is moved out of the way
 _LOCK = "lock"
-_LEFT = re.compile(r"\.(.+)\.partial-\w+", re.DOTALL)
+_LEFT_BEHIND = re.compile(r"\.(.+)\.partial-\w+", re.DOTALL)
 
 
 @contextmanager
 def workspace(parent: Path, name: str) -> Iterator[Path]:
     """Provide a new folder in `parent` for the making of `name`; remove it in the end.
 
-    Those that killed processes left behind for the same name are removed first. If `parent/name` is missing in the
-    end and `OLD` is in the folder, that is put back.
+    Folders that killed processes left behind for the same name are removed first. If `parent/name`
+    is missing in the end and `OLD` is in the folder, that is put back.
 
     Raises:
         OSError: `parent` cannot be written.
     """
-    # here, as its import takes longer than the rest of a short command
+    # imported late: it takes longer than the rest of a short command
     from filelock import FileLock, Timeout
 
     clear(parent, name)
     while True:
-        made = list[tuple[Path, FileLock]]()
+        made: list[tuple[Path, FileLock]] = []
         try:
             with held():  # a signal comes before the folder is there, or when it is known
                 folder = Path(tempfile.mkdtemp(prefix=f".{name}.partial-", dir=parent))
@@ -45,7 +46,7 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
                 made.append((folder, lock))
             try:
                 lock.acquire()
-            except (Timeout, FileNotFoundError):  # another process took it for left behind
+            except (Timeout, FileNotFoundError):  # another process is removing it as left behind
                 continue
             except (OSError, NotImplementedError):  # this disk has no locks
                 pass
@@ -62,7 +63,7 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Have `write(stream)` write a file, which takes its place at once: the old one stays whole until then.
+    """Have `write(stream)` write a file, which then replaces the old one in one step.
 
     Raises:
         OSError: the disk is full or cannot be written.
@@ -77,14 +78,17 @@ def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
 
 
 def clear(parent: Path, name: str | None = None) -> None:
-    """Remove from a folder what killed processes left behind for a name, or for any: no living process holds it."""
+    """Remove from a folder what killed processes left behind for a name, or for any name.
+
+    What a living process has locked stays.
+    """
     from filelock import FileLock
 
     for path in list(parent.iterdir()):
-        left = _LEFT.fullmatch(path.name)
-        if left and name in (None, left[1]):
+        match = _LEFT_BEHIND.fullmatch(path.name)
+        if match and name in (None, match[1]):
             with suppress(OSError, NotImplementedError), FileLock(path / _LOCK, blocking=False):
-                _remove(path, parent / left[1])
+                _remove(path, parent / match[1])
 
 
 def _remove(folder: Path, target: Path) -> None:

@@ -32,7 +32,7 @@ from reference.enclosure import Interval
 from reference.errors import FoucaultError
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import fixed_decimal
-from reference.solver.ranges import Ends
+from reference.solver.swing import Ends
 
 SITE = {"rotation_rate": "0.0123", "equatorial_radius": "6371.1", "altitude": "12.5"}
 RUN = {

@@ -6,12 +6,12 @@ from importlib.metadata import version
 
 from ..batch_interface import Batch, Outcomes, Rows, RunOptions
 
-TOLERANCE = 2.0**-52  # of a run, the relative error of a step: order 20
-MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
+_TOLERANCE = 2.0**-52  # of a run, the relative error of a step: order 20
+_MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
 
 
 class HeyokaBatch(Batch):
-    """A loop over the rows in `momentum`; events find the zeros, and a second pass gives the states there."""
+    """A loop over the rows in `momentum`: events find zeros, a pass gives the states there."""
 
     name = "heyoka"
     requires = ("heyoka",)
@@ -25,7 +25,7 @@ class HeyokaBatch(Batch):
     @property
     def identity(self) -> str:
         """Return version and tolerances."""
-        return f"heyoka {version('heyoka')}, tolerances {TOLERANCE!r} and {MOVED_TOLERANCE!r}"
+        return f"heyoka {version('heyoka')}, tolerances {_TOLERANCE!r} and {_MOVED_TOLERANCE!r}"
 
     def prepare(self, options: RunOptions) -> None:
         """Compile what such rows need in the calling thread."""
@@ -41,7 +41,7 @@ class HeyokaBatch(Batch):
 
 
 def _tolerance(options: RunOptions) -> float:
-    return MOVED_TOLERANCE if options.moved else TOLERANCE
+    return _MOVED_TOLERANCE if options.moved else _TOLERANCE
 
 
 BATCH = HeyokaBatch()

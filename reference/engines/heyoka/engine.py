@@ -8,12 +8,15 @@ from ...numbers.precision import LONG_DOUBLE_BITS, cheapest_type
 from ...scenes.inputs import Inputs
 from ..plan import Engine, Plan
 
-STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits
-HARDWARE_STEP_S = 4e-5  # in double and long double
+_STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits
+_HARDWARE_STEP_S = 4e-5  # in double and long double
 
 
 class Heyoka(Engine):
-    """Taylor series of adaptive order and step, compiled from expressions; heyoka is imported when it runs."""
+    """Taylor series of adaptive order and step, compiled from expressions.
+
+    heyoka is imported when it runs.
+    """
 
     name = "heyoka"
     formulation = "momentum"
@@ -32,7 +35,9 @@ class Heyoka(Engine):
 
     def expected_s(self, steps: int, prec: int) -> float:
         """Return the expected CPU seconds of `steps` steps at `prec` bits."""
-        return steps * (HARDWARE_STEP_S if prec <= LONG_DOUBLE_BITS else STEP_S * (prec / 160) ** 2)
+        return steps * (
+            _HARDWARE_STEP_S if prec <= LONG_DOUBLE_BITS else _STEP_S * (prec / 160) ** 2
+        )
 
 
 ENGINE = Heyoka()

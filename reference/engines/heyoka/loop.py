@@ -1,10 +1,14 @@
-"""Many rows by heyoka, one after the other: one pass finds the zeros by events, one more gives the states there."""
+"""Many rows by heyoka, one after the other.
+
+One pass finds the zeros of a row by events, one more gives the states there.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import heyoka as hy
 import numpy as np
@@ -16,6 +20,7 @@ from ..row_zeros import (
     HEIGHT,
     MODEL,
     TRANSIT,
+    FoundZeros,
     RowMotion,
     RowRelease,
     RowZeros,
@@ -26,60 +31,129 @@ from ..row_zeros import (
 from .conversions import Numbers
 from .system import as_pairs, rates
 
-PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
-STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
+_PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
+_STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
 # at least, between which a rate may dip to zero; a step of a tiny swing lasts half of one
-SAMPLES_PER_SWING = 12
-LEAST_STEPS = 10_000  # that are granted to any row
+_SAMPLES_PER_SWING = 12
+_LEAST_STEPS = 10_000  # that are granted to any row
 
-# the zeros that are looked for, whether they are those of any form, whether there is drag, and the tolerance
-Kind = tuple[tuple[int, ...], bool, bool, float]
+
+@dataclass(frozen=True)
+class _Compilation:
+    """What the code of an integrator depends on.
+
+    Attributes:
+        sought: kinds of the zeros that are looked for: `TRANSIT`, `HEIGHT`.
+        form: whether the transits are the zeros of any form, not of xdot.
+        drag: whether there is drag.
+        tolerance: relative error of a step.
+    """
+
+    sought: tuple[int, ...]
+    form: bool
+    drag: bool
+    tolerance: float
+
+    @classmethod
+    def of(cls, options: RunOptions, drag: bool, tolerance: float) -> _Compilation:
+        """Build from what is asked for of rows."""
+        is_sought = {TRANSIT: options.transits or options.times, HEIGHT: options.apsides}
+        sought = tuple(kind for kind, wanted in is_sought.items() if wanted)
+        return cls(sought, options.form and bool(sought), drag, tolerance)
+
+    @property
+    def without_events(self) -> _Compilation:
+        """The same equations without events."""
+        return replace(self, sought=(), form=False)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A row to be solved, in the axes of the plumb line.
+
+    Attributes:
+        number: its place among the outcomes.
+        release: its release.
+        k: its constants.
+        state: its state at t = 0, n and n × V.
+        compilation: of the integrator that finds its zeros.
+    """
+
+    number: int
+    release: RowRelease
+    k: Constants
+    state: list[Any]
+    compilation: _Compilation
+
+    @property
+    def form(self) -> Any:
+        """The form whose zeros are the transits."""
+        return self.release.forms[TRANSIT]
+
+    def times_swings(self, per_swing: int) -> float:
+        """Return a number per period of a small swing as that of the whole span."""
+        return per_swing * self.release.end * self.release.rate / (2 * np.pi)
+
+
+class _End(NamedTuple):
+    """The end of a run: state, steps taken, and whether it stopped before the end of the span."""
+
+    state: Any
+    steps: int
+    stopped: bool
 
 
 class Integrator:
-    """The equations compiled once, in the axes of the plumb line; not to be used by two threads at once."""
+    """The equations compiled once, in the axes of the plumb line.
 
-    def __init__(self, sought: tuple[int, ...], form: bool, drag: bool, tolerance: float) -> None:
-        names = PARAMETERS if drag else PARAMETERS[:-1]
+    Two threads may not use one at the same time.
+    """
+
+    def __init__(self, compilation: _Compilation) -> None:
+        names = _PARAMETERS if compilation.drag else _PARAMETERS[:-1]
         k = Constants.of({name: hy.par[i] for i, name in enumerate(names)})
         state = hy.make_vars(*MODEL.variables)
         n, v = MODEL.cartesian(state, k, hy)
-        self._events: dict[int, list[float]] = {kind: [] for kind in sought}
-        rate = {TRANSIT: v[0], HEIGHT: v[2]}
-        if form:
-            numbers = [hy.par[len(names) + i] for i in range(len(XDOT))]
-            rate[TRANSIT] = RowMotion(n, v, v).form(numbers)[0]
-        events = tuple((rate[kind], _recorder(noted)) for kind, noted in self._events.items())
-        system = as_pairs(state, rates(MODEL, k)(state, hy))
-        self._ta = Numbers(DOUBLE).integrator(system, [], tol=tolerance, events=events)
-        self._parameters = len(names)
+        form_rates = {TRANSIT: v[0], HEIGHT: v[2]}
+        if compilation.form:
+            form = [hy.par[len(names) + i] for i in range(len(XDOT))]
+            form_rates[TRANSIT] = RowMotion(n, v, v).form(form)[0]
 
-    def begin(self, k: Constants, state: Any, form: Any) -> None:
-        """Set a row's constants, its state at t = 0 and the form of its section, where there is one."""
-        for noted in self._events.values():
-            noted.clear()
+        self._parameters = len(names)
+        self._events: dict[int, list[float]] = {kind: [] for kind in compilation.sought}
+        events = []
+        for kind, recorded in self._events.items():
+            events.append((form_rates[kind], _recorder(recorded)))
+        system = as_pairs(state, rates(MODEL, k)(state, hy))
+        self._ta = Numbers(DOUBLE).integrator(
+            system, [], tol=compilation.tolerance, events=tuple(events)
+        )
+
+    def begin(self, row: _Row) -> None:
+        """Set a row's constants, its state at t = 0 and its form, where there is one."""
+        for recorded in self._events.values():
+            recorded.clear()
         self._ta.time = 0.0
-        self._ta.state[:] = state
-        numbers = (*([*k.turn[1:], k.pull[2], k.drag][: self._parameters]), *form)
+        self._ta.state[:] = row.state
+        constants = [*row.k.turn[1:], row.k.pull[2], row.k.drag]
+        numbers = [*constants[: self._parameters], *row.form]
         self._ta.pars[:] = numbers[: len(self._ta.pars)]
 
-    def to_end(self, release: RowRelease, most: int) -> tuple[Any, int, bool]:
-        """Return the state at the end, the steps taken, and whether the end was not reached.
+    def to_end(self, release: RowRelease, max_steps: int) -> _End:
+        """Integrate to the end of the span.
 
-        A zero at the release may hide the next one from heyoka, if both are in one step: the first one is short.
+        A zero at the release may hide the next one from heyoka, if both are in one step: the first
+        step is short.
         """
         short = any(release.zero[kind] for kind in self._events)
         if short:
             self._ta.step(min(release.quiet, release.end))
             if not np.isfinite(self._ta.time):
-                return self._ta.state.copy(), 1, True
-        outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=most)
+                return _End(self._ta.state.copy(), 1, stopped=True)
+        outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=max_steps)
         state = self._ta.state.copy()
-        return (
-            state,
-            int(steps) + short,
-            outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all(),
-        )
+        in_time = outcome == hy.taylor_outcome.time_limit
+        return _End(state, int(steps) + short, not in_time or not np.isfinite(state).all())
 
     def zeros(self, kind: int) -> RowZeros:
         """Return the zeros of a kind that were passed, in order."""
@@ -90,122 +164,132 @@ class Integrator:
         return self._ta.propagate_grid(times)[-1].T
 
 
-def _recorder(noted: list[float]) -> Callable[[Any, float, int], None]:
-    """Return what notes an event; heyoka deep-copies callbacks: a function stays itself, a bound method would not."""
+def _recorder(recorded: list[float]) -> Callable[[Any, float, int], None]:
+    """Return a function that records an event.
+
+    heyoka deep-copies callbacks: a function stays itself, a bound method would not.
+    """
 
     def record(_: Any, t: float, direction: int) -> None:
-        noted.extend((t, direction))
+        recorded.extend((t, direction))
 
     return record
 
 
-_free: dict[Kind, list[Integrator]] = {}
+_free: dict[_Compilation, list[Integrator]] = {}
 
 
 @contextmanager
-def _lent(*kind: Any) -> Iterator[Integrator]:
-    """Lend an integrator of a `Kind` to the calling thread."""
-    free = _free.setdefault(kind, [])
+def _lent(compilation: _Compilation) -> Iterator[Integrator]:
+    """Lend an integrator to the calling thread."""
+    free = _free.setdefault(compilation, [])
     try:
         integrator = free.pop()
     except IndexError:
-        integrator = Integrator(*kind)
+        integrator = Integrator(compilation)
     yield integrator
     free.append(integrator)
 
 
-def _sought(options: RunOptions) -> tuple[int, ...]:
-    is_sought = {TRANSIT: options.transits or options.times, HEIGHT: options.apsides}
-    return tuple(kind for kind, sought in is_sought.items() if sought)
-
-
 def prepare(options: RunOptions, tolerance: float) -> None:
     """Compile what such rows without drag need in the calling thread."""
-    for sought in {_sought(options), ()}:
-        with _lent(sought, options.form and bool(sought), False, tolerance):
+    compilation = _Compilation.of(options, False, tolerance)
+    for needed in {compilation, compilation.without_events}:
+        with _lent(needed):
             pass
 
 
 def solve(rows: Rows, options: RunOptions, tolerance: float) -> Outcomes:
     """Solve rows to a relative error of a step; see `Batch.solve`."""
-    outcomes, axes = Outcomes.empty(len(rows)), PlumbAxes.of(rows)
+    outcomes = Outcomes.empty(len(rows))
+    axes = PlumbAxes.of(rows)
     numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
-    numbers, drags = moved(numbers, options.moved), moved(rows.drag[:, 0], options.moved)
+    numbers = moved(numbers, options.moved)
+    drags = moved(rows.drag[:, 0], options.moved)
     forms = axes.forms(rows).T if options.form else [XDOT] * len(rows)
     transits: list[RowZeros] = []
     with np.errstate(all="ignore"):
-        for row in range(len(rows)):
-            n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
-            k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
+        for i in range(len(rows)):
+            n, V, (turn_p, turn_u, pull) = np.split(numbers[:, i], 3)
+            k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[i])
             state = [*n, *np.cross(n, V)]
-            release = RowRelease.of(rows, axes, row, RowMotion.of(state, k), forms[row])
-            transits.append(_solve(outcomes, row, release, k, state, options, tolerance))
-        x, p, u, vx, vp, vu = outcomes.state.T
-        sin, cos = axes.sin.high, axes.cos.high
-        # in the Earth's axes
-        at_end = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))
-        outcomes.state[:] = np.transpose(at_end) * rows.length[:, :1]
+            release = RowRelease.of(rows, axes, i, RowMotion.of(state, k), forms[i])
+            compilation = _Compilation.of(options, bool(k.drag), tolerance)
+            transits.append(_solve(outcomes, _Row(i, release, k, state, compilation)))
+        _turn_to_earth(outcomes, axes, rows.length[:, :1])
     if not options.times:
         return outcomes
-    return outcomes.with_transits(
-        [zeros.times for zeros in transits], [zeros.directions for zeros in transits]
-    )
+    times = [zeros.times for zeros in transits]
+    directions = [zeros.directions for zeros in transits]
+    return outcomes.with_transits(times, directions)
 
 
-def _solve(
-    outcomes: Outcomes,
-    row: int,
-    release: RowRelease,
-    k: Constants,
-    state: Any,
-    options: RunOptions,
-    tolerance: float,
-) -> RowZeros:
+def _turn_to_earth(outcomes: Outcomes, axes: PlumbAxes, length: Array) -> None:
+    """Turn the states at the end to the axes x, y, z, and multiply them by the length."""
+    x, p, u, vx, vp, vu = outcomes.state.T
+    sin, cos = axes.sin.high, axes.cos.high
+    y, z = turned(p, u, -sin, cos)
+    vy, vz = turned(vp, vu, -sin, cos)
+    outcomes.state[:] = np.transpose((x, y, z, vx, vy, vz)) * length
+
+
+def _solve(outcomes: Outcomes, row: _Row) -> RowZeros:
     """Solve a row, its state at the end left in these axes and over l; return its transits."""
-    sought, kind, form = _sought(options), (bool(k.drag), tolerance), release.forms[TRANSIT]
-    with _lent(sought, options.form, *kind) as first:
-        first.begin(k, state, form)
-        most = LEAST_STEPS + STEPS_PER_SWING * release.end * release.rate / (2 * np.pi)
-        last, steps, stopped = first.to_end(release, int(most))
-        transits, heights = (release.after(first.zeros(zero), zero) for zero in (TRANSIT, HEIGHT))
-    if stopped:
-        outcomes.fate[row] = STOPPED
+    release = row.release
+    with _lent(row.compilation) as integrator:
+        integrator.begin(row)
+        max_steps = int(_LEAST_STEPS + row.times_swings(_STEPS_PER_SWING))
+        end = integrator.to_end(release, max_steps)
+        transits = release.after(integrator.zeros(TRANSIT), TRANSIT)
+        heights = release.after(integrator.zeros(HEIGHT), HEIGHT)
+    if end.stopped:
+        outcomes.fate[row.number] = STOPPED
         return RowZeros.of([])
-    end = RowMotion.of(last, k)
-    outcomes.state[row], outcomes.steps[row] = [*end.n, *end.v], steps
-    if sought:
-        swung = SAMPLES_PER_SWING * release.end * release.rate / (2 * np.pi)
-        samples = np.linspace(0, release.end, int(max(steps, swung)) + 1)
-        seen, at_transits, at_heights = _seen(samples, transits, heights, k, state, form, kind)
-        if TRANSIT in sought and not release.still:
-            samples = seen.finer(transits, at_transits, release, TRANSIT)
-            if len(samples) > len(seen.times):  # the plane passes north-south
-                seen, at_transits, at_heights = _seen(
-                    samples, transits, heights, k, state, form, kind
-                )
-            describe_transits(outcomes, row, release, transits, at_transits, seen)
-        if HEIGHT in sought:
-            describe_highest_points(outcomes, row, release, heights, at_heights, seen)
+
+    last = RowMotion.of(end.state, row.k)
+    outcomes.state[row.number] = [*last.n, *last.v]
+    outcomes.steps[row.number] = end.steps
+    if row.compilation.sought:
+        count = int(max(end.steps, row.times_swings(_SAMPLES_PER_SWING)))
+        samples = np.linspace(0, release.end, count + 1)
+        _describe(outcomes, row, samples, transits, heights)
     return transits
 
 
-def _seen(
-    samples: Array,
-    transits: RowZeros,
-    heights: RowZeros,
-    k: Constants,
-    state: Any,
-    form: Any,
-    kind: tuple[bool, float],
-) -> tuple[Samples, RowMotion, RowMotion]:
-    """Return the motion at samples, at transits and at zeros of the height's rate, by one more run."""
-    times, places = np.unique(
-        np.concatenate([samples, transits.times, heights.times]), return_inverse=True
+def _describe(
+    outcomes: Outcomes, row: _Row, times: Array, transits: RowZeros, heights: RowZeros
+) -> None:
+    """Fill in a row's transits and highest points, from the motion at them and at sampled times."""
+    sought = row.compilation.sought
+    seen = _seen(row, times, transits, heights)
+    if TRANSIT in sought and not row.release.still:
+        times = seen.samples.finer(seen.transits)
+        if len(times) > len(seen.samples.times):  # the plane passes north-south
+            seen = _seen(row, times, transits, heights)
+        describe_transits(outcomes, row.number, seen.transits, seen.samples)
+    if HEIGHT in sought:
+        describe_highest_points(outcomes, row.number, seen.heights, seen.samples)
+
+
+class _Seen(NamedTuple):
+    """A row's motion at samples, its transits, and the zeros of its height's rate."""
+
+    samples: Samples
+    transits: FoundZeros
+    heights: FoundZeros
+
+
+def _seen(row: _Row, samples: Array, transits: RowZeros, heights: RowZeros) -> _Seen:
+    """Return the motion at all of these times, by one more run."""
+    every = np.concatenate([samples, transits.times, heights.times])
+    times, places = np.unique(every, return_inverse=True)
+    ends = np.cumsum([len(samples), len(transits.times)])
+    at_samples, at_transits, at_heights = np.split(places, ends)
+    with _lent(row.compilation.without_events) as integrator:
+        integrator.begin(row)
+        motion = RowMotion.of(integrator.at(times), row.k)
+    return _Seen(
+        samples=Samples(samples, motion[at_samples]),
+        transits=FoundZeros(TRANSIT, row.release, transits, motion[at_transits]),
+        heights=FoundZeros(HEIGHT, row.release, heights, motion[at_heights]),
     )
-    at_samples, at_transits, at_heights = np.split(
-        places, np.cumsum([len(samples), len(transits.times)])
-    )
-    with _lent((), False, *kind) as second:
-        second.begin(k, state, form)
-        motion = RowMotion.of(second.at(times), k)
-    return Samples(samples, motion[at_samples]), motion[at_transits], motion[at_heights]

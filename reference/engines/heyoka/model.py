@@ -1,7 +1,7 @@
-"""heyoka's number types, with exact conversions; its integrator of any system, without events; the model in it.
+"""A formulation of the model with constants in one of heyoka's number types.
 
-The modules that make heyoka's arrays import this one, so that its memory handler is installed: without it arrays of
-`real` leak.
+The modules that make heyoka's arrays import this one, so that its memory handler is installed:
+without it arrays of `real` leak.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from ...numbers.columns import RUN
 from ...numbers.precision import Array, NumberType
 from ...numbers.table import Table
 from .conversions import Numbers
-from .propagator import Propagator
+from .propagator import AutonomousSystem, Propagator
 from .system import rates
 
 hy.install_custom_numpy_mem_handler()
-# its log is the process's stdout; what it would tell of lost roots is found otherwise
+# its log is the process's stdout; the lost roots that it would report are detected otherwise
 hy.set_logger_level_critical()
 
 
@@ -38,12 +38,15 @@ class RoundedModel:
 
     Attributes:
         k: the constants in that type.
-        symbols: heyoka's parameters in their place: scenes with the same exact zeros share the code of their equations.
-        parameters: the values of these parameters, and then of constants that the equations do not have.
+        symbols: heyoka's parameters in their place: scenes with the same exact zeros share the code
+            of their equations.
+        parameters: the values of these parameters, and then of constants that the equations do not
+            have.
     """
 
     def __init__(self, formulation: Formulation, k: Constants, number: NumberType) -> None:
-        self.formulation, self.numbers = formulation, Numbers(number)
+        self.formulation = formulation
+        self.numbers = Numbers(number)
         self.k = k.converted(self.numbers.of)
         entries = self.k.entries()
         self.symbols = Constants.of({name: hy.par[i] for i, name in enumerate(entries)})
@@ -55,29 +58,39 @@ class RoundedModel:
 
     def propagator(self, tolerance: float | None = None, radians: float = math.inf) -> Propagator:
         """Compile the equations, without events; the tolerance is the type's epsilon if None."""
-        variables, equations = self.formulation.variables, rates(self.formulation, self.symbols)
-        made = Propagator(
-            variables, equations, self.numbers.number, tolerance=tolerance, radians=radians
-        )
-        made.parameters = self.parameters
-        return made
+        equations = rates(self.formulation, self.symbols)
+        system = AutonomousSystem(self.formulation.variables, equations)
+        number = self.numbers.number
+        propagator = Propagator(system, number, tolerance=tolerance, radians=radians)
+        propagator.parameters = self.parameters
+        return propagator
 
     def doubles(self, states: Any) -> Array:
-        """Return x, y, z in m and vx, vy, vz in m/s, nearest doubles, from states of shape (rows, variables)."""
+        """Return x, y, z in m and vx, vy, vz in m/s as the nearest doubles, shape (rows, 6).
+
+        `states` has the shape (rows, variables).
+        """
         n, v = self._cartesian(states)
-        columns = [np.broadcast_to(part * self.k.length, len(states)) for part in (*n, *v)]
-        return np.array([column.astype(np.float64) for column in columns]).T.copy()
+        columns = []
+        for component in (*n, *v):
+            in_si = np.broadcast_to(component * self.k.length, len(states))
+            columns.append(in_si.astype(np.float64))
+        return np.array(columns).T.copy()
 
     def table(self, states: Any, bits: int) -> Table:
-        """Return `columns.RUN` over 2**bits, exactly as computed, from states of shape (rows, variables)."""
+        """Return `columns.RUN` over 2**bits, exactly as computed.
+
+        `states` has the shape (rows, variables).
+        """
         if len(states) == 0:
             return Table(RUN, bits, [])
         n, v = self._cartesian(states)
         ax = acceleration(n, v, self.k)[0]
-        fixed = [
-            self.numbers.fixed(np.asarray(column) * self.k.length, bits) for column in (*n, *v, ax)
-        ]
-        return Table(RUN, bits, list(zip(*fixed, strict=True)))
+        columns = []
+        for component in (*n, *v, ax):
+            in_si = np.asarray(component) * self.k.length
+            columns.append(self.numbers.fixed(in_si, bits))
+        return Table(RUN, bits, list(zip(*columns, strict=True)))
 
     def _cartesian(self, states: Any) -> Any:
         return self.formulation.cartesian(tuple(np.ascontiguousarray(states.T)), self.k, np)

@@ -1,9 +1,10 @@
-"""Any autonomous system compiled and integrated by heyoka, without events; maps of doubles as machine code."""
+"""Any autonomous system integrated by heyoka, without events; maps of doubles as machine code."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from numbers import Real
 from typing import Any
@@ -27,59 +28,77 @@ def compiled(
         change: `change(state, parameters)` returns the next state.
     """
     state = list(hy.make_vars(*variables))
-    return hy.cfunc(change(state, [hy.par[i] for i in range(parameters)]), state)
+    symbols = [hy.par[i] for i in range(parameters)]
+    return hy.cfunc(change(state, symbols), state)
+
+
+@dataclass(frozen=True)
+class AutonomousSystem:
+    """A system of equations y' = f(y), written for any number type.
+
+    Attributes:
+        variables: names of the state's variables.
+        derivatives: `derivatives(state, functions)` or, with parameters, `derivatives(state,
+            functions, parameters)`; `functions` offers sqrt, sin, cos.
+        parameters: number of parameters.
+        varied: whether the derivative of the state with respect to the first parameter is
+            integrated as well, by the first-order variational equations.
+    """
+
+    variables: Sequence[str]
+    derivatives: Callable[..., Sequence[Any]]
+    parameters: int = 0
+    varied: bool = False
+
+    def equations(self) -> list[tuple[Any, Any]]:
+        """Return the pairs (variable, rate), as heyoka's expressions."""
+        state = [hy.expression(name) for name in self.variables]
+        if self.parameters:
+            parameters = [hy.par[i] for i in range(self.parameters)]
+            return as_pairs(state, self.derivatives(tuple(state), hy, parameters))
+        return as_pairs(state, self.derivatives(tuple(state), hy))
 
 
 class Propagator:
-    """A plain propagator for systems without events: any autonomous system, written for any number type.
+    """A propagator for systems without events.
 
     Args:
-        variables: names of the state's variables.
-        derivatives: `derivatives(state, functions)` or, with parameters, `derivatives(state, functions, parameters)`;
-            `functions` offers sqrt, sin, cos.
+        system: the equations.
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
-        parameters: number of parameters.
         radians: how far a run goes, by which compiling is thorough or quick.
-        varied: whether the derivative of the state with respect to the first parameter is integrated as well, by
-            the first-order variational equations.
     """
 
     def __init__(
         self,
-        variables: Sequence[str],
-        derivatives: Callable[..., Sequence[Any]],
+        system: AutonomousSystem,
         number: NumberType,
         *,
         tolerance: float | None = None,
-        parameters: int = 0,
         radians: float = math.inf,
-        varied: bool = False,
     ) -> None:
         self.numbers = Numbers(number)
-        state = [hy.expression(name) for name in variables]
-        extra = ([hy.par[i] for i in range(parameters)],) if parameters else ()
-        system = as_pairs(state, derivatives(tuple(state), hy, *extra))
-        options: dict[str, Any] = {"radians": radians, "varied": varied}
+        self.parameters: Sequence[Any] = ()  # where a run is given none
+        self.steps = 0
+        equations = system.equations()
+        options: dict[str, Any] = {"radians": radians, "varied": system.varied}
         if tolerance is not None:
             if not (isinstance(tolerance, Real) and 0 < tolerance < 1):
                 raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
             options["tol"] = Fraction(tolerance)
-        self._ta = self.numbers.integrator(system, [], **options)
-        self.parameters: Sequence[Any] = ()  # where none are given
-        self.steps = 0
+        self._ta = self.numbers.integrator(equations, [], **options)
 
     def from_zero(
         self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0
     ) -> Any:
         """Return the states at increasing times (the first is 0), shape (times, variables).
 
-        With variational equations, `start` holds the state and then its derivative with respect to the first
-        parameter, and so does each row.
+        With variational equations, `start` holds the state and then its derivative with respect to
+        the first parameter, and so does each row.
 
         Raises:
-            IntegrationError: heyoka stops before the last time, also because `max_steps` (0: any number) do not
-                suffice, or a state is not finite.
+            IntegrationError: heyoka stops before the last time, also because `max_steps` (0: any
+                number) do not suffice, or a state is not finite.
         """
         ta = self._ta
         ta.time = self.numbers.of(0)

@@ -1,4 +1,4 @@
-"""One run of heyoka: a scene integrated in one formulation and one number type, with its transits if wanted.
+"""One run of heyoka: a scene in one formulation and one number type, with its transits if wanted.
 
 For a proof: the Taylor steps of a run in `momentum`, their lengths and coefficients as integers.
 """
@@ -29,10 +29,15 @@ from .conversions import Numbers
 from .events import march
 from .stepper import Stepper, Zero
 
-SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits
-DECAYS = 5.0  # with a fast drag γ the step size is at most DECAYS MOST_TURN/γ
+_SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits
+_DECAYS = 5.0  # with a fast drag γ the step size is at most _DECAYS MOST_TURN/γ
 # mantissa of a step size: equal steps share their scaled constants, and times stay short
 STEP_BITS = 6
+# of the span: the longest step of a run that takes other steps, if one would do
+_OTHER_STEPS = Fraction(5, 8)
+UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
+# results carry this many bits below the run's epsilon, for swings much smaller than the cord
+SMALL_SWING_BITS = 80
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
@@ -40,30 +45,41 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
 
     Their rows are n east, north and up, which the formulation has to begin with.
     """
-    times, start = plan.times, Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
-    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, span=times[-1])
-    grid = [stepper.numbers.of(t) for t in times]
-    spent = 0.0
-    rate = max(float(start.ctx.sqrt(start.ctx.norm(start.k.pull))), float(start.k.drag) / DECAYS)
-    turn = MOST_TURN * float(OTHER_STEPS) if plan.other_steps else MOST_TURN
-    longest = _few_bits(turn / rate) if rate > 0 else max(times[-1], Fraction(1))
-    states, limit, beyond = [stepper.state], stepper.numbers.of(longest), False
+    start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
+    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, span=plan.times[-1])
+    numbers = stepper.numbers
+    times = [numbers.of(t) for t in plan.times]
+    states = [stepper.state]
+    longest = _longest_step(plan, start)
+    limit = numbers.of(longest)
+    cpu_s = 0.0
+    beyond = False
     while not beyond:
-        beyond, started = stepper.time > grid[-1], time.process_time()
+        beyond = stepper.time > times[-1]
+        begun = time.process_time()
         t, h, series = stepper.expand(limit, coefficient_bits)
-        spent += time.process_time() - started
+        cpu_s += time.process_time() - begun
         yield TaylorStep(
-            t, h, Fraction(0), Fraction(1), coefficient_bits, partial(_integers, series[:3]), LOCAL
+            centre=t,
+            h=h,
+            low=Fraction(0),
+            high=Fraction(1),
+            bits=coefficient_bits,
+            rows=partial(_integers, series[:3]),
+            columns=LOCAL,
         )
-        stepper.sample(grid, states)
-        limit = stepper.numbers.of(min(_next_step(h, series, coefficient_bits), longest))
-    return result(
-        plan,
-        stepper,
-        np.array(states, dtype=stepper.numbers.dtype),
-        None,
-        time.process_time() - spent,
-    )
+        stepper.sample(times, states)
+        limit = numbers.of(min(_next_step(h, series, coefficient_bits), longest))
+    reached = np.array(states, dtype=numbers.dtype)
+    return result(plan, stepper, reached, None, time.process_time() - cpu_s)
+
+
+def _longest_step(plan: Plan, start: Start) -> Fraction:
+    """Return the longest step in s that the series of a proof may have."""
+    swing_rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)))
+    rate = max(swing_rate, float(start.k.drag) / _DECAYS)
+    turn = MOST_TURN * float(_OTHER_STEPS) if plan.other_steps else MOST_TURN
+    return _few_bits(turn / rate) if rate > 0 else max(plan.times[-1], Fraction(1))
 
 
 def _integers(series: Any) -> tuple[list[int], ...]:
@@ -72,18 +88,19 @@ def _integers(series: Any) -> tuple[list[int], ...]:
 
 
 def _next_step(h: Fraction, series: Any, bits: int) -> Fraction:
-    """Return about the step size that heyoka's rule would give next, with few bits; heyoka's own choice limits it too.
+    """Return about the step size that heyoka's rule would give next, with few bits.
+
+    heyoka's own choice limits a step too.
 
     The rule: h = ρ exp(-2 - 0.7/(p - 1)), ρ the smaller of |c_k|^(-1/k) of the last two orders.
     """
     order = series.shape[1] - 1
-    largest = {
-        k: max(abs(int(c)).bit_length() for c in series[:, k]) - bits for k in (order - 1, order)
-    }
-    power = min(-log2 / k for k, log2 in largest.items()) - (2 + 0.7 / (order - 1)) * math.log2(
-        math.e
-    )
-    return _few_bits(float(h) * 2**power * SHRINK)
+    log2_radii = []
+    for k in (order - 1, order):
+        largest = max(abs(int(c)).bit_length() for c in series[:, k])
+        log2_radii.append(-(largest - bits) / k)
+    power = min(log2_radii) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
+    return _few_bits(float(h) * 2**power * _SHRINK)
 
 
 def _few_bits(h: float) -> Fraction:
@@ -92,25 +109,25 @@ def _few_bits(h: float) -> Fraction:
     return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
 
 
-# of the span: the longest step of a run that takes other steps, if one would do
-OTHER_STEPS = Fraction(5, 8)
-UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
-# results carry this many bits below the run's epsilon, for swings much smaller than the cord
-SMALL_SWING_BITS = 80
-
-
 class EarlyZero(NamedTuple):
-    """A zero of xdot too near t = 0 for a run to see: its time in s, before the release if negative, and direction."""
+    """A zero of xdot too near t = 0 for a run to see.
+
+    Attributes:
+        time_s: before the release if negative.
+        direction: +1 where xdot grows, else -1.
+    """
 
     time_s: Any
     direction: int
 
 
-def early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
-    """Return the zero of xdot near a release whose vx is not zero but less than a run's rounding; None if it is more.
+def _early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
+    """Return the zero of xdot near a release whose vx is less than a run's rounding.
 
-    Released with vx = 1e-30 m/s, the bob turns back after some 1e-30 s: the zero of xdot's tangent, whose relative
-    error is below the run's epsilon, as vx is below that of the other speeds.
+    None if vx is zero, or if it is more.
+
+    Released with vx = 1e-30 m/s, the bob turns back after some 1e-30 s: the zero of xdot's tangent,
+    whose relative error is below the run's epsilon, as vx is below that of the other speeds.
     """
     vx, *others = start.v
     scale = max(start.rate, start.fastest_rate, *(float(abs(speed)) for speed in others))
@@ -130,7 +147,7 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     """
     start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     watching = plan.transits and not xdot_vanishes(start)
-    longest = plan.times[-1] * OTHER_STEPS if plan.other_steps else None
+    longest = plan.times[-1] * _OTHER_STEPS if plan.other_steps else None
     formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
     stepper = Stepper(
         formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest
@@ -139,11 +156,10 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     zeros: list[Zero] = []
     started = time.process_time()
     if watching:
-        early = early_zero(start, plan.number.prec)
+        early = _early_zero(start, plan.number.prec)
         release = stepper.state
-        states, zeros = march(
-            stepper, times, zero_at_release(start) or int(early is not None), report
-        )
+        multiplicity = zero_at_release(start) or int(early is not None)
+        states, zeros = march(stepper, times, multiplicity, report)
         if early is not None and early.time_s > 0:
             zeros.insert(0, Zero(stepper.numbers.of(early.time_s), early.direction, release))
     else:
@@ -154,10 +170,13 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
 def run_between(
     plan: Plan, rows: Table, starts: Sequence[int], report: Report | None = None
 ) -> Run:
-    """Integrate from some rows of a grid, each to the time of the next; return a run with the states reached.
+    """Integrate from some rows of a grid, each to the time of the next.
+
+    Return a run with the states reached.
 
     Args:
-        plan: the run that is taken in parts: its times are those of the rows. Transits are not looked for.
+        plan: the run that is taken in parts: its times are those of the rows. Transits are not
+            looked for.
         rows: the states at these times, in SI units.
         starts: numbers of the rows to start from, counted from 0.
         report: called with the time of each row that is reached, in s.
@@ -165,19 +184,20 @@ def run_between(
     Raises:
         IntegrationError: the integrator stopped.
     """
-    start, started = Start.of(plan.inputs, plan.number.prec + GUARD_BITS), time.process_time()
+    start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
+    started = time.process_time()
     formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
-    lengths = [plan.times[i + 1] - plan.times[i] for i in starts]
-    stepper = Stepper(formulation, start, plan.number, span=sum(lengths, Fraction(0)))
-    states, reached, zero = rows.only(STATE).values, [], stepper.numbers.of(0)
-    for i, length in zip(starts, lengths, strict=True):
-        x, y, z, vx, vy, vz = (
-            to_mpf(Fraction(value, 1 << rows.bits), start.ctx) for value in states[i]
-        )
-        stepper.back(
-            (zero, stepper.model.release(replace(start, position=(x, y, z), velocity=(vx, vy, vz))))
-        )
-        reached.append(stepper.propagate([zero, stepper.numbers.of(length)])[-1])
+    spans = [plan.times[i + 1] - plan.times[i] for i in starts]
+    stepper = Stepper(formulation, start, plan.number, span=sum(spans, Fraction(0)))
+    states = rows.only(STATE).values
+    zero = stepper.numbers.of(0)
+    reached = []
+    for i, span in zip(starts, spans, strict=True):
+        si = [to_mpf(Fraction(value, 1 << rows.bits), start.ctx) for value in states[i]]
+        x, y, z, vx, vy, vz = si
+        release = replace(start, position=(x, y, z), velocity=(vx, vy, vz))
+        stepper.back((zero, stepper.model.release(release)))
+        reached.append(stepper.propagate([zero, stepper.numbers.of(span)])[-1])
         if report is not None:
             report(float(plan.times[i + 1]))
     return result(plan, stepper, np.array(reached, dtype=stepper.numbers.dtype), None, started)
@@ -208,12 +228,10 @@ def result(
 
 
 def _transits(stepper: Stepper, zeros: list[Zero], bits: int) -> Zeros[Table]:
-    dtype = stepper.numbers.dtype
-    states = stepper.model.table(np.array([zero.state for zero in zeros], dtype=dtype), bits)
-    times = stepper.numbers.fixed(np.array([zero.t for zero in zeros], dtype=dtype), bits)
-    table = Table(
-        ("t", *states.columns),
-        bits,
-        [(t, *row) for t, row in zip(times, states.values, strict=True)],
-    )
+    numbers = stepper.numbers
+    states = np.array([zero.state for zero in zeros], dtype=numbers.dtype)
+    times = np.array([zero.t for zero in zeros], dtype=numbers.dtype)
+    columns = stepper.model.table(states, bits)
+    rows = zip(numbers.fixed(times, bits), columns.values, strict=True)
+    table = Table(("t", *columns.columns), bits, [(t, *row) for t, row in rows])
     return Zeros(table, [zero.direction for zero in zeros])

@@ -20,13 +20,13 @@ from ..plan import Pace, Report
 from .model import RoundedModel
 from .system import system_of
 
-STEPS_PER_REPORT = 64  # steps between two reports of progress
+_STEPS_PER_REPORT = 64  # steps between two reports of progress
 # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
 TIME_BITS = 64
 
 
 class Zero(NamedTuple):
-    """A zero of xdot found by heyoka: time, sign of the crossing, state; in numbers of the run's type."""
+    """A zero of xdot: time, sign of the crossing, state; in numbers of the run's type."""
 
     t: Any
     direction: int
@@ -43,7 +43,9 @@ def _record(integrator: Any, t: Any, direction: int) -> None:
 
 
 class Stepper:
-    """heyoka's integrator of a scene, one step at a time, with dense output and the zeros of xdot in each step.
+    """heyoka's integrator of a scene, one step at a time.
+
+    It has dense output, and finds the zeros of xdot in each step.
 
     Args:
         formulation: the formulation to integrate.
@@ -64,16 +66,19 @@ class Stepper:
         span: Fraction | float = math.inf,
         longest: Fraction | None = None,
     ) -> None:
-        self.number, self.model = number, RoundedModel(formulation, start.k, number)
+        self.number = number
+        self.model = RoundedModel(formulation, start.k, number)
         self.numbers = self.model.numbers
         self.zeros: list[Zero] = []
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
         equations, xdot = system_of(formulation, self.model.symbols)
-        sought, radians = ((xdot, _record),) if events else (), float(span) * start.rate
         started = time.process_time()
         self._ta = self.numbers.integrator(
-            equations, self.model.release(start), radians=radians, events=sought
+            equations,
+            self.model.release(start),
+            radians=float(span) * start.rate,
+            events=((xdot, _record),) if events else (),
         )
         self._ta.pars[:] = self.model.parameters[: len(self._ta.pars)]
         self.compile_s = time.process_time() - started
@@ -98,9 +103,10 @@ class Stepper:
         """
         self.zeros.clear()
         _at_work.zeros = self.zeros
-        self._count_step(
-            self._ta.step(limit if self._longest is None else min(limit, self._longest))[0]
-        )
+        if self._longest is not None:
+            limit = min(limit, self._longest)
+        outcome, _ = self._ta.step(limit)
+        self._count_step(outcome)
 
     def _count_step(self, outcome: Any) -> None:
         """Count a step, or raise if it failed."""
@@ -113,7 +119,10 @@ class Stepper:
         self.steps += 1
 
     def sample(self, times: Sequence[Any], states: list[Any]) -> None:
-        """Append the states at those of the times that the last step has passed, by dense output; one a time."""
+        """Append the states at those of the times that the last step has passed.
+
+        They come from dense output; `states` has one for each time passed before.
+        """
         while len(states) < len(times) and times[len(states)] <= self.time:
             self._ta.update_d_output(times[len(states)])
             states.append(self._ta.d_output.copy())
@@ -128,55 +137,67 @@ class Stepper:
         self.zeros.clear()
 
     def last_of_x(self) -> tuple[Any, Any]:
-        """Return the Taylor coefficients of the first variable in the last step (a copy), and the step's length."""
+        """Return the Taylor coefficients of the first variable in the last step, and its length."""
         return self._ta.tc[0].copy(), self._ta.last_h
 
     def coefficients(self) -> tuple[Any, Any]:
-        """Return the Taylor coefficients of every variable, shape (variables, order + 1), and heyoka's step size.
+        """Return the Taylor coefficients of every variable, and heyoka's step size.
+
+        The coefficients have the shape (variables, order + 1).
 
         The stepper goes back to where it was.
         """
-        start, _at_work.zeros = self.mark(), self.zeros
+        start = self.mark()
+        _at_work.zeros = self.zeros
         _, h = self._ta.step(write_tc=True)
         coefficients = np.array(self._ta.tc)
         self.back(start)
         return coefficients, h
 
     def expand(self, limit: Any, bits: int) -> tuple[Fraction, Fraction, Any]:
-        """Take one step, at most `limit` seconds long; return its start and length in s, both exact, and its series.
+        """Take one step, at most `limit` seconds long; return its start, length and series.
 
-        The series, of s = (time - start)/length, is that of `momentum`: n, and length times H, each times 2**bits and
-        not yet integer, shape (6, order + 1).
+        Start and length in s are exact.
+
+        The series, of s = (time - start)/length, is that of `momentum`: n, and length times H, each
+        times 2**bits and not yet integer, shape (6, order + 1).
         """
         start = self._exact_time()
-        self._count_step(self._ta.step(limit, True)[0])
+        outcome, _ = self._ta.step(limit, True)
+        self._count_step(outcome)
         h = self._exact_time() - start
         if (h, bits) != self._powers[0]:
             self._powers = ((h, bits), self._row_powers(h, bits))
         return start, h, self._ta.tc * self._powers[1]
 
     def _row_powers(self, h: Fraction, bits: int) -> Any:
-        """Return h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
-        powers = np.cumprod(
-            [self.numbers.power_of_two(bits), *[self.numbers.of(h)] * (self.order + 1)]
-        )
+        """Return h**k 2**bits for the coefficients of n, h**(k+1) 2**bits for those of H.
+
+        Shape (6, order + 1).
+        """
+        factors = [self.numbers.power_of_two(bits), *[self.numbers.of(h)] * (self.order + 1)]
+        powers = np.cumprod(factors)
         half = len(self._ta.state) // 2
         return np.array([powers[:-1]] * half + [powers[1:]] * half)
 
     def _exact_time(self) -> Fraction:
         bits = 2 * self.number.prec + TIME_BITS
-        return Fraction(sum(self.numbers.fixed(np.array(self._ta.dtime), bits)), 1 << bits)
+        high, low = self.numbers.fixed(np.array(self._ta.dtime), bits)
+        return Fraction(high + low, 1 << bits)
 
     def propagate(
         self, times: Sequence[Any], report: Report | None = None, pace: Pace | None = None
     ) -> Any:
-        """Return the states at increasing times from the one reached, shape (times, variables); not with events."""
+        """Return the states at increasing times from the one reached; not with events.
+
+        Shape (times, variables).
+        """
         count = 0
 
         def progress(integrator: Any) -> bool:
             nonlocal count
             count += 1
-            if count % STEPS_PER_REPORT == 0:
+            if count % _STEPS_PER_REPORT == 0:
                 t = float(integrator.time)
                 if pace is not None:
                     pace(count, t)
@@ -184,8 +205,11 @@ class Stepper:
                     report(t)
             return True
 
-        options = {"callback": progress if report or pace else None, "max_delta_t": self._longest}
-        keywords = {name: value for name, value in options.items() if value is not None}
-        states, steps = self.numbers.propagated(self._ta, times, **keywords)
+        options: dict[str, Any] = {}
+        if report or pace:
+            options["callback"] = progress
+        if self._longest is not None:
+            options["max_delta_t"] = self._longest
+        states, steps = self.numbers.propagated(self._ta, times, **options)
         self.steps += steps
         return states

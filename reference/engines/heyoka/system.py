@@ -1,4 +1,6 @@
-"""A formulation as heyoka expressions, ready to be compiled, and as text, with the terms that a scene does not need.
+"""A formulation as heyoka expressions, ready to be compiled, and as text.
+
+The text names the terms that a scene does not need.
 
 heyoka's cache of machine code on disk is set here too.
 """
@@ -25,14 +27,15 @@ if TYPE_CHECKING:
 
 # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
 FOLDER = "foucault"
-MOST_BYTES = 1 << 25
-EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
+_MOST_BYTES = 1 << 25
+_EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
 
 
 def keep_on_disk(number: NumberType) -> None:
     """Have what is compiled from now on kept on disk, where that serves for numbers of this type.
 
-    Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it is switched off.
+    Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it
+    is switched off.
     """
     hy.llvm_state.set_diskcache_enabled(number.hardware and _has_place())
 
@@ -45,13 +48,13 @@ def _has_place() -> bool:
         return False
     try:
         hy.llvm_state.set_diskcache_path(place / FOLDER)
-        hy.llvm_state.set_diskcache_limit(MOST_BYTES)
+        hy.llvm_state.set_diskcache_limit(_MOST_BYTES)
     except RuntimeError:  # it cannot be written, or is damaged
         return False
     return True
 
 
-NAMES = {
+_NAMES = {
     "turn_1": "Omega_y", "turn_2": "Omega_z", "pull_1": "c_y", "pull_2": "c_z", "centrifugal_0": "Omega2",
     "centrifugal_1": "Omega_z2", "centrifugal_2": "minus_Omega_yz", "centrifugal_3": "Omega_y2", "drag": "gamma",
     "length": "l", "gravity": "g_l", "axis_distance": "R_l", "rate": "Omega", "sin": "sin_lat", "cos": "cos_lat",
@@ -69,17 +72,20 @@ def system_of(formulation: Formulation, constants: Constants) -> tuple[list[tupl
 
 
 def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:
-    """Return a formulation's derivatives as a function of the state and the elementary functions."""
+    """Return a formulation's derivatives as a function of the state and elementary functions."""
     if isinstance(formulation, Lagrangian):
         return lambda state, _: _euler_lagrange(formulation, state, constants)
     return lambda state, functions: formulation.derivatives(state, constants, functions)
 
 
 def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]]:
-    """Return the pairs (variable, rate) that heyoka takes; a rate that is the int 0 becomes an expression.
+    """Return the pairs (variable, rate) that heyoka takes.
+
+    A rate that is the int 0 becomes an expression.
 
     Raises:
-        InputError: there are not as many rates as variables, or one is neither a number nor an expression.
+        InputError: there are not as many rates as variables, or one is neither a number nor an
+            expression.
     """
     try:
         expressions = [rate + hy.expression(0.0) for rate in rates]
@@ -93,7 +99,10 @@ def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]
 
 
 def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -> list[Any]:
-    """Return heyoka's equations of L; linear drag, Rayleigh function γ α0/2, adds -γ q' to each q'' whatever q is."""
+    """Return heyoka's equations of L.
+
+    Linear drag, with Rayleigh function γ α0/2, adds -γ q' to each q'', whatever q is.
+    """
     derived = hy.lagrangian(
         formulation.lagrangian(state, constants, hy), list(state[:2]), list(state[2:])
     )
@@ -104,51 +113,55 @@ def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -
 
 
 def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
-    """Return the lines "name' = …" that are compiled, constants by name, without exact zeros and constant variables."""
-    named = Constants.of({name: hy.make_vars(NAMES[name]) for name in constants.entries()})
+    """Return the lines "name' = …" that are compiled, with constants by name.
+
+    Exact zeros and constant variables are left out.
+    """
+    named = Constants.of({name: hy.make_vars(_NAMES[name]) for name in constants.entries()})
     constant = constant_variables(formulation, constants)
-    pairs = zip(formulation.variables, system_of(formulation, named)[0], strict=True)
-    return [f"{name}' = {rate}" for name, (_, rate) in pairs if name not in constant]
+    equations, _ = system_of(formulation, named)
+    lines = []
+    for name, (_, rate) in zip(formulation.variables, equations, strict=True):
+        if name not in constant:
+            lines.append(f"{name}' = {rate}")
+    return lines
 
 
 def lines_and_left_out(scene: Scene, formulation: str, number: str) -> tuple[list[str], list[str]]:
-    """Return the compiled lines "name' = …", and a sentence for each group of terms that the scene does not need.
+    """Return the compiled lines "name' = …", and the terms that the scene does not need.
+
+    These are sentences, one for each group of terms.
 
     Args:
         scene: the scene.
         formulation: that the run integrates.
         number: its number type, in words.
     """
-    inputs, system, run = scene.exact, FORMULATIONS[formulation], scene.run
-    start = Start.of(inputs, EQUATIONS_PREC)
-    turns, at_pole, effective = (
-        inputs.rotation_rate != 0,
-        abs(inputs.latitude) == 90,
-        inputs.gravity_is == "effective",
-    )
-    sentences = (
-        (not turns, "Coriolis and centrifugal terms: rotation_rate is 0."),
-        (
-            turns and at_pole,
-            "the distance R from the axis and the terms with Omega_y: the latitude is a pole.",
+    inputs = scene.exact
+    run = scene.run
+    system = FORMULATIONS[formulation]
+    start = Start.of(inputs, _EQUATIONS_PREC)
+    turns = inputs.rotation_rate != 0
+    at_pole = abs(inputs.latitude) == 90
+    at_equator = inputs.latitude == 0
+    effective = inputs.gravity_is == "effective"
+    no_transits = run.transits and xdot_vanishes(start)
+    constant = constant_variables(system, start.k)
+    sentences = {
+        "Coriolis and centrifugal terms: rotation_rate is 0.": not turns,
+        "the distance R from the axis and the terms with Omega_y: the latitude is a pole.": (
+            turns and at_pole
         ),
-        (turns and inputs.latitude == 0, "the terms with Omega_z and c_y: the latitude is 0."),
-        (effective, "the centrifugal force at the pivot: gravity is effective and contains it."),
-        (inputs.drag == 0, "drag: it is 0."),
-        *(
-            (True, f"the rate of {name}: it is constant.")
-            for name in constant_variables(system, start.k)
-        ),
-        (inputs.gravity == 0, "gravity: it is 0."),
-        (not run.transits, "event detection: transits are off."),
-        (run.transits and xdot_vanishes(start), "event detection: xdot is identically zero."),
-        (number == str(DOUBLE), f"extended precision: double serves {run.digits} digits."),
-        (
-            number == str(LONG_DOUBLE),
-            f"precision beyond long double: it serves {run.digits} digits.",
-        ),
-        (run.level != "enclosed", "the enclosure: the level does not ask for it."),
-    )
-    return equations_text(system, start.k), [
-        sentence for left_out, sentence in sentences if left_out
-    ]
+        "the terms with Omega_z and c_y: the latitude is 0.": turns and at_equator,
+        "the centrifugal force at the pivot: gravity is effective and contains it.": effective,
+        "drag: it is 0.": inputs.drag == 0,
+        **{f"the rate of {name}: it is constant.": True for name in constant},
+        "gravity: it is 0.": inputs.gravity == 0,
+        "event detection: transits are off.": not run.transits,
+        "event detection: xdot is identically zero.": no_transits,
+        f"extended precision: double serves {run.digits} digits.": number == str(DOUBLE),
+        f"precision beyond long double: it serves {run.digits} digits.": number == str(LONG_DOUBLE),
+        "the enclosure: the level does not ask for it.": run.level != "enclosed",
+    }
+    left_out = [sentence for sentence, applies in sentences.items() if applies]
+    return equations_text(system, start.k), left_out

@@ -29,10 +29,10 @@ def places(decay, turns, least=0):
 def test_all_zeros_of_a_long_step_are_found_in_order(decay, turns):
     """As steps have it where drag has all but ended a swing; double, which is tried first, shows noise from 20 on."""
     xdot = places(decay, turns)
-    found = [(xdot.root(*piece), piece[2]) for piece in xdot.isolated(1, xdot.sign(1 << BITS))]
+    zeros = list(xdot.isolated(1, xdot.sign(1 << BITS)))
     true = [(k + 0.5) * pi / turns for k in range(floor(turns / pi + 0.5))]
-    assert [s / (1 << BITS) for s, _ in found] == pytest.approx(true, rel=1e-12)
-    assert [before for _, before in found] == [(-1) ** k for k in range(len(true))]
+    assert [xdot.root(zero) / (1 << BITS) for zero in zeros] == pytest.approx(true, rel=1e-12)
+    assert [zero.sign_before for zero in zeros] == [(-1) ** k for k in range(len(true))]
 
 
 def parabola(depth, bits, least=0):
@@ -50,9 +50,9 @@ def parabola(depth, bits, least=0):
 def test_two_zeros_that_almost_meet_are_told_from_none(power, bits):
     """By the depth of the dip, down to about what the integers hold; between two signs that agree."""
     dip = parabola(Fraction(1, 1 << power), bits)
-    pieces = list(dip.isolated(1, 1))
-    assert [before for _, _, before in pieces] == [1, -1]
-    roots = [Fraction(dip.root(*piece), 1 << bits) for piece in pieces]
+    zeros = list(dip.isolated(1, 1))
+    assert [zero.sign_before for zero in zeros] == [1, -1]
+    roots = [Fraction(dip.root(zero), 1 << bits) for zero in zeros]
     assert [abs(root - THIRD) for root in roots] == pytest.approx(
         [Fraction(1, 1 << power // 2)] * 2, rel=1e-6
     )

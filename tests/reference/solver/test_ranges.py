@@ -363,12 +363,12 @@ def test_period_precession_and_full_turn_of_every_pendulum_lie_inside(name, deri
 
 
 MUTATIONS_OF_SWING = [  # and a pendulum whose period or precession is wrong then
-    ("_turn, drop term: sum(halves) * ctx.pi", "across the cut"),
-    ("_seen, swap neighbours: p, x", "from rest"),
-    ("_seen, flip sign: up * y", "from rest"),
-    ("_seen, drop term: north * z", "lean"),
-    ("_turn, drop term: most", "ellipse"),
-    ("_turn, drop term: to_fraction(point.off / point.wide) * ARC", "ellipse"),
+    ("_turn, drop term: sum(half_turns) * ctx.pi", "across the cut"),
+    ("_apsis, swap neighbours: p, x", "from rest"),
+    ("_apsis, flip sign: up * y", "from rest"),
+    ("_apsis, drop term: north * z", "lean"),
+    ("_turn, drop term: error", "ellipse"),
+    ("_turn, drop term: to_fraction(apsis.error_m / apsis.width_m) * _ARC", "ellipse"),
     ("swing_or_reason, next index: spans[1]", "from rest"),
 ]
 
