@@ -26,12 +26,12 @@ from .step import GRAINS, MOST_GRAINS, LimbModel
 
 # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
 TAIL_BITS = 9
-ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
+_ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
 # bits added at most for a swing smaller than l; none are added where there is no swing
 MOST_SWING_BITS = 64
 # of the order, and of the first and the longest step, in a run that takes other steps
-OTHER_STEPS = Fraction(7, 8)
-GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
+_OTHER_STEPS = Fraction(7, 8)
+_GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def limb_problem(
     prec = _prec_from_l(start, prec)
     unit, first = _unit_of_time(start)
     h = start.ctx.mpf(unit.numerator) / unit.denominator
-    order = order or round(ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
+    order = order or round(_ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
     longest = _longest_step(start, h)
     if other_steps:
         order = _shortened(order)
@@ -117,7 +117,7 @@ def _longest_step(start: Start, h: Any) -> int:
 
 def _shortened(size: int) -> int:
     """Return an order or a step in a run that takes other steps."""
-    return max(1, int(size * OTHER_STEPS))
+    return max(1, int(size * _OTHER_STEPS))
 
 
 def _state(start: Start, h: Any, limb_count: int) -> Array:
@@ -185,6 +185,6 @@ def _linear_terms(start: Start, h: Any, limb_count: int) -> LinearTerms:
 
 def _unit_of_time(start: Start) -> tuple[Fraction, int]:
     """Return a power of two near the first step, in s, and that step in grains."""
-    step = GUESS / start.fastest_rate if start.fastest_rate > 0 else 1.0
+    step = _GUESS / start.fastest_rate if start.fastest_rate > 0 else 1.0
     mantissa, exponent = math.frexp(step)
     return Fraction(2) ** exponent, max(1, int(mantissa * GRAINS))

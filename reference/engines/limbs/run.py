@@ -41,13 +41,13 @@ from .series import TENSION, M, W, X
 from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
-STEPS_PER_CALL = 1024
-COMPILE_S = 18  # about what compiling takes, as announced to users
-ROWS = np.array((X, M, W, TENSION))
+_STEPS_PER_CALL = 1024
+_COMPILE_S = 18  # about what compiling takes, as announced to users
+_ROWS = np.array((X, M, W, TENSION))
 # of the series: more than a run alone would take, since every step must be proved
-ORDER_PER_BIT = 0.5
-POLYNOMIALS_PER_CALL = 64
-FOR_EVER = 1 << 62  # in grains
+_ORDER_PER_BIT = 0.5
+_POLYNOMIALS_PER_CALL = 64
+_FOR_EVER = 1 << 62  # in grains
 # SI values carry this much below the last limb: l need not be a short binary fraction
 SPARE_BITS = 32
 
@@ -81,11 +81,11 @@ class Integration:
             self.problem.state, self.problem.first, multiplicity, self.problem.model
         )
         self.out = _empty_outputs(self.problem, plan.times, self.seek, polynomials)
-        self.until = FOR_EVER if polynomials else int(self.out.whole[-1]) + 1
+        self.until = _FOR_EVER if polynomials else int(self.out.whole[-1]) + 1
         # of xdot, of each call: time in grains and state, over 2**fraction_bits, and sign
         self.zeros: list[Any] = []
         cpu_start = time.process_time()
-        prepare(march, "limbs", COMPILE_S, *self._arguments(0))
+        prepare(march, "limbs", _COMPILE_S, *self._arguments(0))
         self.compile_s = time.process_time() - cpu_start
 
     def finish(self, report: Report | None, pace: Pace | None = None) -> None:
@@ -94,7 +94,7 @@ class Integration:
         Raises:
             IntegrationError: zeros of xdot stay in doubt, or no step is short enough.
         """
-        while not self.advance(STEPS_PER_CALL):
+        while not self.advance(_STEPS_PER_CALL):
             if pace is not None:
                 pace(int(self.state.counts[STEPS]), self.time)
             if report is not None:
@@ -152,7 +152,7 @@ def _empty_outputs(
     ]
     whole = [t // unit for t in scaled]
     remainders = [t % unit for t in scaled]
-    room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
+    room = _STEPS_PER_CALL + MOST_ZEROS if seek else 0
     return Outputs(
         whole=np.array(whole, dtype=np.int64),
         remainders=split(remainders, limb_count).ravel(),
@@ -172,31 +172,29 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         plan: as for `run`.
         coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order follows.
     """
-    order = round(ORDER_PER_BIT * coefficient_bits)
-    integration = Integration(plan, POLYNOMIALS_PER_CALL, order)
+    order = round(_ORDER_PER_BIT * coefficient_bits)
+    integration = Integration(plan, _POLYNOMIALS_PER_CALL, order)
     grain = integration.problem.grain
     limb_count = integration.problem.model.limb_count
     bits = fraction_bits(limb_count)
-    start = Fraction(0)
-    end = Fraction(1)
     spent_s = 0.0
     while True:
         cpu_start = time.process_time()
-        integration.advance(POLYNOMIALS_PER_CALL)
+        integration.advance(_POLYNOMIALS_PER_CALL)
         spent_s += time.process_time() - cpu_start
         steps = integration.out.steps.reshape(-1, 2).tolist()
-        series = integration.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
+        series = integration.out.series.reshape(_POLYNOMIALS_PER_CALL, -1).copy()
         for (grains, length), of_step in zip(steps, series, strict=True):
             t = grains * grain
             digits = partial(_digits, of_step, limb_count)
-            yield TaylorStep(t, length * grain, start, end, bits, digits)
+            yield TaylorStep(t, length * grain, Fraction(0), Fraction(1), bits, digits)
             if t > plan.times[-1]:
                 return result(integration, plan, time.process_time() - spent_s)
 
 
 def _digits(series: Array, limb_count: int) -> Digits:
     """Return the rows x, m, w and h² λ of a step, lowest order first."""
-    limbs = series.reshape(-1, limb_count, LANES)[:, :, ROWS]
+    limbs = series.reshape(-1, limb_count, LANES)[:, :, _ROWS]
     return Digits(np.ascontiguousarray(limbs.transpose(2, 1, 0), dtype=np.int32))
 
 

@@ -19,18 +19,18 @@ from .size import LIMB_BITS
 
 GRAINS = 1024
 MOST_GRAINS = 4 * GRAINS
-SHIFT = RADIX / GRAINS  # times m, and one limb down: a multiplication by m / GRAINS
+_SHIFT = RADIX / GRAINS  # times m, and one limb down: a multiplication by m / GRAINS
 # a step with at least this step-size factor is accepted as it is; the order is chosen accordingly
 LEAST_FACTOR = 0.9
 SAFETY_FACTOR = 0.98  # of the next length, against the one that the last coefficients allow
 # units of the last limb: smaller coefficients say nothing about the decay of the series
-RESOLVED = 4.0
+_RESOLVED = 4.0
 # the length stays as it is while the new one would be within these multiples of it
-KEEP_FROM = 0.94
-KEEP_TO = 1.03
-STEADY = LinearTerms._fields.index("steady")
-LN_2 = 0.6931471805599453
-ROOT_HALF = 0.7071067811865476
+_KEEP_FROM = 0.94
+_KEEP_TO = 1.03
+_STEADY = LinearTerms._fields.index("steady")
+_LN_2 = 0.6931471805599453
+_ROOT_HALF = 0.7071067811865476
 
 _swapped_halves = shuffled((3, 4, 5, 0, 1, 2, -1, -1), "_swapped_halves")
 _speeds = shuffled((-1, -1, -1, 3, 4, 5, -1, -1), "_speeds")
@@ -67,7 +67,7 @@ def scale_terms(to: LinearTerms, model: LimbModel, m: int) -> None:
     """Write the linear terms for a step of m grains."""
     for i in range(len(to)):
         rows = to[i]
-        factor = spread(1.0 if i == STEADY else DOUBLED)
+        factor = spread(1.0 if i == _STEADY else DOUBLED)
         for r in range(model.limb_count + 1):
             set_row(rows, r, get_row(model.terms[i], r))
         for power in range(1, 4):
@@ -80,7 +80,7 @@ def scale_terms(to: LinearTerms, model: LimbModel, m: int) -> None:
 def _multiply(rows: Array, powers: Array, power: int, m: int, limb_count: int) -> None:
     """Multiply the lanes that hold at least this power of m by m / GRAINS; the others stay as they are."""
     has_power = at_least(get_row(powers, 0), spread(power - 0.5))
-    factor = spread(SHIFT * GRAINS) + has_power * spread(SHIFT * (m - GRAINS))
+    factor = spread(_SHIFT * GRAINS) + has_power * spread(_SHIFT * (m - GRAINS))
     for r in range(limb_count, -1, -1):
         set_row(rows, r + 1, get_row(rows, r) * factor)
     set_row(rows, 0, spread(0.0))
@@ -101,7 +101,7 @@ def lane_products(to: Array, a: Array, b: Array, limb_count: int) -> None:
 def order_zero(s: LimbSeries, terms: LinearTerms, now: Array, m: int, limb_count: int) -> None:
     """Write the coefficients of order 0 from the state: n, h V, the tension λ = V·V + n·c and j."""
     # n, and V in units of the step
-    scale = spread(SHIFT * m)
+    scale = spread(_SHIFT * m)
     s.total[:] = 0.0
     for r in range(limb_count):
         set_row(s.total, r + 1, _speeds(get_row(now, r)) * scale)
@@ -144,7 +144,7 @@ def step_size_factor(s: LimbSeries, order: int, limb_count: int, tolerance: floa
 
     It is estimated from the last two resolved coefficients (Jorba and Zou 2005), assuming geometric decay.
     """
-    least_size = math.ldexp(RESOLVED, 1 - LIMB_BITS * limb_count)
+    least_size = math.ldexp(_RESOLVED, 1 - LIMB_BITS * limb_count)
     target = _log2(tolerance) / order
     least = 2.0
     resolved_orders = 0
@@ -164,19 +164,19 @@ def step_size_factor(s: LimbSeries, order: int, limb_count: int, tolerance: floa
 def _log2(x: float) -> float:
     """Return log2(x) of a positive number, to some units in the last place; libm's differs from CPU to CPU."""
     fraction, exponent = math.frexp(x)
-    y = (fraction - ROOT_HALF) / (fraction + ROOT_HALF)
+    y = (fraction - _ROOT_HALF) / (fraction + _ROOT_HALF)
     square = y * y
     total = 0.0
     for n in range(21, 0, -2):
         total = total * square + 1.0 / n
-    return exponent - 0.5 + 2.0 / LN_2 * y * total
+    return exponent - 0.5 + 2.0 / _LN_2 * y * total
 
 
 @compiled
 def _exp2(x: float) -> float:
     """Return 2**x, likewise."""
     whole = np.rint(x)
-    exponent = (x - whole) * LN_2
+    exponent = (x - whole) * _LN_2
     total = 1.0
     for n in range(15, 0, -1):
         total = 1.0 + total * exponent / n
@@ -187,7 +187,7 @@ def _exp2(x: float) -> float:
 def next_length(m: int, factor: float, longest: int) -> int:
     """Return the next step in grains."""
     target = m * factor * SAFETY_FACTOR
-    if m * KEEP_FROM <= target <= m * KEEP_TO:
+    if m * _KEEP_FROM <= target <= m * _KEEP_TO:
         return min(m, longest)
     return max(1, min(int(target), 2 * m, longest))
 

@@ -23,20 +23,20 @@ from .step import LimbModel
 
 MOST_ZEROS = 24  # of one step
 # of a polynomial evaluated in double, against the sum of its coefficients' sizes
-ROUNDING = 2.0**-46
+_ROUNDING = 2.0**-46
 # a dip whose bottom is less than this many times that rounding is solved as a parabola
-SHALLOW = 2.0**26
+_SHALLOW = 2.0**26
 # the series is cut where two coefficients in a row are smaller, against the largest
-NEGLIGIBLE = 2.0**-60
+_NEGLIGIBLE = 2.0**-60
 # last bits of a number in limbs that rounding may have spoilt: they do not decide a sign
 NOISE_BITS = 12
-NARROWEST = 2.0**-40  # half of the shortest interval that is cut
-DEEPEST = 256  # intervals, one in another, down to the narrowest
-NEWTON_STEPS = 30
+_NARROWEST = 2.0**-40  # half of the shortest interval that is cut
+_DEEPEST = 256  # intervals, one in another, down to the narrowest
+_NEWTON_STEPS = 30
 DERIVATIVE_BITS = 44  # correct bits of the derivative, a double, that Newton's method divides by
 # of a step: after a smaller correction the next is smaller by the bits of the derivative
 NEAR_BITS = 46
-EDGE = 2.0**-30  # of a step: a zero may lie this far outside its interval
+_EDGE = 2.0**-30  # of a step: a zero may lie this far outside its interval
 
 
 class Search(NamedTuple):
@@ -66,7 +66,7 @@ def empty_search(order: int, limb_count: int) -> Search:
     return Search(
         f=np.zeros(order + 2),
         slope=np.zeros(order + 2),
-        stack=np.zeros(2 * DEEPEST),
+        stack=np.zeros(2 * _DEEPEST),
         low=np.zeros(MOST_ZEROS),
         high=np.zeros(MOST_ZEROS),
         guess=np.zeros(MOST_ZEROS),
@@ -128,7 +128,7 @@ def bracket_zeros(
         half = 0.5 * (high - low)
         behaviour = classify(xdot.f, xdot.size, middle, half, xdot.noise)
         if behaviour.kind == UNDECIDED:
-            if half < NARROWEST or depth == DEEPEST:
+            if half < _NARROWEST or depth == _DEEPEST:
                 return False
             z.stack[2 * depth] = middle
             z.stack[2 * depth + 1] = _sign_at(z, middle, behaviour.value, xdot.noise, step, model)
@@ -163,7 +163,7 @@ def _polynomial(z: Search, s: LimbSeries, multiplicity: int, model: LimbModel) -
         value = (k + 1.0) * double_of(s.c, limbs, (k + 1) * limb_count * LANES + X, LANES)
         z.f[k - multiplicity] = value
         largest = max(largest, abs(value))
-        small_in_a_row = small_in_a_row + 1 if abs(value) < largest * NEGLIGIBLE else 0
+        small_in_a_row = small_in_a_row + 1 if abs(value) < largest * _NEGLIGIBLE else 0
         if small_in_a_row == 2:
             size = k - multiplicity - 1
             break
@@ -171,7 +171,7 @@ def _polynomial(z: Search, s: LimbSeries, multiplicity: int, model: LimbModel) -
     total = 0.0
     for k in range(size):
         total += abs(z.f[k])
-    return _Polynomial(z.f, size, ROUNDING * total)
+    return _Polynomial(z.f, size, _ROUNDING * total)
 
 
 @merged
@@ -211,7 +211,7 @@ def _dip(z: Search, xdot: _Polynomial, interval: _Interval, step: Step, model: L
     flat = crossing(z.slope, xdot.size - 1, low, high, -side)
     at_bottom = classify(xdot.f, xdot.size, flat, 0.0, xdot.noise)
     bottom = at_bottom.value
-    is_shallow = abs(bottom) <= SHALLOW * xdot.noise
+    is_shallow = abs(bottom) <= _SHALLOW * xdot.noise
     if is_shallow:
         # the bottom of a shallow dip is noise in double
         bottom = _bottom_in_limbs(z, flat, at_bottom.bend, step, model)
@@ -223,8 +223,8 @@ def _dip(z: Search, xdot: _Polynomial, interval: _Interval, step: Step, model: L
     if is_shallow:
         # the zeros of a parabola
         distance = np.sqrt(abs(bottom / at_bottom.bend))
-        _record(z, low, flat + EDGE, flat - distance, -side)
-        _record(z, flat - EDGE, high, flat + distance, side)
+        _record(z, low, flat + _EDGE, flat - distance, -side)
+        _record(z, flat - _EDGE, high, flat + distance, side)
     else:
         _record(z, low, flat, crossing(xdot.f, xdot.size, low, flat, side), -side)
         _record(z, flat, high, crossing(xdot.f, xdot.size, flat, high, -side), side)
@@ -236,7 +236,7 @@ def _bottom_in_limbs(z: Search, flat: float, bend: float, step: Step, model: Lim
     """Return xdot at the bottom of a dip, found in limbs by Newton's method on xddot from the place `flat`."""
     set_double(z.place, flat, model.limb_count)
     bottom = 0.0
-    for _ in range(NEWTON_STEPS):
+    for _ in range(_NEWTON_STEPS):
         bottom = xdot_at(z.place, step, model)
         shift = -xddot_of(step, bottom, model) / (2.0 * bend)
         if abs(shift) < 2.0**-50:
@@ -252,7 +252,7 @@ def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
     enough = 2.0 ** min(DERIVATIVE_BITS - (LIMB_BITS * limb_count - 1), -NEAR_BITS)
     previous = 1.0
     set_double(z.place, z.guess[i], limb_count)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(_NEWTON_STEPS):
         xdot = xdot_at(z.place, step, model)
         xddot = xddot_of(step, xdot, model)
         shift = -xdot / xddot if xddot != 0.0 else 1.0
@@ -260,10 +260,10 @@ def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
             return False
         add_double(z.place, shift, limb_count)
         # where xdot is small against its last limb, rounding ends convergence before the shift is small enough
-        has_stalled = abs(shift) > 0.25 * previous and previous < EDGE
+        has_stalled = abs(shift) > 0.25 * previous and previous < _EDGE
         previous = abs(shift)
         if has_stalled or abs(shift) < enough:
             evaluate(step.rows, step.s, z.place, model.order, limb_count)
             place = double_of(z.place, limb_count)
-            return bool(z.low[i] - EDGE <= place <= z.high[i] + EDGE)
+            return bool(z.low[i] - _EDGE <= place <= z.high[i] + _EDGE)
     return False

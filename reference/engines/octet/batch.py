@@ -11,10 +11,10 @@ from ...system.machine_code import folder_of, kept_variants, prepare
 from ..batch_interface import Batch, Outcomes, Rows, RunOptions
 from .rows import COLUMNS, RESULTS, SOURCES, TOLERANCE, outcomes, packed
 
-ORDER = 24
-MOVED_ORDER = 22  # of a run that serves to estimate the error
-STEPS_PER_CALL = 20_000  # between two calls an interrupt is noticed
-ROOM = 1 << 16  # times that one call may find
+_ORDER = 24
+_MOVED_ORDER = 22  # of a run that serves to estimate the error
+_STEPS_PER_CALL = 20_000  # between two calls an interrupt is noticed
+_ROOM = 1 << 16  # times that one call may find
 
 
 class OctetBatch(Batch):
@@ -32,7 +32,7 @@ class OctetBatch(Batch):
     @property
     def identity(self) -> str:
         """Return orders, tolerance and the compiler."""
-        return f"octet, orders {ORDER} and {MOVED_ORDER}, tolerance {TOLERANCE!r}, numba {version('numba')}"
+        return f"octet, orders {_ORDER} and {_MOVED_ORDER}, tolerance {TOLERANCE!r}, numba {version('numba')}"
 
     def prepare(self, options: RunOptions) -> None:
         """Compile the kernel, or read it from the disk, once a process: later calls find it done."""
@@ -44,7 +44,7 @@ class OctetBatch(Batch):
         if options.form:
             title += " with sections"
         seconds = round(self.compile_s[bool(kernel.stats.cache_misses)])
-        prepare(kernel, title, seconds, empty_march(), ORDER, options.form or None, job, 0)
+        prepare(kernel, title, seconds, empty_march(), _ORDER, options.form or None, job, 0)
 
     def solve(self, rows: Rows, options: RunOptions) -> Outcomes:
         """Solve rows without drag."""
@@ -54,17 +54,17 @@ class OctetBatch(Batch):
             raise ValueError("rows with drag are not for this kernel")
         numbers = packed(rows, options)
         results = np.zeros((len(rows), RESULTS))
-        moments = empty_moments(ROOM if options.times else 0)
+        moments = empty_moments(_ROOM if options.times else 0)
         job = Job(numbers.ravel(), results.ravel(), moments)
         lanes = empty_march()
-        order = MOVED_ORDER if options.moved else ORDER
+        order = _MOVED_ORDER if options.moved else _ORDER
 
         # of each call: row, time and direction of its transits
         pieces = [[column[:0] for column in moments[1:]]]
         done = len(rows) == 0
         while not done:
             moments.number[0] = 0
-            done = march(lanes, order, options.form or None, job, STEPS_PER_CALL)
+            done = march(lanes, order, options.form or None, job, _STEPS_PER_CALL)
             pieces.append([column[: moments.number[0]].copy() for column in moments[1:]])
 
         row, t, direction = (np.concatenate(column) for column in zip(*pieces, strict=True))

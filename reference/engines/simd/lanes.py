@@ -50,9 +50,9 @@ def merged(function: Function) -> Function:
 
 
 LANES = 8
-VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-ZERO = ir.Constant(VECTOR, [0.0] * LANES)
-FUSE = ("contract",)
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_ZERO = ir.Constant(_VECTOR, [0.0] * LANES)
+_FUSE = ("contract",)
 _extending: Any = numba.extending  # untyped
 _insert: Any = cgutils.get_or_insert_function
 _Type: Any = types.Type
@@ -75,7 +75,7 @@ Lanes: Any = _Lanes(name="Lanes")
 @_extending.register_model(_Lanes)
 class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, lanes_type: Any) -> None:
-        super().__init__(manager, lanes_type, VECTOR)
+        super().__init__(manager, lanes_type, _VECTOR)
 
 
 def instruction(generator: Any) -> Any:
@@ -83,7 +83,7 @@ def instruction(generator: Any) -> Any:
     return _extending.intrinsic(generator)
 
 
-_BLANK = ir.Constant(VECTOR, ir.Undefined)
+_BLANK = ir.Constant(_VECTOR, ir.Undefined)
 _FIRST = ir.Constant(ir.IntType(32), 0)
 _EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 
@@ -91,7 +91,9 @@ _EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
     """Return the call of LLVM's function of this name with vectors."""
     function = _insert(
-        builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64"
+        builder.module,
+        ir.FunctionType(_VECTOR, [_VECTOR] * len(vectors)),
+        f"llvm.{name}.v{LANES}f64",
     )
     return builder.call(function, vectors)
 
@@ -99,7 +101,7 @@ def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
 def _address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
     """Return the pointer to eight elements of a flat array, from `index` on."""
     data = context.make_array(array_type)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
 
 
 def _load(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
@@ -194,7 +196,7 @@ def spread(builder: Any, value: Any) -> Any:
 @lanewise
 def plus_product(builder: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, where both operations are exact: the compiler may fuse them."""
-    return builder.fadd(total, builder.fmul(a, b, flags=FUSE), flags=FUSE)
+    return builder.fadd(total, builder.fmul(a, b, flags=_FUSE), flags=_FUSE)
 
 
 @lanewise
@@ -212,14 +214,14 @@ def nearest(builder: Any, a: Any) -> Any:
 @partial(lanewise, result=types.boolean)
 def occupied(builder: Any, a: Any) -> Any:
     """Return true if any lane is not zero."""
-    whole = builder.bitcast(builder.fcmp_unordered("!=", a, ZERO), ir.IntType(LANES))
+    whole = builder.bitcast(builder.fcmp_unordered("!=", a, _ZERO), ir.IntType(LANES))
     return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
 
 @lanewise
 def at_least(builder: Any, a: Any, b: Any) -> Any:
     """Return 1 in each lane where a >= b, else 0."""
-    return builder.uitofp(builder.fcmp_ordered(">=", a, b), VECTOR)
+    return builder.uitofp(builder.fcmp_ordered(">=", a, b), _VECTOR)
 
 
 @lanewise
@@ -237,7 +239,7 @@ def larger(builder: Any, a: Any, b: Any) -> Any:
 @lanewise
 def where(builder: Any, truth: Any, a: Any, b: Any) -> Any:
     """Return a in each lane where `truth` is not zero, else b."""
-    return builder.select(builder.fcmp_unordered("!=", truth, ZERO), a, b)
+    return builder.select(builder.fcmp_unordered("!=", truth, _ZERO), a, b)
 
 
 _WHOLES = ir.VectorType(ir.IntType(64), LANES)
@@ -249,17 +251,17 @@ _BIAS = 1023.0
 @lanewise
 def log2_of(builder: Any, a: Any) -> Any:
     """Return log2 of positive numbers, with an error of at most 0.09: exact for powers of two, linear between them."""
-    whole = builder.sitofp(builder.bitcast(a, _WHOLES), VECTOR)
-    scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
-    return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
+    whole = builder.sitofp(builder.bitcast(a, _WHOLES), _VECTOR)
+    scaled = builder.fmul(whole, ir.Constant(_VECTOR, [1.0 / _SCALE] * LANES))
+    return builder.fsub(scaled, ir.Constant(_VECTOR, [_BIAS] * LANES))
 
 
 @lanewise
 def exp2_of(builder: Any, a: Any) -> Any:
     """Return the inverse of `log2_of`, for numbers between -1022 and 1023."""
-    raised = builder.fadd(a, ir.Constant(VECTOR, [_BIAS] * LANES))
-    scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
-    return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
+    raised = builder.fadd(a, ir.Constant(_VECTOR, [_BIAS] * LANES))
+    scaled = builder.fmul(raised, ir.Constant(_VECTOR, [_SCALE] * LANES))
+    return builder.bitcast(builder.fptosi(scaled, _WHOLES), _VECTOR)
 
 
 def shuffled(order: tuple[int, ...], name: str) -> Any:
@@ -269,7 +271,7 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
     )
 
     def shuffle(builder: Any, a: Any) -> Any:
-        return builder.shuffle_vector(a, ZERO, places)
+        return builder.shuffle_vector(a, _ZERO, places)
 
     shuffle.__name__ = shuffle.__qualname__ = name
     return lanewise(shuffle)
