@@ -36,26 +36,26 @@ class OctetBatch(Batch):
 
     def prepare(self, options: RunOptions) -> None:
         """Compile the kernel, or read it from the disk, once a process: later calls find it done."""
-        from .march import Job, empty_march, empty_moments, march
+        from .march import RowData, empty_march, empty_moments, march
 
         kernel = cast("Any", march)
-        job = Job(np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0))
+        data = RowData(np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0))
         title = "steps of eight rows at once"
         if options.form:
             title += " with sections"
         seconds = round(self.compile_s[bool(kernel.stats.cache_misses)])
-        prepare(kernel, title, seconds, empty_march(), _ORDER, options.form or None, job, 0)
+        prepare(kernel, title, seconds, empty_march(), _ORDER, options.form or None, data, 0)
 
     def solve(self, rows: Rows, options: RunOptions) -> Outcomes:
         """Solve rows without drag."""
-        from .march import Job, empty_march, empty_moments, march
+        from .march import RowData, empty_march, empty_moments, march
 
         if rows.drag.any():
             raise ValueError("rows with drag are not for this kernel")
         numbers = packed(rows, options)
         results = np.zeros((len(rows), RESULTS))
         moments = empty_moments(_ROOM if options.times else 0)
-        job = Job(numbers.ravel(), results.ravel(), moments)
+        data = RowData(numbers.ravel(), results.ravel(), moments)
         lanes = empty_march()
         order = _MOVED_ORDER if options.moved else _ORDER
 
@@ -64,7 +64,7 @@ class OctetBatch(Batch):
         done = len(rows) == 0
         while not done:
             moments.number[0] = 0
-            done = march(lanes, order, options.form or None, job, _STEPS_PER_CALL)
+            done = march(lanes, order, options.form or None, data, _STEPS_PER_CALL)
             pieces.append([column[: moments.number[0]].copy() for column in moments[1:]])
 
         row, t, direction = (np.concatenate(column) for column in zip(*pieces, strict=True))

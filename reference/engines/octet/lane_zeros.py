@@ -122,7 +122,7 @@ def seek(z: LaneZeros, f: Array, length: Array, time: Array, order: int) -> None
     decided = decided * at_least(magnitude(halves.middle_value), noise)
     decided = decided * at_least(magnitude(after), noise)
 
-    # 1 where the sign changes on the first and on the second half; two zeros are in doubt, too
+    # 1 where the sign changes on the first and on the second half; if on both, the lane is in doubt
     early = at_least(zero, before * halves.middle_value)
     late = at_least(zero, halves.middle_value * after)
     decided = decided * (spread(1.0) - early * late)

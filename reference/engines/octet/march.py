@@ -81,7 +81,7 @@ def empty_moments(room: int) -> Moments:
     )
 
 
-class Job(NamedTuple):
+class RowData(NamedTuple):
     """The rows to solve, and what comes out.
 
     Attributes:
@@ -96,9 +96,9 @@ class Job(NamedTuple):
 
 
 @compiled
-def _record_transit(job: Job, row: int, time_s: float, slope: float, close_s: float) -> None:
+def _record_transit(data: RowData, row: int, time_s: float, slope: float, close_s: float) -> None:
     """Record a transit of a row; one that comes less than `close_s` after the one before makes a close pair."""
-    out = job.results
+    out = data.results
     at = row * rows.RESULTS
     if out[at + rows.COUNT] == 0.0:
         out[at + rows.T_FIRST] = time_s
@@ -109,7 +109,7 @@ def _record_transit(job: Job, row: int, time_s: float, slope: float, close_s: fl
     out[at + rows.T_LAST] = time_s
     out[at + rows.SMALLEST_SLOPE] = min(out[at + rows.SMALLEST_SLOPE], abs(slope))
 
-    moments = job.moments
+    moments = data.moments
     n = moments.number[0]
     if n < len(moments.row):
         moments.row[n] = row
@@ -137,9 +137,9 @@ class _HighestPoint(NamedTuple):
 
 
 @compiled
-def _record_highest(job: Job, row: int, point: _HighestPoint) -> None:
+def _record_highest(data: RowData, row: int, point: _HighestPoint) -> None:
     """Record a highest point; half turns are counted where the direction, up to a half turn, passes east."""
-    out = job.results
+    out = data.results
     at = row * rows.RESULTS
     # the direction up to a half turn: that of (x, p) or of its opposite, with p >= 0
     side = -1.0 if point.p < 0.0 or (point.p == 0.0 and point.x < 0.0) else 1.0
@@ -215,21 +215,21 @@ def empty_march() -> March:
 
 
 @compiled
-def _take_row(m: March, lane: int, job: Job) -> None:
+def _take_row(m: March, lane: int, data: RowData) -> None:
     """Give a lane the next row, or one that never ends."""
     row = m.counts[_NEXT]
-    is_left = row < len(job.numbers) // rows.COLUMNS
-    at = row * rows.COLUMNS if is_left else 0
+    has_row = row < len(data.numbers) // rows.COLUMNS
+    at = row * rows.COLUMNS if has_row else 0
     m.counts[_NEXT] += 1
-    m.counts[_ROW + lane] = row if is_left else -1
+    m.counts[_ROW + lane] = row if has_row else -1
     for column in range(rows.COLUMNS):
-        m.state[LANES * column + lane] = job.numbers[at + column]
+        m.state[LANES * column + lane] = data.numbers[at + column]
     m.time[lane] = 0.0
     m.time_low[lane] = 0.0
-    _start_search(m.transits, lane, job.numbers[at + rows.SEEKS_X] if is_left else 0.0)
-    _start_search(m.highest, lane, job.numbers[at + rows.SEEKS_U] if is_left else 0.0)
-    if is_left:
-        job.results[row * rows.RESULTS + rows.HIGHEST] = job.numbers[at + rows.U]
+    _start_search(m.transits, lane, data.numbers[at + rows.SEEKS_X] if has_row else 0.0)
+    _start_search(m.highest, lane, data.numbers[at + rows.SEEKS_U] if has_row else 0.0)
+    if has_row:
+        data.results[row * rows.RESULTS + rows.HIGHEST] = data.numbers[at + rows.U]
     else:
         m.state[LANES * rows.END + lane] = np.inf
 
@@ -267,9 +267,9 @@ def _advance_time(m: March) -> None:
 
 
 @compiled
-def _finish_row(m: March, lane: int, job: Job) -> None:
+def _finish_row(m: March, lane: int, data: RowData) -> None:
     """Write the results at a row's end."""
-    out = job.results
+    out = data.results
     at = m.counts[_ROW + lane] * rows.RESULTS
     out[at + rows.HIGHEST] = max(out[at + rows.HIGHEST], m.state[LANES * rows.U + lane])
     for column in range(rows.S + 1):
@@ -315,7 +315,7 @@ def _time_s(m: March, lane: int, place: float) -> float:
 
 
 @inlined
-def _record_transits(m: March, order: int, lane: int, job: Job) -> bool:
+def _record_transits(m: March, order: int, lane: int, data: RowData) -> bool:
     """Record the transits on a lane's step; return false if they stay in doubt."""
     count = 0
     if m.transits.doubt[lane] != 0.0:
@@ -334,12 +334,12 @@ def _record_transits(m: March, order: int, lane: int, job: Job) -> bool:
     close_s = m.state[LANES * rows.CLOSE_S + lane]
     for i in range(count):
         time_s = _time_s(m, lane, m.bisection.places[i])
-        _record_transit(job, row, time_s, m.bisection.slopes[i], close_s)
+        _record_transit(data, row, time_s, m.bisection.slopes[i], close_s)
     return True
 
 
 @inlined
-def _record_highest_point(m: March, lane: int, job: Job) -> bool:
+def _record_highest_point(m: March, lane: int, data: RowData) -> bool:
     """Record the highest point on a lane's step, if there is one; return false if this stays in doubt."""
     row = m.counts[_ROW + lane]
     pull = m.state[LANES * rows.PULL + lane]
@@ -349,8 +349,8 @@ def _record_highest_point(m: March, lane: int, job: Job) -> bool:
         if not abs(m.series.udot[LANES + lane]) < LEAST_BEND * pull * u * (2.0 - u):
             return False
         at = row * rows.RESULTS
-        job.results[at + rows.SMALLEST_BEND] = 0.0
-        job.results[at + rows.APSIDES] = max(job.results[at + rows.APSIDES], 1.0)
+        data.results[at + rows.SMALLEST_BEND] = 0.0
+        data.results[at + rows.APSIDES] = max(data.results[at + rows.APSIDES], 1.0)
     elif m.highest.hit[lane] != 0.0:
         time_s = _time_s(m, lane, m.highest.place[lane])
         x = m.top[lane]
@@ -358,17 +358,17 @@ def _record_highest_point(m: March, lane: int, job: Job) -> bool:
         u = m.top[2 * LANES + lane]
         fall = -m.highest.slope[lane]
         bend = fall / (pull * u * (2.0 - u))
-        _record_highest(job, row, _HighestPoint(time_s, x, p, u, fall, bend))
+        _record_highest(data, row, _HighestPoint(time_s, x, p, u, fall, bend))
     return True
 
 
 @inlined
-def _end_of_step(m: March, order: int, lane: int, job: Job) -> None:
+def _end_of_step(m: March, order: int, lane: int, data: RowData) -> None:
     """Record what a lane's row has passed on its step, and whether this is the row's last one."""
-    job.results[m.counts[_ROW + lane] * rows.RESULTS + rows.STEPS] += 1.0
+    data.results[m.counts[_ROW + lane] * rows.RESULTS + rows.STEPS] += 1.0
     is_too_short = m.last[lane] == 0.0 and not m.length[lane] > _SHORTEST
     is_off_the_sphere = not abs(m.state[LANES * rows.X + lane]) < 2.0  # or not a number
-    is_decided = _record_transits(m, order, lane, job) and _record_highest_point(m, lane, job)
+    is_decided = _record_transits(m, order, lane, data) and _record_highest_point(m, lane, data)
     if is_too_short or is_off_the_sphere:
         m.last[lane] = 1.0 + STOPPED
     elif not is_decided:
@@ -376,18 +376,18 @@ def _end_of_step(m: March, order: int, lane: int, job: Job) -> None:
 
 
 @kept(*rows.SOURCES, nogil=True, **OPTIONS)
-def march(m: March, order: int, form: bool | None, job: Job, steps: int) -> bool:
+def march(m: March, order: int, form: bool | None, data: RowData, steps: int) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done.
 
     The transits are the zeros of the rows' forms unless `form` is None: then numba leaves out what has to do with them.
     """
-    row_count = len(job.numbers) // rows.COLUMNS
-    room = len(job.moments.row)
+    row_count = len(data.numbers) // rows.COLUMNS
+    room = len(data.moments.row)
     if m.counts[_NEXT] == 0:
         for lane in range(LANES):
-            _take_row(m, lane, job)
+            _take_row(m, lane, data)
     for _ in range(steps):
-        is_full = 0 < room < job.moments.number[0] + LANES * MOST_ZEROS
+        is_full = 0 < room < data.moments.number[0] + LANES * MOST_ZEROS
         if m.counts[_DONE] == row_count or is_full:
             break
         taylor_coefficients(m.series, m.state, order)
@@ -399,13 +399,13 @@ def march(m: March, order: int, form: bool | None, job: Job, steps: int) -> bool
         _place_zeros(m, order, form)
         for lane in range(LANES):
             if m.counts[_ROW + lane] >= 0:
-                _end_of_step(m, order, lane, job)
+                _end_of_step(m, order, lane, data)
         _advance_time(m)
         set_row(m.transits.before, 0, get_row(m.transits.after, 0))
         set_row(m.highest.before, 0, get_row(m.highest.after, 0))
         if occupied(get_row(m.last, 0)):
             for lane in range(LANES):
                 if m.last[lane] != 0.0 and m.counts[_ROW + lane] >= 0:
-                    _finish_row(m, lane, job)
-                    _take_row(m, lane, job)
+                    _finish_row(m, lane, data)
+                    _take_row(m, lane, data)
     return bool(m.counts[_DONE] == row_count)

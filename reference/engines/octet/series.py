@@ -152,8 +152,8 @@ def _set_order_zero(c: LaneSeries, state: Array) -> None:
 
     # λ = V·V + C (1 - u)
     inertial = Vector(get_row(c.w, 0) - get_row(state, TURN_P), get_row(c.v, 0), get_row(c.s, 0))
-    height_left = spread(1.0) - get_row(c.u, 0)
-    set_row(c.tension, 0, fma(_dot(inertial, inertial), get_row(state, PULL), height_left))
+    below_top = spread(1.0) - get_row(c.u, 0)
+    set_row(c.tension, 0, fma(_dot(inertial, inertial), get_row(state, PULL), below_top))
 
 
 @compiled
