@@ -8,6 +8,6 @@ fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are 
 - `problem`: a scene in limbs.
 - `march`, `step`: the loop of steps with what is carried from one to the next, and one of them.
 - `recurrence`, `series`: the Taylor coefficients of a step; their arrays.
-- `dense_output`: the state inside it; `zeros`, `polynomial`: the zeros of xdot on it.
-- `limb`, `lanes`: numbers of limbs, eight side by side, and how functions of them are compiled.
+- `dense_output`: the state inside it; `zeros`: the zeros of xdot on it.
+- `limb`: numbers of limbs, eight side by side; `simd/lanes.py` says how functions of them are compiled.
 """

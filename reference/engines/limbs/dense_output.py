@@ -8,10 +8,11 @@ from ...numbers.precision import Array
 from ..simd.lanes import (
     LANES,
     compiled,
-    load,
+    get_row,
     merged,
     occupied,
     plus_product,
+    set_row,
     shuffled,
     spread,
     store,
@@ -32,6 +33,8 @@ from .series import (
 )
 from .step import GRAINS, LimbModel, lane_products
 
+_XDDOT = 6  # the lane of xddot beside position and velocity
+
 _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")
 _tension_first = shuffled((6, -1, -1, -1, -1, -1, -1, -1), "_tension_first")
 _exchanged = shuffled((-1, 2, 1, -1, 5, 4, -1, -1), "_exchanged")
@@ -41,11 +44,11 @@ _exchanged = shuffled((-1, 2, 1, -1, 5, 4, -1, -1), "_exchanged")
 def divide_place(place: Array, whole: int, m: int, limb_count: int) -> None:
     """Turn limbs of a place < 1, in grains, to (whole + place) / m, the place in a step of m grains."""
     place[0] += whole * UNIT
-    left = 0.0
+    remainder = 0.0
     for q in range(limb_count + 1):
-        limb = left * RADIX + place[q]
+        limb = remainder * RADIX + place[q]
         quotient = np.rint(limb / m)
-        left = limb - quotient * m
+        remainder = limb - quotient * m
         place[q] = quotient
     carry_scalar(place, limb_count)
 
@@ -61,16 +64,16 @@ def evaluate(to: Array, s: LimbSeries, place: Array, order: int, limb_count: int
         for r in range(lowest, limb_count + 1):
             total = spread(0.0)
             for q in range(low, r):
-                total = plus_product(total, spread(DOUBLED * place[r - 1 - q]), load(to, LANES * q))
+                total = plus_product(total, spread(DOUBLED * place[r - 1 - q]), get_row(to, q))
             if r < limb_count:
-                total = total + load(s.c, LANES * (k * limb_count + r))
-            store(work, LANES * r, total)
+                total = total + get_row(s.c, k * limb_count + r)
+            set_row(work, r, total)
         carry(work, lowest, limb_count)
         low = lowest
-        while low < limb_count and not occupied(load(work, LANES * low)):
+        while low < limb_count and not occupied(get_row(work, low)):
             low += 1
         for r in range(lowest, limb_count):
-            store(to, LANES * r, load(work, LANES * r))
+            set_row(to, r, get_row(work, r))
 
 
 @compiled
@@ -80,65 +83,91 @@ def to_cartesian(to: Array, start: int, step: Step, model: LimbModel, m: int) ->
     They are written to seven lanes of `limb_count` rows of `to`, from `start` on. The step is m grains long;
     the matrix from the Earth's axes to east, north, up is in `model`.
     """
-    (s, terms, rows), limb_count = step, model.limb_count
-    total, rate, other = s.total, s.partners, s.other
+    total = step.s.total
+    state = step.s.partners
+    other = step.s.other
+    limb_count = model.limb_count
+    _set_rates(step, limb_count)
+    _set_xddot(step, model)
+    _divide_rates(step, m, limb_count)
     for r in range(limb_count):
-        store(other, LANES * r, partner(load(rows, LANES * r)))
-    total[:] = 0.0
-    add_product(total, terms.turn, other, 0, limb_count)
-    for r in range(limb_count + 1):
-        store(rate, LANES * r, _turning(load(total, LANES * r)))
-        s.scalar[r] = total[LANES * r + 3]
-    for r in range(limb_count):
-        store(rate, LANES * r, load(rate, LANES * r) + to_positions(load(rows, LANES * r)))
-    carry(rate, 0, limb_count)
-    _xddot(step, model)
-    stretch = spread(GRAINS)
-    for r in range(limb_count):
-        store(total, LANES * r, to_speeds(load(rate, LANES * r)) * stretch)
-        total[LANES * r + 6] = s.scalar[r] * GRAINS
-    store(total, LANES * limb_count, spread(0.0))
-    divide(total, 0, limb_count, m)
-    other[:] = 0.0
-    for r in range(limb_count):
-        other[LANES * r + 6] = total[LANES * r + 6] * GRAINS
-        total[LANES * r + 6] = 0.0
-    divide(other, 0, limb_count, m)
-    for r in range(limb_count):
-        v = positions(load(rows, LANES * r)) + load(total, LANES * r) + load(other, LANES * r)
-        store(rate, LANES * r, v)
-        store(other, LANES * r, _exchanged(v))
-    lane_products(total, rate, model.along, limb_count)
+        position = positions(get_row(step.rows, r))
+        v = position + get_row(total, r) + get_row(other, r)
+        set_row(state, r, v)
+        set_row(other, r, _exchanged(v))
+
+    lane_products(total, state, model.along, limb_count)
     add_product(total, model.across, other, 0, limb_count)
     carry(total, 0, limb_count)
     for r in range(limb_count):
-        store(to, start + LANES * r, load(total, LANES * r))
+        store(to, start + LANES * r, get_row(total, r))
 
 
 @merged
-def _xddot(step: Step, model: LimbModel) -> None:
-    """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm; the rates are in `partners`."""
-    (s, terms, rows), limb_count = step, model.limb_count
-    total, rate, other = s.total, s.partners, s.other
+def _set_rates(step: Step, limb_count: int) -> None:
+    """Write xdot, mdot and wdot, times h, to `partners`, and ω Vm to `scalar`."""
+    s = step.s
+    rate = s.partners
     for r in range(limb_count):
-        store(other, LANES * r, partner(load(rate, LANES * r)))
+        set_row(s.other, r, partner(get_row(step.rows, r)))
+    s.total[:] = 0.0
+    add_product(s.total, step.terms.turn, s.other, 0, limb_count)
+    for r in range(limb_count + 1):
+        set_row(rate, r, _turning(get_row(s.total, r)))
+        s.scalar[r] = s.total[LANES * r + VX]
+    for r in range(limb_count):
+        set_row(rate, r, get_row(rate, r) + to_positions(get_row(step.rows, r)))
+    carry(rate, 0, limb_count)
+
+
+@merged
+def _set_xddot(step: Step, model: LimbModel) -> None:
+    """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm; the rates are in `partners`."""
+    s = step.s
+    total = s.total
+    rate = s.partners
+    other = s.other
+    limb_count = model.limb_count
+    for r in range(limb_count):
+        set_row(other, r, partner(get_row(rate, r)))
     total[:] = 0.0
-    add_product(total, terms.turn, other, 0, limb_count)
+    add_product(total, step.terms.turn, other, 0, limb_count)
     for r in range(limb_count + 1):
         s.scalar[r] += total[LANES * r]
+
     for r in range(limb_count):
-        store(other, LANES * r, _tension_first(load(rows, LANES * r)))
-    lane_products(total, rows, other, limb_count)
+        set_row(other, r, _tension_first(get_row(step.rows, r)))
+    lane_products(total, step.rows, other, limb_count)
     for r in range(limb_count + 1):
         s.scalar[r] -= total[LANES * r]
+
     if model.drag:
         for r in range(limb_count):
-            store(other, LANES * r, to_speeds(load(rate, LANES * r)))
+            set_row(other, r, to_speeds(get_row(rate, r)))
         total[:] = 0.0
-        add_product(total, terms.drag, other, 0, limb_count)
+        add_product(total, step.terms.drag, other, 0, limb_count)
         for r in range(limb_count + 1):
-            s.scalar[r] += total[LANES * r + 3]
+            s.scalar[r] += total[LANES * r + VX]
     carry_scalar(s.scalar, limb_count)
+
+
+@merged
+def _divide_rates(step: Step, m: int, limb_count: int) -> None:
+    """Divide the rates by h and xddot by h²: rates in the unit of time in `total`, xddot in a lane of `other`."""
+    s = step.s
+    total = s.total
+    stretch = spread(GRAINS)
+    for r in range(limb_count):
+        set_row(total, r, to_speeds(get_row(s.partners, r)) * stretch)
+        total[LANES * r + _XDDOT] = s.scalar[r] * GRAINS
+    set_row(total, limb_count, spread(0.0))
+    divide(total, 0, limb_count, m)
+
+    s.other[:] = 0.0
+    for r in range(limb_count):
+        s.other[LANES * r + _XDDOT] = total[LANES * r + _XDDOT] * GRAINS
+        total[LANES * r + _XDDOT] = 0.0
+    divide(s.other, 0, limb_count, m)
 
 
 @compiled
@@ -168,11 +197,14 @@ def xdot_at(place: Array, step: Step, model: LimbModel) -> float:
 @compiled
 def xddot_of(step: Step, xdot: float, model: LimbModel) -> float:
     """Return xddot times h² from all lanes in `rows` and xdot times h, as a double."""
-    (_, terms, rows), limb_count = step, model.limb_count
-    turn = double_of(terms.turn, limb_count, 0, LANES) / DOUBLED
-    x, vm = double_of(rows, limb_count, X, LANES), double_of(rows, limb_count, VM, LANES)
+    rows = step.rows
+    limb_count = model.limb_count
+    turn = double_of(step.terms.turn, limb_count, 0, LANES) / DOUBLED
+    x = double_of(rows, limb_count, X, LANES)
+    vm = double_of(rows, limb_count, VM, LANES)
     tension = double_of(rows, limb_count, TENSION, LANES)
     value = turn * (2.0 * vm - turn * x) - tension * x
     if model.drag:
-        value += double_of(terms.drag, limb_count, VX, LANES) / DOUBLED * xdot
+        drag = double_of(step.terms.drag, limb_count, VX, LANES) / DOUBLED
+        value += drag * xdot
     return value

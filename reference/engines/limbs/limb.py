@@ -18,7 +18,7 @@ import numpy as np
 
 from ...numbers.precision import Array, to_fraction
 from ...numbers.taylor_step import whole
-from ..simd.lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
+from ..simd.lanes import LANES, compiled, get_row, inlined, nearest, plus_product, set_row, spread
 from .size import LIMB_BITS, fraction_bits
 
 RADIX = 2.0**LIMB_BITS
@@ -30,7 +30,8 @@ LARGEST = 2.0 ** (LIMB_BITS + 1)  # a first limb above this (the number 4) might
 
 def split(values: Any, limb_count: int) -> Array:
     """Return the limbs of integers over 2**fraction_bits(limb_count), highest first, shape (..., limb_count)."""
-    remainder, half = np.asarray(values, dtype=object), 1 << (LIMB_BITS - 1)
+    remainder = np.asarray(values, dtype=object)
+    half = 1 << (LIMB_BITS - 1)
     limbs = np.empty((*remainder.shape, limb_count))
     for q in range(limb_count - 1, 0, -1):
         limb = ((remainder + half) & (2 * half - 1)) - half
@@ -48,10 +49,10 @@ def nearest_whole(value: Any, bits: int) -> int:
 
 def rows_of(numbers: Sequence[Any], limb_count: int) -> Array:
     """Return up to eight mpf or rationals side by side, shape (limb_count * 8,)."""
+    bits = fraction_bits(limb_count)
+    wholes = [nearest_whole(x, bits) for x in numbers]
     rows = np.zeros((limb_count, LANES))
-    rows[:, : len(numbers)] = split(
-        [nearest_whole(x, fraction_bits(limb_count)) for x in numbers], limb_count
-    ).T
+    rows[:, : len(numbers)] = split(wholes, limb_count).T
     return rows.ravel()
 
 
@@ -63,25 +64,28 @@ def joined(limbs: Array) -> Any:
 @inlined
 def carry(rows: Array, first: int, last: int) -> None:
     """Bring the rows below `first` into the range of limbs, from the last upwards; exact."""
-    radix, inverse = spread(RADIX), spread(INVERSE)
-    limb = load(rows, LANES * last)
+    radix = spread(RADIX)
+    inverse = spread(INVERSE)
+    limb = get_row(rows, last)
     for r in range(last, first, -1):
         over = nearest(limb * inverse)
-        store(rows, LANES * r, limb - over * radix)
-        limb = load(rows, LANES * (r - 1)) + over
-    store(rows, LANES * first, limb)
+        set_row(rows, r, limb - over * radix)
+        limb = get_row(rows, r - 1) + over
+    set_row(rows, first, limb)
 
 
 @inlined
 def divide(rows: Array, first: int, last: int, divisor: float) -> None:
     """Divide by an integer below 2**20, from row `first` downwards, and carry; the remainder at `last` is dropped."""
-    radix, by, inverse = spread(RADIX), spread(divisor), spread(1.0 / divisor)
+    radix = spread(RADIX)
+    by = spread(divisor)
+    inverse = spread(1.0 / divisor)
     remainder = spread(0.0)
     for r in range(first, last + 1):
-        limb = plus_product(load(rows, LANES * r), remainder, radix)
+        limb = plus_product(get_row(rows, r), remainder, radix)
         quotient = nearest(limb * inverse)
         remainder = limb - quotient * by
-        store(rows, LANES * r, quotient)
+        set_row(rows, r, quotient)
     carry(rows, max(first - 1, 0), last)
 
 
@@ -98,10 +102,10 @@ def carry_scalar(limbs: Array, last: int) -> None:
 def add_product(to: Array, a: Array, b: Array, start: int, limb_count: int) -> None:
     """Add a b in each lane to rows 0 … limb_count of `to`; a comes doubled, limbs of b before `start` are zero."""
     for r in range(start + 1, limb_count + 1):
-        total = load(to, LANES * r)
+        total = get_row(to, r)
         for q in range(start, r):
-            total = plus_product(total, load(a, LANES * (r - 1 - q)), load(b, LANES * q))
-        store(to, LANES * r, total)
+            total = plus_product(total, get_row(a, r - 1 - q), get_row(b, q))
+        set_row(to, r, total)
 
 
 @compiled
@@ -114,11 +118,11 @@ def set_double(to: Array, value: float, limb_count: int) -> None:
 @compiled
 def add_double(to: Array, value: float, limb_count: int) -> None:
     """Add a double to a number's limbs."""
-    left = value * UNIT
+    remainder = value * UNIT
     for q in range(limb_count):
-        limb = np.rint(left)
+        limb = np.rint(remainder)
         to[q] += limb
-        left = (left - limb) * RADIX
+        remainder = (remainder - limb) * RADIX
     carry_scalar(to, limb_count - 1)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...numbers.precision import Array
 from ...system.machine_code import kept
-from ..simd.lanes import LANES, OPTIONS, aligned, load, merged, store
+from ..simd.lanes import LANES, OPTIONS, aligned, get_row, merged, set_row
 from .dense_output import divide_place, evaluate, to_cartesian, xdot_of
 from .limb import DOUBLED, double_of
 from .recurrence import taylor_coefficients
@@ -25,12 +25,15 @@ from .step import (
     step_size_factor,
     sum_series,
 )
-from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search, polish
+from .zeros import MOST_ZEROS, Search, bracket_zeros, empty_search, polish
 
+_LIMBS = Path(__file__).parent
+# the files that the machine code is made of
+_SOURCES = [*_LIMBS.glob("*.py"), *_LIMBS.parent.glob("simd/*.py")]
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 # in `MarchState.counts`
 TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)
-# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
+# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot undecided
 GOOD, FULL, STUCK, DOUBTFUL = range(4)
 
 
@@ -76,88 +79,100 @@ class Outputs(NamedTuple):
 
 def state_at_release(start: Array, first: int, multiplicity: int, model: LimbModel) -> MarchState:
     """Return the state carried between steps, initialised at the release."""
-    order, limb_count = model.order, model.limb_count
+    order = model.order
+    limb_count = model.limb_count
     counts = np.zeros(9, dtype=np.int64)
-    counts[LENGTH], counts[MULTIPLICITY] = first, multiplicity
-    terms = LinearTerms(*(aligned(LANES * (limb_count + 2)) for _ in LinearTerms._fields))
-    rows = aligned(LANES * (limb_count + 2))
+    counts[LENGTH] = first
+    counts[MULTIPLICITY] = multiplicity
     now = aligned(len(start))
     now[:] = start
-    step, search = (
-        Step(empty_series(order, limb_count), terms, rows),
-        empty_search(order, limb_count),
-    )
-    return MarchState(now, counts, step, search)
+    terms = LinearTerms(*(aligned(LANES * (limb_count + 2)) for _ in LinearTerms._fields))
+    rows = aligned(LANES * (limb_count + 2))
+    step = Step(empty_series(order, limb_count), terms, rows)
+    return MarchState(now, counts, step, empty_search(order, limb_count))
 
 
 @merged
 def _write_states(state: MarchState, model: LimbModel, out: Outputs) -> None:
     """Write the states at the output times that the step passes."""
-    counts, limb_count = state.counts, model.limb_count
-    start, m, place = counts[TIME], counts[LENGTH], state.search.place
+    counts = state.counts
+    step = state.step
+    place = state.search.place
+    limb_count = model.limb_count
+    start = counts[TIME]
+    m = counts[LENGTH]
     while counts[ROWS] < len(out.whole) and out.whole[counts[ROWS]] < start + m:
         i = counts[ROWS]
         place[:] = 0.0
         for q in range(limb_count):
             place[q] = out.remainders[i * limb_count + q]
         divide_place(place, out.whole[i] - start, m, limb_count)
-        evaluate(state.step.rows, state.step.s, place, model.order, limb_count)
-        to_cartesian(out.states, i * limb_count * LANES, state.step, model, m)
+        evaluate(step.rows, step.s, place, model.order, limb_count)
+        to_cartesian(out.states, i * limb_count * LANES, step, model, m)
         counts[ROWS] += 1
 
 
 @merged
 def _write_zeros(state: MarchState, model: LimbModel, out: Outputs) -> bool:
     """Write the zeros of xdot on the step; return false if they stay in doubt."""
-    counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
+    counts = state.counts
+    z = state.search
+    limb_count = model.limb_count
     after = int(np.sign(xdot_of(state.now, state.step.s, model.terms.turn, DOUBLED, limb_count)))
-    count = bracket_zeros(z, state.step, counts[SIGN], after, counts[MULTIPLICITY], model)
-    if count == GRAZING:
+    if not bracket_zeros(z, state.step, counts[SIGN], after, counts[MULTIPLICITY], model):
         return False
-    for i in range(count):
+    for i in range(z.number[0]):
         if not polish(z, i, state.step, model):
             return False
         n = counts[ZEROS]
         for q in range(limb_count):
             out.places[n * limb_count + q] = z.place[q]
-        to_cartesian(out.zero_states, n * limb_count * LANES, state.step, model, m)
-        out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = (
-            counts[TIME],
-            m,
-            z.direction[i],
-        )
+        start = n * limb_count * LANES
+        to_cartesian(out.zero_states, start, state.step, model, counts[LENGTH])
+        out.moments[3 * n] = counts[TIME]
+        out.moments[3 * n + 1] = counts[LENGTH]
+        out.moments[3 * n + 2] = z.direction[i]
         counts[ZEROS] += 1
     counts[SIGN] = after
     return True
 
 
-@kept(*Path(__file__).parent.glob("*.py"), **OPTIONS)
+@merged
+def _write_series(state: MarchState, model: LimbModel, out: Outputs, i: int) -> None:
+    """Write start, length and coefficients of step i of a call, if there is room."""
+    if 2 * i < len(out.steps):
+        out.steps[2 * i] = state.counts[TIME]
+        out.steps[2 * i + 1] = state.counts[LENGTH]
+        row_count = (model.order + 1) * model.limb_count
+        for j in range(row_count):
+            set_row(out.series, i * row_count + j, get_row(state.step.s.c, j))
+
+
+@kept(*_SOURCES, **OPTIONS)
 def march(
     state: MarchState, model: LimbModel, out: Outputs, until: int, steps: int, seek: bool
 ) -> int:
     """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
-    s, counts, limb_count, order = state.step.s, state.counts, model.limb_count, model.order
+    s = state.step.s
+    counts = state.counts
+    limb_count = model.limb_count
     for i in range(steps):
         if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
             return FULL
         if not _step_coefficients(state, model):
             return STUCK
-        m = counts[LENGTH]
-        sum_series(state.step.rows, s, order, limb_count)
+        sum_series(state.step.rows, s, model.order, limb_count)
         if seek and counts[STEPS] == 0:
             # the first coefficient of xdot that is not 0
             leading = (counts[MULTIPLICITY] + 1) * limb_count * LANES + X
             counts[SIGN] = int(np.sign(double_of(s.c, limb_count, leading, LANES)))
-        project(state.now, state.step.rows, s, m, limb_count)
+        project(state.now, state.step.rows, s, counts[LENGTH], limb_count)
         if seek and not _write_zeros(state, model, out):
             return DOUBTFUL
         _write_states(state, model, out)
-        if 2 * i < len(out.steps):
-            out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
-            size = (order + 1) * limb_count * LANES
-            for j in range(0, size, LANES):
-                store(out.series, i * size + j, load(s.c, j))
-        counts[TIME] += m
+        _write_series(state, model, out, i)
+
+        counts[TIME] += counts[LENGTH]
         counts[STEPS] += 1
         counts[MULTIPLICITY] = 0
         counts[LENGTH] = counts[NEXT]
@@ -169,7 +184,9 @@ def march(
 @merged
 def _step_coefficients(state: MarchState, model: LimbModel) -> bool:
     """Compute the coefficients of the next step, shortened until they decay enough; false if no length will do."""
-    counts, (s, terms, _) = state.counts, state.step
+    counts = state.counts
+    s = state.step.s
+    terms = state.step.terms
     while True:
         m = counts[LENGTH]
         if m != counts[SCALED]:

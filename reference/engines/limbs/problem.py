@@ -1,12 +1,13 @@
 """A scene as a problem in limbs: its constants, unit of time, limb count, order, first step and state at release.
 
 The axes are those of the Earth: x east, w along its axis, m = (0, sin, -cos) of the latitude, so that Ω has one
-component and six products a coefficient do for all linear terms. Without rotation m is north and w is up.
+component and six products a coefficient suffice for all linear terms. Without rotation m is north and w is up.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -25,12 +26,12 @@ from .step import GRAINS, MOST_GRAINS, LimbModel
 
 # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
 TAIL_BITS = 9
-ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
+_ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
 # bits added at most for a swing smaller than l; none are added where there is no swing
 MOST_SWING_BITS = 64
 # of the order, and of the first and the longest step, in a run that takes other steps
-OTHER_STEPS = Fraction(7, 8)
-GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
+_OTHER_STEPS = Fraction(7, 8)
+_GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
 
 
 @dataclass(frozen=True)
@@ -63,40 +64,68 @@ def limb_problem(
     """Return a scene's problem, in which numbers as large as the swing keep about `prec` bits a step.
 
     `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps. With
-    `other_steps` the order is lower and the longest step shorter, so that steps of either kind are others.
+    `other_steps` the order is lower and the longest step shorter, so that no step is the same in both kinds of run.
     """
     start = _start(inputs)
-    ctx, k = start.ctx, start.k
     prec = _prec_from_l(start, prec)
-    limb_count = limb_count_for(prec)
     unit, first = _unit_of_time(start)
-    order = order or round(ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
-    h = ctx.mpf(unit.numerator) / unit.denominator
-    sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
-    vectors = k.turn, k.pull, start.n, add(start.v, cross(k.turn, start.n))
-    # from the axes east, north, up to x, m, w
-    turn, pull, n, inertial = ((a, b * sin - c * cos, b * cos + c * sin) for a, b, c in vectors)
-    swing = h * ctx.sqrt(ctx.norm(pull))  # the rate of a small one
-    longest = min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / swing))) if swing else MOST_GRAINS
+    h = start.ctx.mpf(unit.numerator) / unit.denominator
+    order = order or round(_ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
+    longest = _longest_step(start, h)
     if other_steps:
-        order, first, longest = (
-            max(1, int(size * OTHER_STEPS)) for size in (order, first, longest)
-        )
+        order = _shortened(order)
+        first = _shortened(first)
+        longest = _shortened(longest)
+    limb_count = limb_count_for(prec)
+    sin, cos = _axis(start)
     model = LimbModel(
         limb_count=limb_count,
         order=order,
-        drag=bool(k.drag),
+        drag=bool(start.k.drag),
         tolerance=math.ldexp(1.0, -(prec + TAIL_BITS)),
         longest=longest,
-        terms=_linear_terms(
-            turn[2] * h, pull[1] * h * h, pull[2] * h * h, k.drag * h, limb_count + 1
-        ),
+        terms=_linear_terms(start, h, limb_count + 1),
         powers=LinearTerms(*(np.array(row, dtype=float) for row in _POWERS)),
         along=rows_of([1, sin, sin, 1, sin, sin, 1], limb_count),
         across=2 * rows_of([0, cos, -cos, 0, cos, -cos], limb_count),
     )
-    state = rows_of([*n, *(h * u for u in inertial)], limb_count)
+    state = _state(start, h, limb_count)
     return LimbProblem(model, state, unit, min(first, longest), start)
+
+
+def _axis(start: Start) -> tuple[Any, Any]:
+    """Return sine and cosine of the latitude; those of the pole without rotation."""
+    k = start.k
+    return (k.sin, k.cos) if k.rate else (1, 0)
+
+
+def _to_earth(start: Start, vector: Sequence[Any]) -> tuple[Any, Any, Any]:
+    """Return x, m, w of a vector east, north, up."""
+    sin, cos = _axis(start)
+    east, north, up = vector
+    return east, north * sin - up * cos, north * cos + up * sin
+
+
+def _longest_step(start: Start, h: Any) -> int:
+    """Return the longest step in grains: not longer than an angle of MOST_TURN of a small swing."""
+    pull = _to_earth(start, start.k.pull)
+    swing_rate = h * start.ctx.sqrt(start.ctx.norm(pull))
+    if not swing_rate:
+        return MOST_GRAINS
+    return min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / swing_rate)))
+
+
+def _shortened(size: int) -> int:
+    """Return an order or a step in a run that takes other steps."""
+    return max(1, int(size * _OTHER_STEPS))
+
+
+def _state(start: Start, h: Any, limb_count: int) -> Array:
+    """Return the limbs of n and h V at the release."""
+    inertial = add(start.v, cross(start.k.turn, start.n))
+    n = _to_earth(start, start.n)
+    V = _to_earth(start, inertial)
+    return rows_of([*n, *(h * component for component in V)], limb_count)
 
 
 def highest_prec_of_fewer_limbs(inputs: Inputs, prec: int) -> int:
@@ -116,12 +145,15 @@ def _prec_from_l(start: Start, prec: int) -> int:
 
 def _swing_bits(start: Start) -> int:
     """Return by how many bits the swing is smaller than l: limbs count from l, so that many more bits are needed."""
-    ctx, k, n, v = start.ctx, start.k, start.n, start.v
-    rate = ctx.sqrt(ctx.norm(k.pull))
-    swing = max(
-        abs(n[0]), abs(n[1]), 1 + n[2] if k.pull[1] else 0, ctx.norm(v) / rate if rate else 1
-    )
-    return min(MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2))))) if swing else 0
+    ctx = start.ctx
+    x, y, z = start.n
+    rate = ctx.sqrt(ctx.norm(start.k.pull))
+    height = 1 + z if start.k.pull[1] else 0
+    reach = ctx.norm(start.v) / rate if rate else 1  # of a swing that starts with this velocity
+    swing = max(abs(x), abs(y), height, reach)
+    if not swing:
+        return 0
+    return min(MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2)))))
 
 
 # of the step length in the constants of `LinearTerms`, lane by lane
@@ -134,8 +166,14 @@ _POWERS = (
 )
 
 
-def _linear_terms(w: Any, am: Any, aw: Any, g: Any, limb_count: int) -> LinearTerms:
-    """Return the linear terms in the unit of time."""
+def _linear_terms(start: Start, h: Any, limb_count: int) -> LinearTerms:
+    """Return the linear terms in the unit of time h."""
+    _, _, turn = _to_earth(start, start.k.turn)
+    _, pull_m, pull_w = _to_earth(start, start.k.pull)
+    w = turn * h
+    am = pull_m * h * h
+    aw = pull_w * h * h
+    g = start.k.drag * h
     return LinearTerms(
         turn=rows_of([w, -w, -am * w, w, -w, 3 * aw, 3 * am, am], limb_count),
         drag=rows_of([g * w, -g * w, 2 * g * aw, -g, -g, -g, -2 * g, -g], limb_count),
@@ -147,6 +185,6 @@ def _linear_terms(w: Any, am: Any, aw: Any, g: Any, limb_count: int) -> LinearTe
 
 def _unit_of_time(start: Start) -> tuple[Fraction, int]:
     """Return a power of two near the first step, in s, and that step in grains."""
-    step = GUESS / start.fastest_rate if start.fastest_rate > 0 else 1.0
+    step = _GUESS / start.fastest_rate if start.fastest_rate > 0 else 1.0
     mantissa, exponent = math.frexp(step)
     return Fraction(2) ** exponent, max(1, int(mantissa * GRAINS))

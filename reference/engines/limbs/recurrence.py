@@ -9,8 +9,8 @@ side. Time is in steps (h is in every constant below, and coefficients are multi
 where λ = V·V + n·c is the tension of the cord and j = (n × V)_w. All but λ n (and w², with drag) is linear. Coefficient
 k is small as h**k, its leading limbs are zero and are not touched, so that high orders cost little.
 
-The sums of products, λ n and with drag w², are kept of all orders as the coefficients become known. An order's sums
-lack its products with order 0, which the recurrence adds itself, as it needs them at once.
+The sums of products, λ n and with drag w², are kept for all orders and added to as coefficients become known. The
+products with order 0 are not in the sums: the recurrence needs them at once and adds them itself.
 """
 
 from __future__ import annotations
@@ -20,12 +20,14 @@ from ..simd.lanes import (
     LANES,
     at_least,
     compiled,
+    get_row,
     inlined,
     load,
     magnitude,
     merged,
     occupied,
     plus_product,
+    set_row,
     shuffled,
     spread,
     store,
@@ -58,32 +60,40 @@ _tension_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_tension_spin")
 
 
 @merged
-def clear_sums(s: LimbSeries, order: int, limb_count: int, drag: bool) -> None:
+def _clear_sums(s: LimbSeries, order: int, limb_count: int, drag: bool) -> None:
     """Set the sums and the planes to zero, as far as a series of this order uses them."""
     zero = spread(0.0)
     for row in range(0, limb_count * PLANES * WIDTH, WIDTH):
         for i in range(0, order // 2 + LANES, LANES):
             store(s.planes, row + i, zero)
+
+    sum_count = PLANES if drag else 3
     for limb in range(0, (limb_count + 1) * PLANES * WIDTH, PLANES * WIDTH):
-        for row in range(limb, limb + (PLANES if drag else 3) * WIDTH, WIDTH):
+        for row in range(limb, limb + sum_count * WIDTH, WIDTH):
             for i in range(0, order + LANES, LANES):
                 store(s.sums, row + i, zero)
+
     for q in range(limb_count):
         s.used[q] = 0
 
 
 @merged
-def add_squares(s: LimbSeries, k: int, first: int, limb_count: int, drag: bool) -> None:
+def _add_squares(s: LimbSeries, k: int, first: int, limb_count: int, drag: bool) -> None:
     """Add the products of a coefficient with itself, or of λ and n of one order, to the sums of order 2 k."""
-    c, sums, block = s.c, s.sums, k * limb_count * LANES
+    c = s.c
+    sums = s.sums
+    block = k * limb_count
     for r in range(2 * first + 1, limb_count + 1):
-        total, square = spread(0.0), 0.0
+        total = spread(0.0)
+        square = 0.0
         for q in range(first, r - first):
-            a, b = block + LANES * q, block + LANES * (r - 1 - q)
-            total = plus_product(total, spread(c[a + TENSION]), load(c, b))
+            a = block + q
+            b = block + r - 1 - q
+            total = plus_product(total, spread(c[LANES * a + TENSION]), get_row(c, b))
             if drag:
-                square += c[a + W] * c[b + W]
-        store(s.other, 0, total * spread(DOUBLED))
+                square += c[LANES * a + W] * c[LANES * b + W]
+        set_row(s.other, 0, total * spread(DOUBLED))
+
         at = r * PLANES * WIDTH + 2 * k
         sums[at] += s.other[X]
         sums[at + WIDTH] += s.other[M]
@@ -92,38 +102,49 @@ def add_squares(s: LimbSeries, k: int, first: int, limb_count: int, drag: bool) 
 
 
 @merged
-def add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool) -> None:
-    """Add to the sums all products of order k with lower orders."""
-    c, planes, sums, factors, first = s.c, s.planes, s.sums, s.factors, s.first[k]
-    for p in range(first, limb_count):
-        limb, row = LANES * (k * limb_count + p), PLANES * LANES * p
-        store(factors, row, spread(DOUBLED * c[limb + X]))
-        store(factors, row + LANES, spread(DOUBLED * c[limb + M]))
-        store(factors, row + 2 * LANES, spread(DOUBLED * c[limb + W]))
-        store(factors, row + 3 * LANES, spread(DOUBLED * c[limb + TENSION]))
-    highest = 0
+def _set_factors(s: LimbSeries, k: int, limb_count: int) -> None:
+    """Write the limbs of x, m, w, λ of order k, doubled, to `factors`: each in all lanes of a row."""
+    for q in range(s.first[k], limb_count):
+        at = LANES * (k * limb_count + q)
+        set_row(s.factors, PLANES * q, spread(DOUBLED * s.c[at + X]))
+        set_row(s.factors, PLANES * q + 1, spread(DOUBLED * s.c[at + M]))
+        set_row(s.factors, PLANES * q + 2, spread(DOUBLED * s.c[at + W]))
+        set_row(s.factors, PLANES * q + 3, spread(DOUBLED * s.c[at + TENSION]))
+
+
+@merged
+def _add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool) -> None:
+    """Add to the sums all products of order k, whose `factors` are set, with lower orders, eight of them at a time."""
+    # the innermost loop of a run: all its values are to stay in registers
+    planes = s.planes
+    sums = s.sums
+    factors = s.factors
+    first = s.first[k]
+    highest = 0  # the first limb that is used by any of the eight lower orders
     for j in range(0, max(min(k, order - k), 1), LANES):
         while j > 0 and highest < limb_count and s.used[highest] <= j:
             highest += 1
         for r in range(first + highest + 1, limb_count + 1):
             row = r * PLANES * WIDTH + k + j
-            x, m, w = load(sums, row), load(sums, row + WIDTH), load(sums, row + 2 * WIDTH)
+            x = load(sums, row)
+            m = load(sums, row + WIDTH)
+            w = load(sums, row + 2 * WIDTH)
             square = load(sums, row + 3 * WIDTH)
-            for p in range(first, r - highest):
-                plane, factor = (r - 1 - p) * PLANES * WIDTH + j, PLANES * LANES * p
-                axial, tension = load(planes, plane + 2 * WIDTH), load(planes, plane + 3 * WIDTH)
-                fw, f = load(factors, factor + 2 * LANES), load(factors, factor + 3 * LANES)
-                x = plus_product(
-                    plus_product(x, f, load(planes, plane)), load(factors, factor), tension
-                )
-                m = plus_product(
-                    plus_product(m, f, load(planes, plane + WIDTH)),
-                    load(factors, factor + LANES),
-                    tension,
-                )
-                w = plus_product(plus_product(w, f, axial), fw, tension)
+            for q in range(first, r - highest):
+                plane = (r - 1 - q) * PLANES * WIDTH + j
+                axial = load(planes, plane + 2 * WIDTH)
+                tension = load(planes, plane + 3 * WIDTH)
+                factor_w = get_row(factors, PLANES * q + 2)
+                factor_tension = get_row(factors, PLANES * q + 3)
+
+                x = plus_product(x, factor_tension, load(planes, plane))
+                x = plus_product(x, get_row(factors, PLANES * q), tension)
+                m = plus_product(m, factor_tension, load(planes, plane + WIDTH))
+                m = plus_product(m, get_row(factors, PLANES * q + 1), tension)
+                w = plus_product(w, factor_tension, axial)
+                w = plus_product(w, factor_w, tension)
                 if drag:
-                    square = plus_product(square, fw + fw, axial)
+                    square = plus_product(square, factor_w + factor_w, axial)
             store(sums, row, x)
             store(sums, row + WIDTH, m)
             store(sums, row + 2 * WIDTH, w)
@@ -131,11 +152,13 @@ def add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool)
 
 
 @merged
-def copy_to_planes(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
+def _copy_to_planes(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
     """Copy x, m, w, λ of order k to the planes, for the products with higher orders."""
-    c, planes = s.c, s.planes
+    c = s.c
+    planes = s.planes
     for q in range(first, limb_count):
-        at, plane = LANES * (k * limb_count + q), q * PLANES * WIDTH + k
+        at = LANES * (k * limb_count + q)
+        plane = q * PLANES * WIDTH + k
         planes[plane] = c[at + X]
         planes[plane + WIDTH] = c[at + M]
         planes[plane + 2 * WIDTH] = c[at + W]
@@ -149,10 +172,10 @@ def taylor_coefficients(
 ) -> bool:
     """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
 
-    Of λ n only the products with order 0 are needed at once; the others of an order are added to the sums while the
-    processor waits for the divisions of the next.
+    Of λ n only the products with order 0 are needed at once; an order's other products are added to the sums while the
+    processor waits for the divisions of the next order.
     """
-    clear_sums(s, order, limb_count, drag)
+    _clear_sums(s, order, limb_count, drag)
     if not _note_first_limb(s.c, s.first, 0, 0, limb_count):
         return False
     for k in range(order):
@@ -160,59 +183,69 @@ def taylor_coefficients(
         _set_derivative(s, terms, k, first, limb_count)
         if drag:
             _add_drag(s, terms, k, first, limb_count)
+
+        # the next coefficient is the derivative's over k + 1
         low = 0
-        while low < limb_count and not occupied(load(s.total, LANES * low)):
+        while low < limb_count and not occupied(get_row(s.total, low)):
             low += 1
         divide(s.total, low, limb_count, k + 1.0)
-        block = (k + 1) * limb_count * LANES
         for q in range(limb_count):
-            store(s.c, block + LANES * q, load(s.total, LANES * q))
+            set_row(s.c, (k + 1) * limb_count + q, get_row(s.total, q))
         if not _note_first_limb(s.c, s.first, k + 1, max(low - 1, 0), limb_count):
             return False
-        add_products(s, k, order, limb_count, drag)
+
+        _set_factors(s, k, limb_count)
+        _add_products(s, k, order, limb_count, drag)
         if 2 * k < order:
             # last, as a vector that is loaded just after a part of it was stored must wait
-            add_squares(s, k, first, limb_count, drag)
-            copy_to_planes(s, k, first, limb_count)
+            _add_squares(s, k, first, limb_count, drag)
+            _copy_to_planes(s, k, first, limb_count)
     return True
 
 
 @inlined
 def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int) -> bool:
-    """Note the first limb of order k that is not zero, from `low` on; return false if a number is too large."""
-    block, first = k * limb_count * LANES, low
-    while first < limb_count and not occupied(load(c, block + LANES * first)):
+    """Write the first limb of order k that is not zero, from `low` on; return false if a number is too large."""
+    block = k * limb_count
+    first = low
+    while first < limb_count and not occupied(get_row(c, block + first)):
         first += 1
     firsts[k] = first
     # 0 also where a lane is not a number
-    small = at_least(spread(LARGEST), magnitude(load(c, block)))
-    return first > 0 or not occupied(small - spread(1.0))
+    is_small = at_least(spread(LARGEST), magnitude(get_row(c, block)))
+    return first > 0 or not occupied(is_small - spread(1.0))
 
 
 @merged
 def _set_derivative(s: LimbSeries, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
-    """Write the derivative's coefficient of order k, drag left out, to `total`; not carried."""
-    c, block, turn, total = s.c, k * limb_count * LANES, terms.turn, s.total
+    """Write the derivative's coefficient of order k, without drag, to `total`; not carried."""
+    c = s.c
+    turn = terms.turn
+    total = s.total
+    block = k * limb_count
     if k == 1:
         for q in range(limb_count):
-            v = load(c, LANES * q)
-            store(s.twice, LANES * q, v + v)
+            v = get_row(c, q)
+            set_row(s.twice, q, v + v)
     zeroth = s.twice if k else c
     for r in range(limb_count + 1):
-        turned, pulled = spread(0.0), spread(0.0)
+        turned = spread(0.0)
+        pulled = spread(0.0)  # λ n, the products with order 0
         for q in range(first, r):
-            v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
-            turned = plus_product(turned, load(turn, p), partner(v))
-            pulled = plus_product(pulled, spread(c[block + LANES * q + TENSION]), load(zeroth, p))
-            pulled = plus_product(pulled, spread(zeroth[p + TENSION]), v)
-        value = (
-            _turned(turned) + (_tension_axial(turned) + _tension_turned(turned)) - to_speeds(pulled)
-        )
+            v = get_row(c, block + q)
+            p = r - 1 - q
+            tension = spread(c[LANES * (block + q) + TENSION])
+            turned = plus_product(turned, get_row(turn, p), partner(v))
+            pulled = plus_product(pulled, tension, get_row(zeroth, p))
+            pulled = plus_product(pulled, spread(zeroth[LANES * p + TENSION]), v)
+
+        linear = _turned(turned) + (_tension_axial(turned) + _tension_turned(turned))
+        value = linear - to_speeds(pulled)
         if first <= r < limb_count:
-            value = value + to_positions(load(c, block + LANES * r))
+            value = value + to_positions(get_row(c, block + r))
         if k == 0:
-            value = value + load(terms.steady, LANES * r)
-        store(total, LANES * r, value)
+            value = value + get_row(terms.steady, r)
+        set_row(total, r, value)
         for i in range(3):
             total[LANES * r + VX + i] -= s.sums[(r * PLANES + i) * WIDTH + k]
 
@@ -220,22 +253,35 @@ def _set_derivative(s: LimbSeries, terms: LinearTerms, k: int, first: int, limb_
 @merged
 def _add_drag(s: LimbSeries, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Add the terms of drag to `total`."""
-    c, block, start, stride = s.c, k * limb_count * LANES, 3 * WIDTH + k, PLANES * WIDTH
-    weight = 2.0 * DOUBLED if k else DOUBLED
-    for r in range(limb_count + 1):
-        square = s.sums[start + r * stride]
-        for q in range(first, r):
-            square += weight * c[block + LANES * q + W] * c[LANES * (r - 1 - q) + W]
-        s.scalar[r] = square
-    carry_scalar(s.scalar, limb_count)
+    _set_axial_square(s, k, first, limb_count)
+    block = k * limb_count
     for r in range(1, limb_count + 1):
-        slowed, pulled, axial = spread(0.0), spread(0.0), 0.0
+        slowed = spread(0.0)
+        pulled = spread(0.0)
         for q in range(first, r):
-            v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
-            slowed = plus_product(slowed, load(terms.drag, p), v)
-            pulled = plus_product(pulled, load(terms.drag_tension, p), v)
+            v = get_row(s.c, block + q)
+            p = r - 1 - q
+            slowed = plus_product(slowed, get_row(terms.drag, p), v)
+            pulled = plus_product(pulled, get_row(terms.drag_tension, p), v)
+        axial = 0.0
         for q in range(r):
             axial += terms.drag_axial[LANES * (r - 1 - q)] * s.scalar[q]
-        value = load(s.total, LANES * r) + _dragged(slowed) + _dragged_aside(slowed)
-        store(s.total, LANES * r, value + (_tension_across(pulled) + _tension_spin(pulled)))
+
+        value = get_row(s.total, r) + _dragged(slowed) + _dragged_aside(slowed)
+        value = value + (_tension_across(pulled) + _tension_spin(pulled))
+        set_row(s.total, r, value)
         s.total[LANES * r + SPIN] += axial
+
+
+@merged
+def _set_axial_square(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
+    """Write order k of w² to `scalar`: the sums of the higher orders, and the products with order 0."""
+    c = s.c
+    block = k * limb_count
+    weight = 2.0 * DOUBLED if k else DOUBLED
+    for r in range(limb_count + 1):
+        square = s.sums[(r * PLANES + 3) * WIDTH + k]
+        for q in range(first, r):
+            square += weight * c[LANES * (block + q) + W] * c[LANES * (r - 1 - q) + W]
+        s.scalar[r] = square
+    carry_scalar(s.scalar, limb_count)

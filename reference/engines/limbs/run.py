@@ -36,18 +36,18 @@ from .march import (
     march,
     state_at_release,
 )
-from .problem import limb_problem
+from .problem import LimbProblem, limb_problem
 from .series import TENSION, M, W, X
 from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
-STEPS_PER_CALL = 1024
-COMPILE_S = 18  # what compiling takes, about, of which users are told
-ROWS = np.array((X, M, W, TENSION))
+_STEPS_PER_CALL = 1024
+_COMPILE_S = 18  # about what compiling takes, as announced to users
+_ROWS = np.array((X, M, W, TENSION))
 # of the series: more than a run alone would take, since every step must be proved
-ORDER_PER_BIT = 0.5
-POLYNOMIALS_PER_CALL = 64
-FOR_EVER = 1 << 62  # in grains
+_ORDER_PER_BIT = 0.5
+_POLYNOMIALS_PER_CALL = 64
+_FOR_EVER = 1 << 62  # in grains
 # SI values carry this much below the last limb: l need not be a short binary fraction
 SPARE_BITS = 32
 
@@ -73,33 +73,19 @@ class Integration:
                 f"at most {MOST_PREC} bits",
                 "Use the engine heyoka for more digits.",
             )
-        self.problem = problem = limb_problem(plan.inputs, prec, order, plan.other_steps)
-        self.seek = seek = plan.transits and not xdot_vanishes(problem.start)
-        limb_count, model = problem.model.limb_count, problem.model
-        unit, grain = 1 << fraction_bits(limb_count), problem.grain
-        fixed = [
-            unit * t.numerator * grain.denominator // (t.denominator * grain.numerator)
-            for t in plan.times
-        ]
-        whole, remainders = zip(*(divmod(t, unit) for t in fixed), strict=True)
-        multiplicity = zero_at_release(problem.start) if seek else 0
-        self.state = state_at_release(problem.state, problem.first, multiplicity, model)
-        room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
-        self.out = Outputs(
-            np.array(whole, dtype=np.int64),
-            split(remainders, limb_count).ravel(),
-            aligned(len(whole) * limb_count * LANES),
-            np.zeros(3 * room, dtype=np.int64),
-            np.zeros(room * limb_count),
-            aligned(room * limb_count * LANES),
-            np.zeros(2 * polynomials, dtype=np.int64),
-            aligned(polynomials * (model.order + 1) * limb_count * LANES),
+        self.problem = limb_problem(plan.inputs, prec, order, plan.other_steps)
+        start = self.problem.start
+        self.seek = plan.transits and not xdot_vanishes(start)
+        multiplicity = zero_at_release(start) if self.seek else 0
+        self.state = state_at_release(
+            self.problem.state, self.problem.first, multiplicity, self.problem.model
         )
-        self.until = FOR_EVER if polynomials else whole[-1] + 1
+        self.out = _empty_outputs(self.problem, plan.times, self.seek, polynomials)
+        self.until = _FOR_EVER if polynomials else int(self.out.whole[-1]) + 1
         # of xdot, of each call: time in grains and state, over 2**fraction_bits, and sign
         self.zeros: list[Any] = []
         cpu_start = time.process_time()
-        prepare(march, "limbs", COMPILE_S, *self._arguments(0))
+        prepare(march, "limbs", _COMPILE_S, *self._arguments(0))
         self.compile_s = time.process_time() - cpu_start
 
     def finish(self, report: Report | None, pace: Pace | None = None) -> None:
@@ -108,7 +94,7 @@ class Integration:
         Raises:
             IntegrationError: zeros of xdot stay in doubt, or no step is short enough.
         """
-        while not self.advance(STEPS_PER_CALL):
+        while not self.advance(_STEPS_PER_CALL):
             if pace is not None:
                 pace(int(self.state.counts[STEPS]), self.time)
             if report is not None:
@@ -137,7 +123,9 @@ class Integration:
         return self.state, self.problem.model, self.out, self.until, steps, self.seek
 
     def _keep_zeros(self) -> None:
-        n, limb_count = int(self.state.counts[ZEROS]), self.problem.model.limb_count
+        """Keep the zeros of a call of `march`, and make room for those of the next one."""
+        n = int(self.state.counts[ZEROS])
+        limb_count = self.problem.model.limb_count
         starts, lengths, signs = self.out.moments[: 3 * n].reshape(n, 3).T.astype(object)
         places = joined(self.out.places[: n * limb_count].reshape(n, limb_count))
         moments = (starts << fraction_bits(limb_count)) + lengths * places
@@ -147,10 +135,34 @@ class Integration:
     def table(self, rows: Array, count: int) -> Any:
         """Return rows of limbs as integers over 2**fraction_bits, shape (count, COLUMNS)."""
         limb_count = self.problem.model.limb_count
-        limbs = np.moveaxis(
-            rows[: count * limb_count * LANES].reshape(count, limb_count, LANES), 1, 2
-        )
-        return joined(limbs[:, :COLUMNS])
+        blocks = rows[: count * limb_count * LANES].reshape(count, limb_count, LANES)
+        return joined(np.moveaxis(blocks, 1, 2)[:, :COLUMNS])
+
+
+def _empty_outputs(
+    problem: LimbProblem, times: Sequence[Fraction], seek: bool, polynomials: int
+) -> Outputs:
+    """Return the output times, and room for what a call of `march` writes."""
+    order = problem.model.order
+    limb_count = problem.model.limb_count
+    unit = 1 << fraction_bits(limb_count)
+    grain = problem.grain
+    scaled = [
+        unit * t.numerator * grain.denominator // (t.denominator * grain.numerator) for t in times
+    ]
+    whole = [t // unit for t in scaled]
+    remainders = [t % unit for t in scaled]
+    room = _STEPS_PER_CALL + MOST_ZEROS if seek else 0
+    return Outputs(
+        whole=np.array(whole, dtype=np.int64),
+        remainders=split(remainders, limb_count).ravel(),
+        states=aligned(len(times) * limb_count * LANES),
+        moments=np.zeros(3 * room, dtype=np.int64),
+        places=np.zeros(room * limb_count),
+        zero_states=aligned(room * limb_count * LANES),
+        steps=np.zeros(2 * polynomials, dtype=np.int64),
+        series=aligned(polynomials * (order + 1) * limb_count * LANES),
+    )
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
@@ -160,38 +172,34 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         plan: as for `run`.
         coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order follows.
     """
-    integration = Integration(plan, POLYNOMIALS_PER_CALL, round(ORDER_PER_BIT * coefficient_bits))
-    spent = 0.0
-    grain, limb_count, last = (
-        integration.problem.grain,
-        integration.problem.model.limb_count,
-        plan.times[-1],
-    )
-    start, end, bits = Fraction(0), Fraction(1), fraction_bits(limb_count)
+    order = round(_ORDER_PER_BIT * coefficient_bits)
+    integration = Integration(plan, _POLYNOMIALS_PER_CALL, order)
+    grain = integration.problem.grain
+    limb_count = integration.problem.model.limb_count
+    bits = fraction_bits(limb_count)
+    spent_s = 0.0
     while True:
         cpu_start = time.process_time()
-        integration.advance(POLYNOMIALS_PER_CALL)
-        spent += time.process_time() - cpu_start
-        series = integration.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
-        for (grains, length), of_step in zip(
-            integration.out.steps.reshape(-1, 2).tolist(), series, strict=True
-        ):
+        integration.advance(_POLYNOMIALS_PER_CALL)
+        spent_s += time.process_time() - cpu_start
+        steps = integration.out.steps.reshape(-1, 2).tolist()
+        series = integration.out.series.reshape(_POLYNOMIALS_PER_CALL, -1).copy()
+        for (grains, length), of_step in zip(steps, series, strict=True):
             t = grains * grain
-            yield TaylorStep(
-                t, length * grain, start, end, bits, partial(_digits, of_step, limb_count)
-            )
-            if t > last:
-                return result(integration, plan, time.process_time() - spent)
+            digits = partial(_digits, of_step, limb_count)
+            yield TaylorStep(t, length * grain, Fraction(0), Fraction(1), bits, digits)
+            if t > plan.times[-1]:
+                return result(integration, plan, time.process_time() - spent_s)
 
 
 def _digits(series: Array, limb_count: int) -> Digits:
     """Return the rows x, m, w and h² λ of a step, lowest order first."""
-    limbs = series.reshape(-1, limb_count, LANES)[:, :, ROWS]
+    limbs = series.reshape(-1, limb_count, LANES)[:, :, _ROWS]
     return Digits(np.ascontiguousarray(limbs.transpose(2, 1, 0), dtype=np.int32))
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
-    """Integrate a plan in limbs, in `inertial` whatever its formulation; `plan.number` tells the precision.
+    """Integrate a plan in limbs, in `inertial` whatever its formulation; `plan.number` has the precision.
 
     Args:
         plan: what to run; times increasing from 0 on.
@@ -200,7 +208,7 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
 
     Raises:
         InputError: more bits than limbs can hold.
-        IntegrationError: zeros of xdot stay in doubt, or no step is short enough. No numbers then.
+        IntegrationError: zeros of xdot stay in doubt, or no step is short enough.
     """
     integration = Integration(plan)
     cpu_start = time.process_time()
@@ -210,12 +218,14 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
 
 def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
     """Return what an integration computed, in SI units; `cpu_start` is `time.process_time()` when its steps began."""
-    problem, bits = integration.problem, fraction_bits(integration.problem.model.limb_count)
+    problem = integration.problem
+    bits = fraction_bits(problem.model.limb_count)
     factors = [plan.inputs.length / problem.unit ** (i // 3) for i in range(COLUMNS)]
     grid = _si(integration.table(integration.out.states, len(plan.times)), factors)
     zeros = np.concatenate(integration.zeros)
     zeros = zeros[zeros[:, 0] <= int(plan.times[-1] / problem.grain * 2**bits)]
-    transits = Table(("t", *RUN), bits + SPARE_BITS, _si(zeros[:, :-1], [problem.grain, *factors]))
+    moments_and_states = _si(zeros[:, :-1], [problem.grain, *factors])
+    transits = Table(("t", *RUN), bits + SPARE_BITS, moments_and_states)
     return Run(
         plan=plan,
         grid=Table(RUN, bits + SPARE_BITS, grid),
@@ -229,8 +239,8 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
 
 def _si(table: Any, factors: Sequence[Fraction]) -> list[tuple[int, ...]]:
     """Return the rows of a table of integers, each column times a factor, over 2**SPARE_BITS times their unit."""
-    scaled = [factor * 2**SPARE_BITS for factor in factors]
-    columns = [
-        column * f.numerator // f.denominator for column, f in zip(table.T, scaled, strict=True)
-    ]
+    columns = []
+    for column, factor in zip(table.T, factors, strict=True):
+        scaled = factor * 2**SPARE_BITS
+        columns.append(column * scaled.numerator // scaled.denominator)
     return list(zip(*columns, strict=True))

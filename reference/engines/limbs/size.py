@@ -25,4 +25,5 @@ def highest_prec(limb_count: int) -> int:
     return fraction_bits(limb_count) - ROUNDING_BITS
 
 
-LEAST_PREC, MOST_PREC = LONG_DOUBLE_BITS + 1, highest_prec(MOST_LIMBS)
+LEAST_PREC = LONG_DOUBLE_BITS + 1
+MOST_PREC = highest_prec(MOST_LIMBS)

@@ -1,11 +1,12 @@
-"""Zeros of a rate on a step, on all lanes at once: how many in each half of it is proven, then Newton's method.
+"""Zeros of a rate on a step, on all lanes at once: each half of it has none or one, then Newton's method.
 
-A half is free of zeros if the rate's value in its middle outweighs slope, bend and the third derivative's bound; it is
-monotone, with one zero if the signs at its ends differ, if the slope does. Lanes that are neither, or have two zeros,
-go the long way: all zeros of one lane, by halving (`all_zeros`).
+A half of the step has no zero if the rate at its middle is larger than slope, second derivative and a bound of the
+third can change it. It is monotone, with one zero if the signs at its ends differ, if the slope is larger than the
+higher derivatives can change it. A lane with a half of neither kind, or with two zeros, is in doubt: all its zeros are
+found one by one, by subdivision (`all_zeros`).
 
-A highest point of the swing is a zero of u', found by signs at the ends and the middle of a step: between a highest and
-a lowest point passes half a period of u, longer than half a step, so signs miss none.
+A highest point of the swing is a zero of u'. It is found by the signs at the ends and the middle of a step: half a
+period of u passes between a highest and a lowest point, which is longer than half a step, so that no sign is missed.
 """
 
 from __future__ import annotations
@@ -21,37 +22,39 @@ from ..simd.lanes import (
     at_least,
     compiled,
     fma,
+    get_row,
     inlined,
     larger,
-    load,
     magnitude,
+    set_row,
     spread,
-    store,
     where,
 )
 from ..simd.polynomial import FREE, MONOTONE, classify, crossing, value_and_slope
-from .series import MOST_ORDER, LaneSeries
+from .series import MOST_ORDER, LaneSeries, Vector, plus_multiple, position
 
-NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
-NEWTON_STEPS = 3
-CONVERGED = 2.0**-27  # of a step: a larger last correction leaves digits to be gained
-# of a step: a zero of u' is so nearly symmetric that the next correction would be none
-TURNED = 2.0**-20
+# thresholds of the last correction by Newton's method, of a step
+CONVERGED = 2.0**-27  # after a larger one, another would change the digits
+CONVERGED_HIGHEST = (
+    2.0**-20
+)  # u' is nearly antisymmetric about its zero: the next correction is far smaller
 MOST_ZEROS = 16  # of one step
 DOUBT = -1  # returned where a sign is lost in rounding
-_CUT = 0.4871  # of an interval: no special place, where symmetry could put a zero
-_NARROWEST = 2.0**-40
-_DEEPEST = 64  # halves of a step, one in another, down to the narrowest
+_NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
+_NEWTON_STEPS = 3
+_CUT = 0.4871  # of an interval: not in the middle, where symmetry could put a zero
+_NARROWEST = 2.0**-40  # half of the shortest interval that is cut
+_DEEPEST = 64  # intervals, one in another, down to the narrowest
 
 
 class LaneZeros(NamedTuple):
-    """Knowledge of a rate's zeros, lane by lane.
+    """Zeros of a rate on the steps of eight lanes: where they are sought, what is known of them.
 
     Attributes:
-        before, after: the rate at the step's start and end; the former's sign alone counts.
+        before, after: the rate at the step's start and end; only the sign of `before` counts.
         sought: 1 where zeros are looked for.
         hit: 1 where there is exactly one zero.
-        doubt: 1 where the lanes cannot tell.
+        doubt: 1 where the number of zeros is undecided.
         low, high: the interval that holds the zero.
         place, slope: the zero, and the rate's derivative there.
     """
@@ -72,53 +75,143 @@ def empty_zeros() -> LaneZeros:
     return LaneZeros(*(aligned(LANES) for _ in LaneZeros._fields))
 
 
+class _Jet(NamedTuple):
+    """A polynomial at a place: value, slope and half the second derivative, in each lane."""
+
+    value: Any
+    slope: Any
+    bend: Any
+
+
+class _Bounds(NamedTuple):
+    """Bounds on the whole step, in each lane.
+
+    Attributes:
+        third: of a sixth of the third derivative, times a quarter of the step.
+        noise: of the rounding of a value, as an estimate; a smaller value has no certain sign.
+        slope_noise: of the rounding of a slope, times a quarter of the step, as an estimate.
+    """
+
+    third: Any
+    noise: Any
+    slope_noise: Any
+
+
+class _Halves(NamedTuple):
+    """A polynomial on the two halves of a step: at their middles, and between them."""
+
+    early: _Jet
+    late: _Jet
+    middle_value: Any
+    bounds: _Bounds
+
+
 @compiled
 def seek(z: LaneZeros, f: Array, length: Array, time: Array, order: int) -> None:
-    """Find which lanes have one zero of the polynomial f on the step, and where about; at time 0 all are in doubt."""
-    r, zero = load(length, 0), spread(0.0)
-    h, middle = r * spread(0.25), r * spread(0.5)
-    high = middle + h
-    v = s = b = v3 = s3 = b3 = vm = total = third = zero
+    """Find which lanes have one zero of the polynomial f on the step, and about where; at time 0 all are in doubt."""
+    h = get_row(length, 0)
+    zero = spread(0.0)
+    halves = _halves(f, h, order)
+    noise = halves.bounds.noise
+
+    quarter = h * spread(0.25)
+    decided = _is_decided(halves.early, halves.bounds, quarter)
+    decided = decided * _is_decided(halves.late, halves.bounds, quarter)
+    before = get_row(z.before, 0)
+    after = get_row(z.after, 0)
+    decided = decided * at_least(magnitude(halves.middle_value), noise)
+    decided = decided * at_least(magnitude(after), noise)
+
+    # 1 where the sign changes on the first and on the second half; if on both, the lane is in doubt
+    early = at_least(zero, before * halves.middle_value)
+    late = at_least(zero, halves.middle_value * after)
+    decided = decided * (spread(1.0) - early * late)
+    decided = decided * (spread(1.0) - at_least(zero, get_row(time, 0)))
+    low, high = _keep(z, h, _Crossings(early, late, decided, decided))
+
+    # one step of Chebyshev's method, from the middle of the half
+    slope = where(late, halves.late.slope, halves.early.slope)
+    bend = where(late, halves.late.bend, halves.early.bend)
+    step = where(late, halves.late.value, halves.early.value) / slope
+    start = where(late, h * spread(0.5) + quarter, quarter)
+    place = start - fma(step, bend / slope * step, step)
+    set_row(z.place, 0, _between(place, low, high))
+
+
+@inlined
+def _halves(f: Array, h: Any, order: int) -> _Halves:
+    """Return the polynomial f at the middles of both halves of a step of length h, by Horner's rule."""
+    zero = spread(0.0)
+    middle = h * spread(0.5)
+    early_place = h * spread(0.25)
+    late_place = middle + early_place
+    early = _Jet(zero, zero, zero)
+    late = _Jet(zero, zero, zero)
+    middle_value = zero
+    total = zero  # of the terms' sizes at the end
+    third = zero
     for k in range(order - 1, -1, -1):
-        a = load(f, LANES * k)
-        b, s, v = fma(s, b, h), fma(v, s, h), fma(a, v, h)
-        b3, s3, v3 = fma(s3, b3, high), fma(v3, s3, high), fma(a, v3, high)
-        vm, size = fma(a, vm, middle), magnitude(a)
-        total = fma(size, total, r)
+        coefficient = get_row(f, k)
+        size = magnitude(coefficient)
+        early = _horner(early, coefficient, early_place)
+        late = _horner(late, coefficient, late_place)
+        middle_value = fma(coefficient, middle_value, middle)
+        total = fma(size, total, h)
         if k >= 3:
-            third = fma(size * spread(k * (k - 1) * (k - 2) / 6.0), third, r)
-    noise, third = total * spread(NOISE), third * h
-    slack = noise * spread(float(order))
-    known = _known(v, s, b, third, h, noise, slack) * _known(v3, s3, b3, third, h, noise, slack)
-    before, after = load(z.before, 0), load(z.after, 0)
-    known = known * at_least(magnitude(vm), noise) * at_least(magnitude(after), noise)
-    early, late = at_least(zero, before * vm), at_least(zero, vm * after)
-    known = known * (spread(1.0) - early * late) * (spread(1.0) - at_least(zero, load(time, 0)))
-    low, top = keep(z, early, late, known, known, r)
-    s = where(late, s3, s)
-    step = where(late, v3, v) / s
-    place = where(late, high, h) - fma(step, where(late, b3, b) / s * step, step)
-    store(z.place, 0, _between(place, low, top))
+            third = fma(size * spread(k * (k - 1) * (k - 2) / 6.0), third, h)
+
+    noise = total * spread(_NOISE)
+    bounds = _Bounds(third * early_place, noise, noise * spread(float(order)))
+    return _Halves(early, late, middle_value, bounds)
 
 
 @inlined
-def keep(z: LaneZeros, early: Any, late: Any, sure: Any, known: Any, r: Any) -> tuple[Any, Any]:
-    """Keep which lanes have a zero, if they are sure of it, and which are in doubt; return the half that holds it."""
-    sought, middle = load(z.sought, 0), r * spread(0.5)
-    low, high = where(late, middle, spread(0.0)), where(late, r, middle)
-    store(z.doubt, 0, (spread(1.0) - known) * sought)
-    store(z.hit, 0, (early + late) * sure * sought)
-    store(z.low, 0, low)
-    store(z.high, 0, high)
+def _horner(jet: _Jet, coefficient: Any, place: Any) -> _Jet:
+    """Return the jet at a place of s f(s) + coefficient, from that of f."""
+    return _Jet(
+        fma(coefficient, jet.value, place),
+        fma(jet.value, jet.slope, place),
+        fma(jet.slope, jet.bend, place),
+    )
+
+
+@inlined
+def _is_decided(jet: _Jet, bounds: _Bounds, radius: Any) -> Any:
+    """Return 1 where a polynomial has no zero within a radius of a place, or is monotone there, else 0."""
+    slope = magnitude(jet.slope) * radius
+    bend = fma(magnitude(jet.bend), bounds.third, spread(1.0)) * radius * radius
+    is_free = at_least(magnitude(jet.value), slope + bend + bounds.noise)
+    slope_change = fma(bend + bend, bounds.third * radius, radius)
+    return larger(is_free, at_least(slope, slope_change + bounds.slope_noise))
+
+
+class _Crossings(NamedTuple):
+    """Where the sign changes on a step, 1 or 0 in each lane.
+
+    Attributes:
+        early, late: on its first and on its second half.
+        single: if at all, by a single zero.
+        decided: the signs are known, and with them the number of zeros.
+    """
+
+    early: Any
+    late: Any
+    single: Any
+    decided: Any
+
+
+@inlined
+def _keep(z: LaneZeros, h: Any, crossings: _Crossings) -> tuple[Any, Any]:
+    """Write which lanes of steps of length h have a zero, and which are in doubt; return the half that holds it."""
+    sought = get_row(z.sought, 0)
+    middle = h * spread(0.5)
+    low = where(crossings.late, middle, spread(0.0))
+    high = where(crossings.late, h, middle)
+    set_row(z.doubt, 0, (spread(1.0) - crossings.decided) * sought)
+    set_row(z.hit, 0, (crossings.early + crossings.late) * crossings.single * sought)
+    set_row(z.low, 0, low)
+    set_row(z.high, 0, high)
     return low, high
-
-
-@inlined
-def _known(v: Any, s: Any, b: Any, third: Any, h: Any, noise: Any, slack: Any) -> Any:
-    """Return 1 where a polynomial has no zero within h of a place, or is monotone there, else 0."""
-    slope, bend = magnitude(s) * h, fma(magnitude(b), third, spread(1.0)) * h * h
-    free = at_least(magnitude(v), slope + bend + noise)
-    return larger(free, at_least(slope, fma(bend + bend, third * h, h) + slack))
 
 
 @inlined
@@ -131,60 +224,86 @@ def _between(place: Any, low: Any, high: Any) -> Any:
 @compiled
 def refine(z: LaneZeros, f: Array, length: Array, order: int, converged: float) -> None:
     """Refine the zeros that were found; those whose last correction is large are in doubt."""
-    low, high, place, zero = load(z.low, 0), load(z.high, 0), load(z.place, 0), spread(0.0)
-    moved = slope = zero
-    for _ in range(NEWTON_STEPS):
-        # even and odd powers apart: half the chain of dependent operations
-        even = even_slope = odd = odd_slope = zero
-        square = place * place
-        for k in range(order - 2, -1, -2):
-            even_slope, even = fma(even, even_slope, square), fma(load(f, LANES * k), even, square)
-            at = LANES * (k + 1)
-            odd_slope, odd = fma(odd, odd_slope, square), fma(load(f, at), odd, square)
-        slope = fma(odd, fma(even_slope, odd_slope, place), place + place)
-        new = _between(place - fma(even, odd, place) / slope, low, high)
-        moved, place = magnitude(new - place), new
-    hit = load(z.hit, 0)
-    good = at_least(load(length, 0) * spread(converged), moved) * hit
-    store(z.doubt, 0, larger(load(z.doubt, 0), hit - good))
-    store(z.hit, 0, good)
-    store(z.place, 0, place)
-    store(z.slope, 0, slope)
+    low = get_row(z.low, 0)
+    high = get_row(z.high, 0)
+    place = get_row(z.place, 0)
+    correction = spread(0.0)
+    slope = spread(0.0)
+    for _ in range(_NEWTON_STEPS):
+        value, slope = _value_and_slope(f, place, order)
+        new = _between(place - value / slope, low, high)
+        correction = magnitude(new - place)
+        place = new
+
+    hit = get_row(z.hit, 0)
+    good = at_least(get_row(length, 0) * spread(converged), correction) * hit
+    set_row(z.doubt, 0, larger(get_row(z.doubt, 0), hit - good))
+    set_row(z.hit, 0, good)
+    set_row(z.place, 0, place)
+    set_row(z.slope, 0, slope)
+
+
+@inlined
+def _value_and_slope(f: Array, place: Any, order: int) -> tuple[Any, Any]:
+    """Return the polynomial f and its derivative at a place of each lane; `order`, the number of terms, is even."""
+    # even and odd powers are summed separately: this halves the chain of dependent operations
+    even = spread(0.0)
+    even_slope = spread(0.0)
+    odd = spread(0.0)
+    odd_slope = spread(0.0)
+    square = place * place
+    for k in range(order - 2, -1, -2):
+        even_slope = fma(even, even_slope, square)
+        even = fma(get_row(f, k), even, square)
+        odd_slope = fma(odd, odd_slope, square)
+        odd = fma(get_row(f, k + 1), odd, square)
+
+    # f = even(s²) + s odd(s²)
+    slope = fma(odd, fma(even_slope, odd_slope, place), place + place)
+    return fma(even, odd, place), slope
 
 
 @compiled
 def seek_highest(z: LaneZeros, g: Array, length: Array, order: int) -> None:
     """Find which lanes have a highest point on the step; `doubt` is where a sign is lost in rounding."""
-    r, zero, one = load(length, 0), spread(0.0), spread(1.0)
-    middle = r * spread(0.5)
-    vm = total = zero
+    h = get_row(length, 0)
+    zero = spread(0.0)
+    one = spread(1.0)
+    middle = h * spread(0.5)
+    middle_value = zero
+    total = zero
     for k in range(order - 1, -1, -1):
-        a = load(g, LANES * k)
-        vm, total = fma(a, vm, middle), fma(magnitude(a), total, r)
-    noise, before, after = total * spread(NOISE), load(z.before, 0), load(z.after, 0)
-    rising, high = at_least(before, zero), at_least(vm, zero)
-    known = at_least(magnitude(vm), noise) * at_least(magnitude(after), noise)
-    late = high * (one - at_least(after, zero))
-    low, top = keep(z, rising * (one - high), late, one, known, r)
-    left, right = where(late, vm, before), where(late, after, vm)
-    store(z.place, 0, fma(low, top - low, left / (left - right)))
+        coefficient = get_row(g, k)
+        middle_value = fma(coefficient, middle_value, middle)
+        total = fma(magnitude(coefficient), total, h)
+    noise = total * spread(_NOISE)
+
+    before = get_row(z.before, 0)
+    after = get_row(z.after, 0)
+    decided = at_least(magnitude(middle_value), noise) * at_least(magnitude(after), noise)
+    rises_before = at_least(before, zero)
+    rises_in_middle = at_least(middle_value, zero)
+    early = rises_before * (one - rises_in_middle)
+    late = rises_in_middle * (one - at_least(after, zero))
+    low, high = _keep(z, h, _Crossings(early, late, one, decided))
+
+    # where the chord crosses zero
+    at_low = where(late, middle_value, before)
+    at_high = where(late, after, middle_value)
+    set_row(z.place, 0, fma(low, high - low, at_low / (at_low - at_high)))
 
 
 @compiled
 def place_highest(top: Array, c: LaneSeries, z: LaneZeros, order: int) -> None:
     """Write x, p and u at the place of each lane, a row of eight each."""
-    place = load(z.place, 0)
-    x = p = u = spread(0.0)
+    place = get_row(z.place, 0)
+    zero = spread(0.0)
+    n = Vector(zero, zero, zero)
     for k in range(order, -1, -1):
-        at = LANES * k
-        x, p, u = (
-            fma(load(c.x, at), x, place),
-            fma(load(c.p, at), p, place),
-            fma(load(c.u, at), u, place),
-        )
-    store(top, 0, x)
-    store(top, LANES, p)
-    store(top, 2 * LANES, u)
+        n = plus_multiple(position(c, k), place, n)
+    set_row(top, 0, n.x)
+    set_row(top, 1, n.p)
+    set_row(top, 2, n.u)
 
 
 class Bisection(NamedTuple):
@@ -199,60 +318,117 @@ class Bisection(NamedTuple):
 def empty_bisection() -> Bisection:
     """Return working arrays."""
     return Bisection(
-        np.zeros(MOST_ORDER + 1), np.zeros(2 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS)
+        f=np.zeros(MOST_ORDER + 1),
+        stack=np.zeros(2 * _DEEPEST),
+        places=np.zeros(MOST_ZEROS),
+        slopes=np.zeros(MOST_ZEROS),
     )
 
 
+class LanePolynomial(NamedTuple):
+    """The polynomial of one lane on its step.
+
+    Attributes:
+        f: coefficients of all lanes, rows of eight.
+        lane: which of them.
+        order: number of coefficients.
+        length: of the step.
+    """
+
+    f: Array
+    lane: int
+    order: int
+    length: float
+
+
 @compiled
-def all_zeros(
-    w: Bisection, z: LaneZeros, f: Array, lane: int, length: float, multiplicity: int, order: int
-) -> int:
+def all_zeros(w: Bisection, z: LaneZeros, polynomial: LanePolynomial, multiplicity: int) -> int:
     """Write the zeros on 0 < s <= length, in order; return their number, or DOUBT.
 
     Args:
         w: where they are written.
-        z: the values at the start, of which the sign counts, and at the end.
-        f: the polynomials of all lanes.
-        lane: which of them.
-        length: of the step.
+        z: the values at the start, whose sign counts, and at the end.
+        polynomial: whose zeros.
         multiplicity: of a zero at the start that is exact; -1 where the start's value alone gives the sign.
-        order: number of coefficients.
     """
+    lane = polynomial.lane
     skipped = max(multiplicity, 0)
-    size, total, count = order - skipped, 0.0, 0
-    for k in range(size - 1, -1, -1):
-        w.f[k] = f[LANES * (k + skipped) + lane]
-        total = total * length + abs(w.f[k])
-    noise = NOISE * total
-    left = z.before[lane] if multiplicity < 0 else w.f[0]
-    right = value_and_slope(w.f, size, length)[0]
+    noise = _copy_polynomial(w, polynomial, skipped)
+    size = polynomial.order - skipped
+    before = z.before[lane] if multiplicity < 0 else w.f[0]
+    after = value_and_slope(w.f, size, polynomial.length)[0]
+
     # the polynomial is cut off: the state's own value has to be on the same side
-    if abs(left) <= noise or abs(right) <= noise or (right > 0.0) != (z.after[lane] > 0.0):
+    is_same_side = (after > 0.0) == (z.after[lane] > 0.0)
+    if abs(before) <= noise or abs(after) <= noise or not is_same_side:
         return DOUBT
-    # the stack holds the intervals' ends, and the values there: the next interval's on top
-    low, n = 0.0, 0
-    w.stack[0], w.stack[1] = length, right
-    while n >= 0:
-        high, right = w.stack[2 * n], w.stack[2 * n + 1]
-        half, same = 0.5 * (high - low), (left > 0.0) == (right > 0.0)
-        kind = classify(w.f, size, low + half, half, noise)[0]
+    count = _isolate(w, size, noise, _Interval(0.0, polynomial.length, before, after))
+    for i in range(count):
+        w.slopes[i] = _lane_slope(polynomial, w.places[i])
+    return count
+
+
+@compiled
+def _copy_polynomial(w: Bisection, polynomial: LanePolynomial, skipped: int) -> float:
+    """Copy the coefficients of one lane from order `skipped` on; return the noise of the polynomial's values."""
+    total = 0.0
+    for k in range(polynomial.order - skipped - 1, -1, -1):
+        w.f[k] = polynomial.f[LANES * (k + skipped) + polynomial.lane]
+        total = total * polynomial.length + abs(w.f[k])
+    return _NOISE * total
+
+
+class _Interval(NamedTuple):
+    """An interval, and the polynomial's values at its ends."""
+
+    low: float
+    high: float
+    before: float
+    after: float
+
+
+@compiled
+def _isolate(w: Bisection, size: int, noise: float, whole: _Interval) -> int:
+    """Write the zeros of the polynomial `w.f` of `size` coefficients, in order; return their number, or DOUBT."""
+    # the stack holds upper ends of intervals, and the values there: the next interval's on top
+    w.stack[0] = whole.high
+    w.stack[1] = whole.after
+    depth = 1
+    low = whole.low
+    before = whole.before
+    count = 0
+    while depth > 0:
+        high = w.stack[2 * depth - 2]
+        after = w.stack[2 * depth - 1]
+        half = 0.5 * (high - low)
+        kind = classify(w.f, size, low + half, half, noise).kind
         if kind not in (FREE, MONOTONE):
             cut = low + _CUT * (high - low)
             value = value_and_slope(w.f, size, cut)[0]
             if half < _NARROWEST or not abs(value) > noise:
                 return DOUBT
-            n += 1
-            w.stack[2 * n], w.stack[2 * n + 1] = cut, value
+            w.stack[2 * depth] = cut
+            w.stack[2 * depth + 1] = value
+            depth += 1
             continue
-        if not same:
+
+        if (before > 0.0) != (after > 0.0):
             if kind == FREE or count == MOST_ZEROS:
                 return DOUBT
-            w.places[count] = crossing(w.f, size, low, high, 1 if left > 0.0 else -1)
+            w.places[count] = crossing(w.f, size, low, high, 1 if before > 0.0 else -1)
             count += 1
-        low, left, n = high, right, n - 1
-    for i in range(count):
-        slope = value = 0.0
-        for k in range(order - 1, -1, -1):
-            slope, value = slope * w.places[i] + value, value * w.places[i] + f[LANES * k + lane]
-        w.slopes[i] = slope
+        low = high
+        before = after
+        depth -= 1
     return count
+
+
+@compiled
+def _lane_slope(polynomial: LanePolynomial, place: float) -> float:
+    """Return the derivative of one lane's polynomial at a place."""
+    value = 0.0
+    slope = 0.0
+    for k in range(polynomial.order - 1, -1, -1):
+        slope = slope * place + value
+        value = value * place + polynomial.f[LANES * k + polynomial.lane]
+    return slope

@@ -7,8 +7,8 @@ up along -c; n = (x, p, u - 1) and V = (w - Ω_p, v, s), so that a small swing i
     p' = v - Ω_u x,                 v' = Ω_u (Ω_p - w) - λ p,
     u' = s + Ω_p x,                 s' = λ - C - Ω_p² + Ω_p w - λ u,       λ' = -C (3 s + Ω_p x),
 
-where λ = V·V + n·c is the tension of the cord: only three products of series an order. Time is in the row's unit, a
-power of two in s that stays, so that nothing is scaled anew; the length of a step is a place in its own series.
+where λ = V·V + n·c is the tension of the cord: only three products of series an order. Each row keeps its unit of time,
+a power of two in s, and the length of a step is a place in its series, so that coefficients are never rescaled.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from ..simd.lanes import (
     compiled,
     exp2_of,
     fma,
+    get_row,
     inlined,
     larger,
-    load,
     log2_of,
     magnitude,
+    set_row,
     spread,
-    store,
 )
 from .rows import FORM, PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
 
@@ -61,180 +61,232 @@ def empty_series() -> LaneSeries:
     return LaneSeries(*(aligned((MOST_ORDER + 2) * LANES) for _ in LaneSeries._fields))
 
 
+class Vector(NamedTuple):
+    """Components in the axes of the plumb line: east, in the meridian, up; eight doubles each."""
+
+    x: Any
+    p: Any
+    u: Any
+
+
 @inlined
-def _next_order(c: LaneSeries, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
-    """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
-    at, to, share, less = LANES * k, LANES * (k + 1), spread(1.0 / (k + 1)), spread(-1.0 / (k + 1))
-    op, ou, pull = (
-        load(state, LANES * TURN_P),
-        load(state, LANES * TURN_U),
-        load(state, LANES * PULL),
+def position(c: LaneSeries, k: int) -> Vector:
+    """Return the coefficients of x, p and u of order k."""
+    return Vector(get_row(c.x, k), get_row(c.p, k), get_row(c.u, k))
+
+
+@inlined
+def _velocity(c: LaneSeries, k: int) -> Vector:
+    """Return the coefficients of w, v and s of order k."""
+    return Vector(get_row(c.w, k), get_row(c.v, k), get_row(c.s, k))
+
+
+@inlined
+def plus_multiple(total: Vector, factor: Any, vector: Vector) -> Vector:
+    """Return total + factor vector, each component rounded once."""
+    return Vector(
+        fma(total.x, factor, vector.x),
+        fma(total.p, factor, vector.p),
+        fma(total.u, factor, vector.u),
     )
-    x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
-    w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
-    # what comes last in the chain of dependent operations is added last
+
+
+@inlined
+def _dot(a: Vector, b: Vector) -> Any:
+    """Return the scalar product a·b."""
+    return fma(fma(a.x * b.x, a.p, b.p), a.u, b.u)
+
+
+@inlined
+def _next_order(c: LaneSeries, state: Array, k: int, pulled: Vector) -> None:
+    """Write the coefficients of order k + 1 from those of order k; `pulled` is order k of λ x, λ p and λ u."""
+    # one name for each symbol of the formulas above, one statement for each formula;
+    # the last term of the chain of dependent operations is added last
     zero = spread(0.0)
-    xdot = w + fma(ou * p, zero - op, u)
-    udot = fma(s, op, x)
-    store(c.xdot, at, xdot)
-    store(c.udot, at, udot)
-    store(c.x, to, xdot * share)
-    store(c.p, to, fma(v, zero - ou, x) * share)
-    store(c.u, to, udot * share)
-    store(c.tension, to, fma(op * x, s, spread(3.0)) * (less * pull))
-    store(c.w, to, (fma(ou * v, zero - op, s) - lx) * share)
+    share = spread(1.0 / (k + 1))
+    minus_share = spread(-1.0 / (k + 1))
+    turn_p = get_row(state, TURN_P)
+    turn_u = get_row(state, TURN_U)
+    pull = get_row(state, PULL)
+    x = get_row(c.x, k)
+    w = get_row(c.w, k)
+    v = get_row(c.v, k)
+    s = get_row(c.s, k)
+
+    xdot = w + fma(turn_u * get_row(c.p, k), zero - turn_p, get_row(c.u, k))
+    udot = fma(s, turn_p, x)
+    set_row(c.xdot, k, xdot)
+    set_row(c.udot, k, udot)
+    set_row(c.x, k + 1, xdot * share)
+    set_row(c.p, k + 1, fma(v, zero - turn_u, x) * share)
+    set_row(c.u, k + 1, udot * share)
+
+    set_row(c.tension, k + 1, fma(turn_p * x, s, spread(3.0)) * (minus_share * pull))
+    set_row(c.w, k + 1, (fma(turn_u * v, zero - turn_p, s) - pulled.x) * share)
     if k == 0:
-        # λ less its value at rest, without cancellation
+        # λ - C - Ω_p², without cancellation
         excess = fma(fma(w * w, v, v), s, s)
-        excess = fma(fma(excess, (zero - op) - op, w), zero - pull, u)
-        store(c.v, to, (ou * (op - w) - lp) * share)
-        store(c.s, to, (fma(excess, op, w) - lu) * share)
+        excess = fma(fma(excess, (zero - turn_p) - turn_p, w), zero - pull, get_row(c.u, 0))
+        set_row(c.v, 1, (turn_u * (turn_p - w) - pulled.p) * share)
+        set_row(c.s, 1, (fma(excess, turn_p, w) - pulled.u) * share)
     else:
-        store(c.v, to, (ou * w + lp) * less)
-        store(c.s, to, (fma(load(c.tension, at), op, w) - lu) * share)
+        set_row(c.v, k + 1, (turn_u * w + pulled.p) * minus_share)
+        set_row(c.s, k + 1, (fma(get_row(c.tension, k), turn_p, w) - pulled.u) * share)
+
+
+@inlined
+def _multiple(factor: Any, vector: Vector) -> Vector:
+    """Return factor vector."""
+    return Vector(factor * vector.x, factor * vector.p, factor * vector.u)
+
+
+@inlined
+def _set_order_zero(c: LaneSeries, state: Array) -> None:
+    """Write the coefficients of order 0 from the state."""
+    set_row(c.x, 0, get_row(state, X))
+    set_row(c.p, 0, get_row(state, P))
+    set_row(c.u, 0, get_row(state, U))
+    set_row(c.w, 0, get_row(state, W))
+    set_row(c.v, 0, get_row(state, V))
+    set_row(c.s, 0, get_row(state, S))
+
+    # λ = V·V + C (1 - u)
+    inertial = Vector(get_row(c.w, 0) - get_row(state, TURN_P), get_row(c.v, 0), get_row(c.s, 0))
+    below_top = spread(1.0) - get_row(c.u, 0)
+    set_row(c.tension, 0, fma(_dot(inertial, inertial), get_row(state, PULL), below_top))
 
 
 @compiled
 def taylor_coefficients(c: LaneSeries, state: Array, order: int) -> None:
     """Fill the coefficients from the state and the constants, a row of eight for each of `rows`' columns."""
-    for array, column in ((c.x, X), (c.p, P), (c.u, U), (c.w, W), (c.v, V), (c.s, S)):
-        store(array, 0, load(state, LANES * column))
-    x0, p0, u0, op = load(c.x, 0), load(c.p, 0), load(c.u, 0), load(state, LANES * TURN_P)
-    w, v, s = load(c.w, 0) - op, load(c.v, 0), load(c.s, 0)
-    l0 = fma(fma(fma(w * w, v, v), s, s), load(state, LANES * PULL), spread(1.0) - u0)
-    store(c.tension, 0, l0)
-    _next_order(c, state, 0, l0 * x0, l0 * p0, l0 * u0)
-    x1, p1, u1, l1 = load(c.x, LANES), load(c.p, LANES), load(c.u, LANES), load(c.tension, LANES)
-    _next_order(c, state, 1, fma(l0 * x1, l1, x0), fma(l0 * p1, l1, p0), fma(l0 * u1, l1, u0))
+    _set_order_zero(c, state)
+    n0 = position(c, 0)
+    tension0 = get_row(c.tension, 0)
+    _next_order(c, state, 0, _multiple(tension0, n0))
+
+    n1 = position(c, 1)
+    tension1 = get_row(c.tension, 1)
+    _next_order(c, state, 1, plus_multiple(_multiple(tension0, n1), tension1, n0))
+
+    zero = spread(0.0)
     for k in range(2, order, 2):
-        # orders k and k + 1 together: each coefficient that is loaded serves both
-        ax = ap = au = bx = bp = bu = spread(0.0)
-        after = load(c.tension, LANES * (k - 1))
+        # orders k and k + 1 of λ n together: each coefficient that is loaded serves both
+        pulled = Vector(zero, zero, zero)
+        pulled_next = Vector(zero, zero, zero)
+        tension_next = get_row(c.tension, k - 1)
         for j in range(2, k):
-            at = LANES * j
-            pull, x, p, u = (
-                load(c.tension, LANES * (k - j)),
-                load(c.x, at),
-                load(c.p, at),
-                load(c.u, at),
-            )
-            ax, ap, au = fma(ax, pull, x), fma(ap, pull, p), fma(au, pull, u)
-            bx, bp, bu = fma(bx, after, x), fma(bp, after, p), fma(bu, after, u)
-            after = pull
-        at = LANES * k
-        before, pull = load(c.tension, at - LANES), load(c.tension, at)
-        x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
-        ax, ap, au = fma(ax, before, x1), fma(ap, before, p1), fma(au, before, u1)
-        ax, ap, au = (
-            fma(fma(ax, pull, x0), l0, x),
-            fma(fma(ap, pull, p0), l0, p),
-            fma(fma(au, pull, u0), l0, u),
-        )
-        _next_order(c, state, k, ax, ap, au)
-        bx, bp, bu = (
-            fma(fma(bx, pull, x1), l1, x),
-            fma(fma(bp, pull, p1), l1, p),
-            fma(fma(bu, pull, u1), l1, u),
-        )
-        at += LANES
-        pull, x, p, u = load(c.tension, at), load(c.x, at), load(c.p, at), load(c.u, at)
-        bx, bp, bu = (
-            fma(fma(bx, pull, x0), l0, x),
-            fma(fma(bp, pull, p0), l0, p),
-            fma(fma(bu, pull, u0), l0, u),
-        )
-        _next_order(c, state, k + 1, bx, bp, bu)
+            n = position(c, j)
+            tension = get_row(c.tension, k - j)
+            pulled = plus_multiple(pulled, tension, n)
+            pulled_next = plus_multiple(pulled_next, tension_next, n)
+            tension_next = tension
+
+        # the products with orders 0 and 1
+        n = position(c, k)
+        tension = get_row(c.tension, k)
+        pulled = plus_multiple(pulled, get_row(c.tension, k - 1), n1)
+        pulled = plus_multiple(pulled, tension, n0)
+        pulled = plus_multiple(pulled, tension0, n)
+        _next_order(c, state, k, pulled)
+
+        pulled_next = plus_multiple(pulled_next, tension, n1)
+        pulled_next = plus_multiple(pulled_next, tension1, n)
+        pulled_next = plus_multiple(pulled_next, get_row(c.tension, k + 1), n0)
+        pulled_next = plus_multiple(pulled_next, tension0, position(c, k + 1))
+        _next_order(c, state, k + 1, pulled_next)
 
 
 @inlined
 def _size(c: LaneSeries, k: int) -> Any:
-    return larger(magnitude(load(c.x, LANES * k)), magnitude(load(c.p, LANES * k)))
+    """Return the larger of the coefficients of x and p of order k."""
+    return larger(magnitude(get_row(c.x, k)), magnitude(get_row(c.p, k)))
 
 
 @inlined
 def step_length(c: LaneSeries, order: int) -> Any:
     """Return how far the series reaches: to where its last two coefficients are TOLERANCE of the motion.
 
-    The height u is left out: what its tail lacks is put right when n is put back on the sphere.
+    The height u is left out: the error of its tail is corrected when n is projected onto the sphere.
     """
-    scale, zero = (
-        larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE),
-        spread(0.0),
-    )
-    last = log2_of(_size(c, order) / scale) * spread(1.0 / order)
-    other = log2_of(_size(c, order - 1) / scale) * spread(1.0 / (order - 1))
-    return exp2_of(zero - larger(larger(last, other), spread(-LONGEST)))
+    scale = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE)
+    # -log2 of the length by either coefficient, and the larger of the two
+    by_last = log2_of(_size(c, order) / scale) * spread(1.0 / order)
+    by_last_but_one = log2_of(_size(c, order - 1) / scale) * spread(1.0 / (order - 1))
+    inverse = larger(larger(by_last, by_last_but_one), spread(-LONGEST))
+    return exp2_of(spread(0.0) - inverse)
 
 
 @compiled
 def sum_series(state: Array, c: LaneSeries, length: Array, order: int) -> None:
-    """Write the state at the end of the step, put back on the sphere."""
-    r, zero = load(length, 0), spread(0.0)
-    x = p = u = w = v = s = zero
+    """Write the state at the end of the step, projected onto the sphere."""
+    h = get_row(length, 0)
+    zero = spread(0.0)
+    n = Vector(zero, zero, zero)
+    velocity = Vector(zero, zero, zero)
     for k in range(order, -1, -1):
-        at = LANES * k
-        x, p, u = fma(load(c.x, at), x, r), fma(load(c.p, at), p, r), fma(load(c.u, at), u, r)
-        w, v, s = fma(load(c.w, at), w, r), fma(load(c.v, at), v, r), fma(load(c.s, at), s, r)
-    half = fma(fma(x * x, p, p), u, u - spread(2.0)) * spread(-0.5)
-    x, p, u = fma(x, half, x), fma(p, half, p), fma(u, half, u - spread(1.0))
-    down = u - spread(1.0)
-    outward = zero - fma(fma((w - load(state, LANES * TURN_P)) * x, v, p), s, down)
-    store(state, LANES * X, x)
-    store(state, LANES * P, p)
-    store(state, LANES * U, u)
-    store(state, LANES * W, fma(w, outward, x))
-    store(state, LANES * V, fma(v, outward, p))
-    store(state, LANES * S, fma(s, outward, down))
+        n = plus_multiple(position(c, k), h, n)
+        velocity = plus_multiple(_velocity(c, k), h, velocity)
+    _project(state, n, velocity)
 
 
 @inlined
-def _form(state: Array, x: Any, p: Any, u: Any, xdot: Any, pdot: Any, udot: Any) -> Any:
+def _project(state: Array, n: Vector, velocity: Vector) -> None:
+    """Write a state, its n lengthened to 1 and its V without the part along n."""
+    half_excess = _dot(n, Vector(n.x, n.p, n.u - spread(2.0))) * spread(-0.5)
+    x = fma(n.x, half_excess, n.x)
+    p = fma(n.p, half_excess, n.p)
+    u = fma(n.u, half_excess, n.u - spread(1.0))
+    on_sphere = Vector(x, p, u - spread(1.0))
+
+    inertial = Vector(velocity.x - get_row(state, TURN_P), velocity.p, velocity.u)
+    inward = spread(0.0) - _dot(inertial, on_sphere)
+    tangent = plus_multiple(velocity, inward, on_sphere)
+
+    set_row(state, X, x)
+    set_row(state, P, p)
+    set_row(state, U, u)
+    set_row(state, W, tangent.x)
+    set_row(state, V, tangent.p)
+    set_row(state, S, tangent.u)
+
+
+@inlined
+def _form(state: Array, n: Vector, rate: Vector) -> Any:
     """Return a·n + b·n'."""
-    total = fma(load(state, LANES * FORM) * x, load(state, LANES * (FORM + 1)), p)
-    total = fma(
-        fma(total, load(state, LANES * (FORM + 2)), u), load(state, LANES * (FORM + 3)), xdot
-    )
-    return fma(
-        fma(total, load(state, LANES * (FORM + 4)), pdot), load(state, LANES * (FORM + 5)), udot
-    )
+    a = Vector(get_row(state, FORM), get_row(state, FORM + 1), get_row(state, FORM + 2))
+    total = _dot(a, n)
+    total = fma(total, get_row(state, FORM + 3), rate.x)
+    total = fma(total, get_row(state, FORM + 4), rate.p)
+    return fma(total, get_row(state, FORM + 5), rate.u)
 
 
 @compiled
 def put_form(c: LaneSeries, state: Array, order: int) -> None:
     """Put the coefficients of the rows' forms in the place of those of x'."""
     for k in range(order):
-        at = LANES * k
-        pdot = load(c.p, at + LANES) * spread(k + 1.0)
-        total = _form(
-            state,
-            load(c.x, at),
-            load(c.p, at),
-            load(c.u, at),
-            load(c.xdot, at),
-            pdot,
-            load(c.udot, at),
-        )
-        store(c.xdot, at, total - load(state, LANES * (FORM + 6)) if k == 0 else total)
+        pdot = get_row(c.p, k + 1) * spread(k + 1.0)
+        rate = Vector(get_row(c.xdot, k), pdot, get_row(c.udot, k))
+        set_row(c.xdot, k, _form(state, position(c, k), rate))
+    set_row(c.xdot, 0, get_row(c.xdot, 0) - get_row(state, FORM + 6))
 
 
 @inlined
 def form_of(state: Array) -> Any:
     """Return the form of a state."""
-    x, p, u = load(state, LANES * X), load(state, LANES * P), load(state, LANES * U)
-    pdot = load(state, LANES * V) - load(state, LANES * TURN_U) * x
-    return _form(state, x, p, u, xdot_of(state), pdot, udot_of(state)) - load(
-        state, LANES * (FORM + 6)
-    )
+    n = Vector(get_row(state, X), get_row(state, P), get_row(state, U))
+    pdot = get_row(state, V) - get_row(state, TURN_U) * n.x
+    rate = Vector(xdot_of(state), pdot, udot_of(state))
+    return _form(state, n, rate) - get_row(state, FORM + 6)
 
 
 @inlined
 def xdot_of(state: Array) -> Any:
     """Return x' of a state."""
-    turned = fma(load(state, LANES * W), load(state, LANES * TURN_U), load(state, LANES * P))
-    return turned - load(state, LANES * TURN_P) * load(state, LANES * U)
+    inertial = fma(get_row(state, W), get_row(state, TURN_U), get_row(state, P))
+    return inertial - get_row(state, TURN_P) * get_row(state, U)
 
 
 @inlined
 def udot_of(state: Array) -> Any:
     """Return u' of a state."""
-    return fma(load(state, LANES * S), load(state, LANES * TURN_P), load(state, LANES * X))
+    return fma(get_row(state, S), get_row(state, TURN_P), get_row(state, X))

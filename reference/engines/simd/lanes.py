@@ -1,11 +1,12 @@
 """How functions are compiled, and SIMD lanes: eight doubles side by side, in any machine's vector registers.
 
-No option lets arithmetic be rearranged, and the same bits come out with and without FMA, on every machine. In limbs
+No option allows arithmetic to be rearranged, and the bits are the same with and without FMA, on every machine. In limbs
 sums and products are exact, so it makes no difference whether the compiler fuses them (`plus_product`); in octet each
 is rounded once (`fma`).
 
-numba optimises a function by itself, and again in its callers, in their callers and so on. So what is called at one
-place, and is large, is `merged` into its caller: a first use takes a third less.
+numba optimises a function by itself, then again in each of its callers, in their callers and so on. So a large
+function with a single caller is `merged` into it: compiling takes a third less. An array is passed as seven numbers:
+a function that takes many arrays and is called at every step has to be `inlined`, or the call is most of the work.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 # no reference counting: arrays come from the caller
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
-_CALLEE = OPTIONS | {"no_cfunc_wrapper": True}  # C does not call it
+_CALLEE = OPTIONS | {"no_cfunc_wrapper": True}  # not called from C
 
 
 def compiled(function: Function) -> Function:
@@ -43,15 +44,15 @@ def inlined(function: Function) -> Function:
 
 
 def merged(function: Function) -> Function:
-    """Take the place of the only call, before anything is compiled."""
+    """Copy into the caller before anything is compiled: for large functions that are called at one place."""
     callee: Function = njit(inline="always", **OPTIONS)(function)
     return callee
 
 
 LANES = 8
-VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-ZERO = ir.Constant(VECTOR, [0.0] * LANES)
-FUSE = ("contract",)
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_ZERO = ir.Constant(_VECTOR, [0.0] * LANES)
+_FUSE = ("contract",)
 _extending: Any = numba.extending  # untyped
 _insert: Any = cgutils.get_or_insert_function
 _Type: Any = types.Type
@@ -74,7 +75,7 @@ Lanes: Any = _Lanes(name="Lanes")
 @_extending.register_model(_Lanes)
 class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, lanes_type: Any) -> None:
-        super().__init__(manager, lanes_type, VECTOR)
+        super().__init__(manager, lanes_type, _VECTOR)
 
 
 def instruction(generator: Any) -> Any:
@@ -82,31 +83,47 @@ def instruction(generator: Any) -> Any:
     return _extending.intrinsic(generator)
 
 
-_BLANK, _FIRST = ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.IntType(32), 0)
+_BLANK = ir.Constant(_VECTOR, ir.Undefined)
+_FIRST = ir.Constant(ir.IntType(32), 0)
 _EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
 
 
 def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
-    """Return what LLVM's function of this name makes of vectors."""
+    """Return the call of LLVM's function of this name with vectors."""
     function = _insert(
-        builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64"
+        builder.module,
+        ir.FunctionType(_VECTOR, [_VECTOR] * len(vectors)),
+        f"llvm.{name}.v{LANES}f64",
     )
     return builder.call(function, vectors)
 
 
-def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+def _address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
     """Return the pointer to eight elements of a flat array, from `index` on."""
     data = context.make_array(array_type)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
+
+
+def _load(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+    """Return the instruction that loads eight elements of a flat array, from `index` on."""
+    vector = builder.load(_address(context, builder, array_type, array, index))
+    vector.align = 8
+    return vector
+
+
+def _store(context: Any, builder: Any, array_type: Any, array: Any, index: Any, value: Any) -> None:
+    """Add the instruction that stores eight elements of a flat array, from `index` on."""
+    write = builder.store(value, _address(context, builder, array_type, array, index))
+    write.align = 8
 
 
 def lanewise(write: Callable[..., Any], taken: Any = Lanes, result: Any = Lanes) -> Any:
-    """Register `write(builder, *vectors)`, which makes eight doubles of one or more eights, as a compiled function.
+    """Register `write(builder, *vectors)`, which returns eight doubles, as a compiled function.
 
     Args:
-        write: makes the instructions.
-        taken: the type of what it takes, where that is not eights.
-        result: the type of what it makes, likewise.
+        write: generates the instructions.
+        taken: the type of its arguments, if not eight doubles.
+        result: the type of its result, likewise.
     """
 
     @wraps(write)
@@ -124,9 +141,7 @@ def load(_: Any, array: Any, index: Any) -> Any:
     """Return eight elements of a flat array from `index` on."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        vector = builder.load(address(context, builder, signature.args[0], *arguments))
-        vector.align = 8
-        return vector
+        return _load(context, builder, signature.args[0], *arguments)
 
     return Lanes(array, types.intp), generate
 
@@ -136,13 +151,38 @@ def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     """Write eight elements of a flat array from `index` on."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        write = builder.store(
-            arguments[2], address(context, builder, signature.args[0], *arguments[:2])
-        )
-        write.align = 8
+        _store(context, builder, signature.args[0], *arguments)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, Lanes), generate
+
+
+@instruction
+def get_row(_: Any, array: Any, row: Any) -> Any:
+    """Return a row of eight elements of a flat array: those from `LANES * row` on."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        rows, row = arguments
+        return _load(context, builder, signature.args[0], rows, _first_of(builder, row))
+
+    return Lanes(array, types.intp), generate
+
+
+@instruction
+def set_row(_: Any, array: Any, row: Any, value: Any) -> Any:
+    """Write a row of eight elements of a flat array: those from `LANES * row` on."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        rows, row, vector = arguments
+        _store(context, builder, signature.args[0], rows, _first_of(builder, row), vector)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, Lanes), generate
+
+
+def _first_of(builder: Any, row: Any) -> Any:
+    """Return the index of a row's first element."""
+    return builder.mul(row, ir.Constant(row.type, LANES))
 
 
 @partial(lanewise, taken=types.float64)
@@ -156,7 +196,7 @@ def spread(builder: Any, value: Any) -> Any:
 @lanewise
 def plus_product(builder: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, where both operations are exact: the compiler may fuse them."""
-    return builder.fadd(total, builder.fmul(a, b, flags=FUSE), flags=FUSE)
+    return builder.fadd(total, builder.fmul(a, b, flags=_FUSE), flags=_FUSE)
 
 
 @lanewise
@@ -174,14 +214,14 @@ def nearest(builder: Any, a: Any) -> Any:
 @partial(lanewise, result=types.boolean)
 def occupied(builder: Any, a: Any) -> Any:
     """Return true if any lane is not zero."""
-    whole = builder.bitcast(builder.fcmp_unordered("!=", a, ZERO), ir.IntType(LANES))
+    whole = builder.bitcast(builder.fcmp_unordered("!=", a, _ZERO), ir.IntType(LANES))
     return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
 
 @lanewise
 def at_least(builder: Any, a: Any, b: Any) -> Any:
     """Return 1 in each lane where a >= b, else 0."""
-    return builder.uitofp(builder.fcmp_ordered(">=", a, b), VECTOR)
+    return builder.uitofp(builder.fcmp_ordered(">=", a, b), _VECTOR)
 
 
 @lanewise
@@ -199,27 +239,29 @@ def larger(builder: Any, a: Any, b: Any) -> Any:
 @lanewise
 def where(builder: Any, truth: Any, a: Any, b: Any) -> Any:
     """Return a in each lane where `truth` is not zero, else b."""
-    return builder.select(builder.fcmp_unordered("!=", truth, ZERO), a, b)
+    return builder.select(builder.fcmp_unordered("!=", truth, _ZERO), a, b)
 
 
 _WHOLES = ir.VectorType(ir.IntType(64), LANES)
-_SCALE, _BIAS = 2.0**52, 1023.0
+# of the bits of a double, read as an integer: the exponent's unit, and what is added to the exponent
+_SCALE = 2.0**52
+_BIAS = 1023.0
 
 
 @lanewise
 def log2_of(builder: Any, a: Any) -> Any:
-    """Return log2 of positive numbers, off by at most 0.09: exact for powers of two, linear between them."""
-    whole = builder.sitofp(builder.bitcast(a, _WHOLES), VECTOR)
-    scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
-    return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
+    """Return log2 of positive numbers, with an error of at most 0.09: exact for powers of two, linear between them."""
+    whole = builder.sitofp(builder.bitcast(a, _WHOLES), _VECTOR)
+    scaled = builder.fmul(whole, ir.Constant(_VECTOR, [1.0 / _SCALE] * LANES))
+    return builder.fsub(scaled, ir.Constant(_VECTOR, [_BIAS] * LANES))
 
 
 @lanewise
 def exp2_of(builder: Any, a: Any) -> Any:
     """Return the inverse of `log2_of`, for numbers between -1022 and 1023."""
-    raised = builder.fadd(a, ir.Constant(VECTOR, [_BIAS] * LANES))
-    scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
-    return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
+    raised = builder.fadd(a, ir.Constant(_VECTOR, [_BIAS] * LANES))
+    scaled = builder.fmul(raised, ir.Constant(_VECTOR, [_SCALE] * LANES))
+    return builder.bitcast(builder.fptosi(scaled, _WHOLES), _VECTOR)
 
 
 def shuffled(order: tuple[int, ...], name: str) -> Any:
@@ -229,7 +271,7 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
     )
 
     def shuffle(builder: Any, a: Any) -> Any:
-        return builder.shuffle_vector(a, ZERO, places)
+        return builder.shuffle_vector(a, _ZERO, places)
 
     shuffle.__name__ = shuffle.__qualname__ = name
     return lanewise(shuffle)

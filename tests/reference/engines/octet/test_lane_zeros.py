@@ -14,7 +14,7 @@ pytest.importorskip("flint")
 import flint
 import numba
 
-from reference.engines.octet.lane_zeros import CONVERGED, all_zeros, refine, seek
+from reference.engines.octet.lane_zeros import CONVERGED, LanePolynomial, all_zeros, refine, seek
 from reference.engines.octet.march import empty_march
 from reference.engines.simd.lanes import LANES
 
@@ -27,16 +27,17 @@ def search():
 
     @numba.njit(error_model="numpy")
     def on_lanes(m, order):
-        seek(m.transits, m.c.xdot, m.length, m.time, order)
-        refine(m.transits, m.c.xdot, m.length, order, CONVERGED)
+        seek(m.transits, m.series.xdot, m.length, m.time, order)
+        refine(m.transits, m.series.xdot, m.length, order, CONVERGED)
 
     @numba.njit(error_model="numpy")
     def on_one(m, lane, multiplicity, order):
-        return all_zeros(m.w, m.transits, m.c.xdot, lane, m.length[lane], multiplicity, order)
+        polynomial = LanePolynomial(m.series.xdot, lane, order, m.length[lane])
+        return all_zeros(m.bisection, m.transits, polynomial, multiplicity)
 
     def of(polynomials, lengths):
         m = empty_march()
-        m.c.xdot.reshape(-1, LANES)[:ORDER] = polynomials.T
+        m.series.xdot.reshape(-1, LANES)[:ORDER] = polynomials.T
         m.length[:], m.transits.sought[:] = lengths, 1.0
         m.time[:] = 1.0
         m.transits.before[:] = polynomials[:, 0]
@@ -88,7 +89,11 @@ def test_lanes_are_right_about_the_zeros_they_are_sure_of_and_bisection_finds_th
             exact = real_zeros(many[lane], lengths[lane])
             if z.doubt[lane]:
                 count = bisected(lane)
-                found, slopes, long = m.w.places[:count].copy(), m.w.slopes[:count].copy(), long + 1
+                found, slopes, long = (
+                    m.bisection.places[:count].copy(),
+                    m.bisection.slopes[:count].copy(),
+                    long + 1,
+                )
             else:
                 found, slopes, sure = (
                     z.place[[lane]][z.hit[[lane]] > 0],
@@ -117,7 +122,7 @@ def test_a_zero_of_a_half_that_newton_overshoots_stays_in_its_half(search):
         places = m.transits.place[[lane]]
         if m.transits.doubt[lane]:
             assert bisected(lane) == (1 if m.length[lane] > (np.pi - 0.2) / 3 else 0)
-            places = m.w.places[:1]
+            places = m.bisection.places[:1]
         if m.length[lane] > (np.pi - 0.2) / 3:
             assert abs(places[0] - (np.pi - 0.2) / 3) < 1e-12  # the series is cut off at order 24
 

@@ -34,7 +34,7 @@ def coefficients():
 
     @numba.njit(error_model="numpy")
     def fill(m, order):
-        taylor_coefficients(m.c, m.state, order)
+        taylor_coefficients(m.series, m.state, order)
 
     def of(many):
         rows, m = rows_of(many), empty_march()
@@ -42,7 +42,8 @@ def coefficients():
         m.state.reshape(-1, LANES)[:, : len(many)] = numbers
         fill(m, ORDER)
         x, p, u = (
-            array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u)
+            array.reshape(-1, LANES)[: ORDER + 1, : len(many)]
+            for array in (m.series.x, m.series.p, m.series.u)
         )
         return x, p, u, numbers[UNIT], rows
 
