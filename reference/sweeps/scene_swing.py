@@ -10,7 +10,7 @@ from ..model.start import Start
 from ..scenes.scene import AnyScene, as_scene
 from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, ONE_SIDE, SMALL, offset, turns_too_far
 from .part import highest_on_one_side, solve_part
-from .request import request
+from .request import Settings, request
 
 MOST_SWINGS = 10_000  # that are followed
 PREC = 96  # bits of the plumb line and the rest position
@@ -70,7 +70,7 @@ def swing(scene: AnyScene) -> EstimatedSwing:
     longest = MOST_SWINGS * 2 * math.pi / start.fastest_rate
     if scene.exact.t_end > longest:
         scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
-    one_row = request(scene, [f"site.latitude={scene.site.latitude}"], want=WANT)
+    one_row = request(scene, [f"site.latitude={scene.site.latitude}"], settings=Settings(want=WANT))
     columns = solve_part(one_row, range(1), promote=None).columns
     row = {name: values[0] for name, values in columns.items()}
     hz = float(row["swing_hz"])

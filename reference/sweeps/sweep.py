@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
 from ..engines import AUTO
 from ..errors import InputError, check_whole, checked_path
@@ -17,7 +16,7 @@ from ..system.workers import usable_cores
 from .driver import Executor, drive, on_this_machine
 from .part import Part, Tally
 from .promote import audited
-from .request import Request, request
+from .request import Request, Settings, request
 from .store import PLAN, Store
 from .swept import Swept
 
@@ -80,52 +79,59 @@ def sweep(
     folder = None if out is None else checked_path("out", out, "a folder")
     if workers is not None:
         check_whole("workers", workers, words="a whole number from 1, or None for one a core")
-    quantities = want.split(",") if isinstance(want, str) else words_of(want)
-    options = {
-        "want": quantities,
-        "level": level,
-        "digits": digits,
-        "tolerance": tolerance,
-        "engine": engine,
-    }
+    settings = Settings(
+        want=want.split(",") if isinstance(want, str) else words_of(want),
+        level=level,
+        digits=digits,
+        tolerance=tolerance,
+        engine=engine,
+        audit=audit_rows,
+    )
     run_values = {"run.t_end": t_end, "run.sections": sections}
     scene = as_scene(scene).with_values(
         {key: value for key, value in run_values.items() if value is not None}
     )
-    request = asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options)
+    request = checked_request(scene, words_of(over), file, folder, settings)
     return run(request, folder, workers, cluster, report)
 
 
-def asked_for(
+def checked_request(
     scene: Scene,
-    over: Iterable[str] = (),
-    rows: Path | None = None,
-    out: Path | None = None,
-    **options: Any,
+    over: Iterable[str],
+    rows: Path | None,
+    out: Path | None,
+    settings: Settings,
 ) -> Request:
-    """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `request.request`.
+    """Return the request of a sweep into a folder, or in memory without one; arguments as those of `sweep`.
 
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.
     """
-    if out is not None and options.get("engine", AUTO) == AUTO and (out / PLAN).exists():
-        options["engine"] = Store.opened(out).request.engine  # a sweep goes on as it began
-    checked = request(scene, over, rows, **options)
-    count = checked.table.count
     if out is None:
-        if count > MOST_IN_MEMORY:
-            raise InputError(
-                "--out",
-                "nothing",
-                f"a folder, for more than {MOST_IN_MEMORY:,} rows",
-                "Give --out DIR.",
-            )
-        return replace(
-            checked, rows_per_part=min(checked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES)))
-        )
-    if options.get("audit") is None:
-        return replace(checked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
-    return checked
+        return _in_memory(request(scene, over, rows, settings))
+    if settings.engine == AUTO and (out / PLAN).exists():
+        # a sweep goes on with the engine that it began with
+        settings = replace(settings, engine=Store.opened(out).request.engine)
+    checked = request(scene, over, rows, settings)
+    if settings.audit is not None:
+        return checked
+    count = checked.table.count
+    audit = max(count // AUDITED, LEAST_AUDIT)
+    return replace(checked, audit=min(audit, MOST_AUDIT, count))
+
+
+def _in_memory(checked: Request) -> Request:
+    """Return a request with parts small enough for all workers to have some.
+
+    Raises:
+        InputError: there are too many rows.
+    """
+    count = checked.table.count
+    if count > MOST_IN_MEMORY:
+        expected = f"a folder, for more than {MOST_IN_MEMORY:,} rows"
+        raise InputError("--out", "nothing", expected, "Give --out DIR.")
+    piece = max(LEAST_PIECE, -(-count // PIECES))
+    return replace(checked, rows_per_part=min(checked.rows_per_part, piece))
 
 
 def load_sweep(folder: str | Path) -> Swept:
