@@ -38,11 +38,11 @@ _FIXED = (
     "run.transits",
     "run.sections",
 )
-MOST_ROWS = 10**8
+_MOST_ROWS = 10**8
 MOST_VALUES = 10**7  # of a field: they are held as text
-MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
-FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
-PARQUET = (".parquet", ".pq")
+_MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
+_FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
+_PARQUET = (".parquet", ".pq")
 # thousands, or a decimal comma before three digits
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
@@ -199,8 +199,8 @@ def grid(words: Iterable[str], reading: Reading) -> AxisTable:
         values[read.key] = read.values
         typed[read.key] = read.typed
     table = AxisTable(values, typed)
-    if table.count > MOST_ROWS:
-        raise InputError("--over", f"{table.count} rows", f"at most {MOST_ROWS:,} rows")
+    if table.count > _MOST_ROWS:
+        raise InputError("--over", f"{table.count} rows", f"at most {_MOST_ROWS:,} rows")
     return table
 
 
@@ -227,7 +227,7 @@ def axis(word: str, reading: Reading) -> Axis:
     """
     key, sign, typed = (part.strip() for part in word.partition("="))
     if not sign or not typed:
-        raise InputError("--over", word, f"KEY={FORMS}")
+        raise InputError("--over", word, f"KEY={_FORMS}")
     key = full_name(key)
     _check_key("--over", key)
     from_file = typed.startswith("@")
@@ -256,7 +256,7 @@ def _range(key: str, word: str) -> tuple[str, ...]:
     """
     parts = [part.strip() for part in word.split(":")]
     if len(parts) != 3:
-        raise InputError("--over", f"{key}={word}", f"{key}={FORMS}")
+        raise InputError("--over", f"{key}={word}", f"{key}={_FORMS}")
     start, stop, step = (_exactly(key, part) for part in parts)
     if step == 0 or (stop - start) / step < 0:
         raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
@@ -289,7 +289,7 @@ def listed(path: Path) -> AxisTable:
     Raises:
         InputError: it cannot be read, has no rows, or a column is no field that can be varied.
     """
-    if path.suffix.lower() in PARQUET:
+    if path.suffix.lower() in _PARQUET:
         columns = _columns_of_parquet(path)
     else:
         columns = _columns_of_csv("--rows", path)
@@ -306,7 +306,10 @@ def listed(path: Path) -> AxisTable:
 def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
     needed("pyarrow", "sweep", "--rows", "reading Parquet")
-    with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
+    with (
+        _readable("--rows", path),
+        regular(path, "--rows", _MOST_BYTES, "a Parquet file") as stream,
+    ):
         columns = read_columns(stream, _check_size)
     return [(full_name(key), tuple(map(_text, column))) for key, column in columns.items()]
 
@@ -332,7 +335,7 @@ def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]
     The separator is a semicolon or a tab if the first line has one, else a comma. A first column without a name is the
     index of a data frame, and is left out.
     """
-    with _readable(option, path), regular(path, option, MOST_BYTES, "a CSV file") as stream:
+    with _readable(option, path), regular(path, option, _MOST_BYTES, "a CSV file") as stream:
         text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
         first = text.readline()
         separator = next((mark for mark in ";\t" if mark in first), ",")

@@ -150,7 +150,7 @@ def solve_and_save(
 def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
     """Provide workers on this machine.
 
-    If the sweep is interrupted, processes are ended. Threads end after their block of rows, which may take minutes; they
+    If the sweep is interrupted, processes are ended. Threads end after their block of rows, which may take minutes, and
     are not waited for.
 
     Args:

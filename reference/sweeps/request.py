@@ -44,17 +44,17 @@ from .parquet import (
 )
 from .row_constants import ANGLES, POSITION
 
-SCHEMA = 2
-PART_S = 10.0  # CPU seconds of a part, by the cost model
-LEAST_PART = 8  # rows
-MOST_PART = 65_536  # rows
+_SCHEMA = 2
+_PART_S = 10.0  # CPU seconds of a part, by the cost model
+_LEAST_PART = 8  # rows
+_MOST_PART = 65_536  # rows
 # attributes of a request that its document has as they are
 _STORED = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")
-ALL = "all"
-PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
-ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
+_ALL = "all"
+_PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
+_ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
 # CPU seconds of a sweep, above which a line says that a compiled engine would be cheaper
-WORTH_A_LINE_S = 1.0
+_WORTH_A_LINE_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Settings:
         audit: how many rows are solved again in many digits; None where the default is taken.
     """
 
-    want: Sequence[str] = (ALL,)
+    want: Sequence[str] = (_ALL,)
     level: str = "computed"
     digits: int | None = None
     tolerance: float | None = None
@@ -108,18 +108,18 @@ class Settings:
         Raises:
             InputError: a word is no quantity.
         """
-        choices = (*WANTS, TIMES, ALL)
+        choices = (*WANTS, TIMES, _ALL)
         for word in self.want:
             if word not in choices:
                 advice = f"There are {', '.join(WANTS)}."
                 raise unknown("--want", word, "a quantity of a sweep", choices, advice)
         wanted = set(self.want)
-        if ALL in wanted:
+        if _ALL in wanted:
             wanted |= set(WANTS)
         return tuple(word for word in (*WANTS, TIMES) if word in wanted)
 
 
-DEFAULTS = Settings()
+_DEFAULTS = Settings()
 
 
 @checked(frozen=True)
@@ -214,7 +214,7 @@ class Request:
     def document(self) -> dict[str, Any]:
         """Return the request as JSON, all that decides the digits."""
         return {
-            "schema": SCHEMA,
+            "schema": _SCHEMA,
             "scene": self.scene.model_dump(exclude_none=True),
             "over": self.table.typed,
             "values": self.table.stored,
@@ -252,7 +252,7 @@ def request(
     scene: Scene,
     over: Iterable[str] = (),
     rows: Path | None = None,
-    settings: Settings = DEFAULTS,
+    settings: Settings = _DEFAULTS,
 ) -> Request:
     """Return the request of a sweep, checked; the engine and the size of its parts are chosen.
 
@@ -275,7 +275,7 @@ def request(
     table = listed(rows) if rows else grid(words, scene.inputs)
     _check_release(scene, table.values)
     engine = _engine(settings.engine, scene, table.count)
-    row_s = PROMOTED_S if settings.promotes else _row_s(engine, scene)
+    row_s = _PROMOTED_S if settings.promotes else _row_s(engine, scene)
     return Request(
         scene=scene,
         table=table,
@@ -291,9 +291,9 @@ def request(
 
 
 def _rows_per_part(row_s: float) -> int:
-    """Return the power of two of rows that take about `PART_S`, within the limits of a part."""
-    rows = 1 << round(math.log2(max(PART_S / row_s, 1)))
-    return min(max(rows, LEAST_PART), MOST_PART)
+    """Return the power of two of rows that take about `_PART_S`, within the limits of a part."""
+    rows = 1 << round(math.log2(max(_PART_S / row_s, 1)))
+    return min(max(rows, _LEAST_PART), _MOST_PART)
 
 
 def _check_release(scene: Scene, keys: Iterable[str]) -> None:
@@ -311,7 +311,7 @@ def _row_s(engine: Batch, scene: Scene) -> float:
     """Return the CPU seconds that an engine takes for a row, by the small swings in its span and by its sections."""
     start = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
     rate = float(start.ctx.norm(start.k.pull) ** 0.5)
-    swings = ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
+    swings = _ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
     work = sum(engine.section_work[abs(direction_of(word))] for word in scene.run.sections or ())
     return engine.swing_s * swings * (1 + work)
 
@@ -319,7 +319,7 @@ def _row_s(engine: Batch, scene: Scene) -> float:
 def worth_compiling(request: Request) -> str:
     """Return from how many rows it pays to compile an engine that would be cheaper for each, or "" if there is none."""
     row_s = _row_s(batches()[request.engine], request.scene)
-    if request.promotes or row_s * request.table.count < WORTH_A_LINE_S:
+    if request.promotes or row_s * request.table.count < _WORTH_A_LINE_S:
         return ""
     has_drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
     for other in batches().values():

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -137,10 +136,11 @@ class Store:
     def _sound(self, part: int, kind: str) -> bool:
         """Return whether the file of a part exists with the right seal."""
         path = self.path(part, kind)
-        with suppress(FileNotFoundError, InputError):
+        try:
             with regular(path, "--out", _MOST_BYTES, "a part") as stream:
                 return is_sealed(stream.read(), self._named(part, kind))
-        return False
+        except (FileNotFoundError, InputError):
+            return False
 
     def _named(self, part: int, kind: str) -> str:
         """Return the name of a part that its seal covers."""
