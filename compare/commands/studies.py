@@ -1,4 +1,4 @@
-"""`foucault study`, `stability` and `methods`: error against run time, difficult scenes, and what can be compared."""
+"""`foucault study`, `stability`, `methods`: error against run time, difficult scenes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ LIMIT_S = 8.0  # default of --limit in `study`
 STABILITY_LIMIT_S = 3.0  # the same in `stability`
 STEPS_S = "0.1,0.01"  # default of --settings
 PARIS = "paris"  # the scene with whose values a command is tried for its placeholders
-# fields of a scene that make no difference to a study of methods, of precisions, of approximations; and why
+# fields of a scene that make no difference to a study of methods, of precisions, of approximations;
+# and why
 OF_METHODS = {
     "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Methods are given doubles, and are held against the solution for doubles.",

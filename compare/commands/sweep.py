@@ -206,8 +206,8 @@ def _end(swept: Swept) -> None:
     """Name rows that failed, and rows that the audit found wrong; then the exit status is not 0.
 
     Raises:
-        typer.Exit: rows failed, or the audit found a wrong one. The status is that of `UnreachableError` where rows
-            could not reach the level or the digits.
+        typer.Exit: rows failed, or the audit found a wrong one. The status is that of
+            `UnreachableError` if rows could not reach the level or the digits.
     """
     counts = swept.counts
     failed = len(swept) - counts.get(Status.OK.value, 0)

@@ -1,4 +1,4 @@
-"""A sweep as a JSON document, as the text of a terminal, and as a picture: curves over one field, maps over two."""
+"""A sweep as a JSON document, as text, and as a picture: curves over one field, maps over two."""
 
 from __future__ import annotations
 
@@ -48,14 +48,16 @@ def document(
 
     Args:
         swept: the sweep.
-        out: its folder, if it has one: then the rows are left out where there are more than `_ROWS_OF_JSON`.
+        out: its folder, if it has one: then the rows are left out where there are more than
+            `_ROWS_OF_JSON`.
         workers: how many cores were asked for; None for all.
         cluster: address of the scheduler that had the work done, if one had.
     """
     from reference.engines.registry import batches
     from reference.system.workers import usable_cores
 
-    request, tally = swept.request, swept.tally
+    request = swept.request
+    tally = swept.tally
     rows_done = sum(tally.counts.values())
     rows = None
     if out is None or len(swept) <= _ROWS_OF_JSON:
@@ -86,7 +88,7 @@ def document(
 
 
 def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
-    """Return a row of the JSON document: the values of the fields, the results, and the state as a list."""
+    """Return a row of the JSON document: values of the fields, results, and state."""
     values = request.table.texts(number)
     entries: dict[str, Any] = {}
     if len(values) == 1:
@@ -100,7 +102,7 @@ def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
 
 
 def text(swept: Swept, out: Path | None) -> str:
-    """Return the table of a sweep, or where its folder is; then the findings of an audit, statuses and costs."""
+    """Return the table of a sweep or its folder; then findings of an audit, statuses and costs."""
     if out is None:
         lines = _table(swept).lines()
     else:
@@ -114,7 +116,7 @@ def text(swept: Swept, out: Path | None) -> str:
 
 
 def _table(swept: Swept) -> PageTable:
-    """Return the rows as a table: the values of the fields, and the results or why there are none."""
+    """Return the rows as a table: values of the fields, and results or why there are none."""
     request = swept.request
     heads = _heads(request)
     columns = {column.name: column for column in request.columns}
@@ -161,7 +163,10 @@ def _cost_line(swept: Swept) -> str:
 
 
 def _cell(value: Any, error: float | None) -> str:
-    """Return a number with the digits that its error leaves, or ± the error if it is larger; an error in two digits."""
+    """Return a number with the digits that its error leaves, or with ± a larger error.
+
+    An error itself has two digits.
+    """
     if value is None:
         return "–"
     if isinstance(value, int):
@@ -175,7 +180,8 @@ def check(request: Request, path: Path) -> None:
     """Refuse a picture that could not be drawn, before any work.
 
     Raises:
-        InputError: a wrong path, other than one or two fields that are numbers, or neither quantity is wanted.
+        InputError: a wrong path, other than one or two fields that are numbers, or neither quantity
+            is wanted.
     """
     from reference.sweeps.axes import TEXTS
 
@@ -234,7 +240,7 @@ def _curve(panel: Any, x: Array, label: str, values: Array) -> None:
 def _map(
     figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array
 ) -> None:
-    """Draw a map over two fields; its colours are symmetric about 0 if the values have both signs."""
+    """Draw a map over two fields; colours are symmetric about 0 if values have both signs."""
     (key, y), (_, x) = axes
     grid = values.reshape(len(y), len(x))[np.ix_(np.argsort(y), np.argsort(x))]
     low = np.nanmin(grid, initial=np.inf)

@@ -1,4 +1,4 @@
-"""The rows of a sweep: all combinations of the values in `--over` words, or the lines of a file (CSV, Parquet)."""
+"""The rows of a sweep: combinations of the values in `--over` words, or the lines of a file."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 @dataclass(frozen=True)
 class AxisTable:
-    """Rows of exact values: all combinations of the values of fields, the last one fastest, or a list.
+    """Rows of exact values: all combinations of values, the last field fastest, or a list.
 
     Attributes:
         values: of each field that is varied its values as text; in a list one a row.
@@ -85,7 +85,7 @@ class AxisTable:
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
-        """The shape of a column as an array: the numbers of values of the fields, or the length of a list."""
+        """The shape of a column: the numbers of values of the fields, or the length of a list."""
         sizes = tuple(map(len, self.values.values()))
         return sizes[:1] if self.typed is None else sizes
 
@@ -120,7 +120,7 @@ class AxisTable:
         }
 
     def wrong(self, rows: Iterable[int], reading: Reading) -> dict[int, str]:
-        """Return why a value in rows of a list is wrong, by row: the first one that is wrong by itself.
+        """Return, by row of a list, why its first wrong value is wrong by itself.
 
         The values of `--over` words were checked when they were read.
         """
@@ -330,10 +330,10 @@ def _text(value: Any) -> str:
 
 
 def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]]:
-    """Return the columns of a CSV file: the name of each, which may be a value, and the values below it.
+    """Return the columns of a CSV file: a name, which may be a value, and the values below it.
 
-    The separator is a semicolon or a tab if the first line has one, else a comma. A first column without a name is the
-    index of a data frame, and is left out.
+    The separator is a semicolon or a tab if the first line has one, else a comma. A first column
+    without a name is the index of a data frame, and is left out.
     """
     with _readable(option, path), regular(path, option, _MOST_BYTES, "a CSV file") as stream:
         text = io.TextIOWrapper(stream, "utf-8-sig", newline="")

@@ -1,6 +1,7 @@
-"""Clusters through dask.distributed: a scheduler elsewhere, or one on this machine; the only door to dask.
+"""Clusters through dask.distributed, here or on other machines; the only door to dask.
 
-dask sends a part again if its worker is lost. A part that was lost as often as dask allows has killed its workers.
+dask sends a part again if its worker is lost. A part that was lost as often as dask allows has
+killed its workers.
 """
 
 from __future__ import annotations
@@ -80,14 +81,15 @@ class Scheduler:
 
 @contextmanager
 def scheduler_at(address: str) -> Iterator[Scheduler]:
-    """Provide a scheduler whose workers all have the versions that are here; leave it, or end one that is started here.
+    """Provide a scheduler whose workers have our versions; end it if it was started here.
 
     Args:
-        address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's configuration, or local:N for
-            N processes of one thread on this machine.
+        address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's
+            configuration, or local:N for N processes of one thread on this machine.
 
     Raises:
-        InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
+        InputError: no scheduler answers there, it has no workers, or their versions differ from
+            those here.
     """
     # `ClusterError` reports a lost scheduler in one line
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
@@ -107,7 +109,7 @@ def scheduler_at(address: str) -> Iterator[Scheduler]:
 
 
 def _connected(address: str, stack: ExitStack) -> Any:
-    """Return a client of the scheduler that answers at an address, or of one that is started here."""
+    """Return a client of the scheduler at an address, or of one that is started here."""
     if address.startswith(_LOCAL):
         return _started(address, stack)
     if not address.startswith(_SCHEMES):
@@ -125,17 +127,19 @@ def _connected(address: str, stack: ExitStack) -> Any:
 
 
 def _started(address: str, stack: ExitStack) -> Any:
-    """Return a client of a scheduler that is started here with its workers, by an address local:N."""
+    """Return a client of a scheduler that is started here, with N workers for local:N."""
     count = address.removeprefix(_LOCAL)
     if not count.isdigit() or not int(count):
         raise InputError("--cluster", address, "local:N with a number of workers from 1")
-    # dask waits only some seconds for a worker that is started again after its death, even for the last one
+    # dask waits only some seconds for a worker that is started again after its death, even for the
+    # last one
     stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": _FOREVER_S}))
     scratch = stack.enter_context(workspace(Path(gettempdir()), "foucault-dask"))
     stack.enter_context(dask.config.set({"temporary-directory": str(scratch)}))
-    # Ctrl-C reaches the workers as well, and they would print tracebacks. So they begin with signals held back, as do
-    # those that replace them, and this process ends them. The resource tracker of multiprocessing lets signals through
-    # again in the thread that starts it: it is started before.
+    # Ctrl-C reaches the workers as well, and they would print tracebacks. So they begin with
+    # signals held back, as do those that replace them, and this process ends them. The resource
+    # tracker of multiprocessing lets signals through again in the thread that starts it: it is
+    # started before.
     resource_tracker.ensure_running()
     with held():
         try:
@@ -163,7 +167,7 @@ def _check_versions(there: dict[str, Any], here: dict[str, Any], worker: str) ->
 
 
 def _called(versions: dict[str, Any], function: Callable[..., Any], *arguments: Any) -> Any:
-    """Call a function on a worker; it may have joined after the versions of the others were checked."""
+    """Call a function on a worker, which may have joined after the others were checked."""
     _check_versions(get_package_info(_PACKAGES), versions, distributed.get_worker().address)
     return function(*arguments)
 

@@ -1,6 +1,9 @@
-"""Run the parts of a sweep on workers that may die: a part that kills its worker is run again row by row.
+"""Run the parts of a sweep on workers that may die.
 
-Workers on this machine are threads for rows side by side, and processes for rows that the solver solves.
+A part that kills its worker is run again row by row.
+
+Workers on this machine are threads for rows side by side, and processes for rows that the solver
+solves.
 """
 
 from __future__ import annotations
@@ -37,7 +40,8 @@ class Executor:
 
     Attributes:
         workers: how many.
-        begin: begins a part, or some of its rows; the result is that of `solve_and_save`, or `WorkerDied` is raised.
+        begin: begins a part, or some of its rows; the result is that of `solve_and_save`, or
+            `WorkerDied` is raised.
         check: raises if the workers are lost; None if they cannot be.
         compile_s: CPU seconds of compiling.
     """
@@ -61,7 +65,8 @@ def drive(
 ) -> Tally:
     """Run parts to their end; return the tally of all.
 
-    The rows of a part whose worker died are run alone, one after the other: those whose worker dies again are crashed.
+    The rows of a part whose worker died are run alone, one after the other. Those whose worker dies
+    again are crashed.
 
     Args:
         request: the sweep.
@@ -123,7 +128,7 @@ def solve_and_save(
     promote: Promote = promoted,
     stop: threading.Event | None = None,
 ) -> Part:
-    """Return rows solved; where they are a whole part and there is a folder, save them and return their tally alone.
+    """Return rows solved; save a whole part if there is a folder, and return its tally alone.
 
     Raises:
         Interrupted: the event `stop` was set meanwhile.
@@ -150,8 +155,8 @@ def solve_and_save(
 def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
     """Provide workers on this machine.
 
-    If the sweep is interrupted, processes are ended. Threads end after their block of rows, which may take minutes, and
-    are not waited for.
+    If the sweep is interrupted, processes are ended. Threads end after their block of rows, which
+    may take minutes, and are not waited for.
 
     Args:
         request: the sweep.
@@ -199,7 +204,7 @@ def compute(text: str, rows: range, folder: Path | None) -> Part:
 
 
 def isolated(pool: Pool, request: Request, row: int, *, doubtful: bool) -> Promoted:
-    """Return what `promoted` does, from a process of its own: the solver is not made for several threads."""
+    """Call `promoted` in another process: the solver is not made for several threads."""
     try:
         result: Promoted = pool.submit(compute_alone, request.text, row, doubtful).result()
     except WorkerDied as death:
@@ -208,7 +213,7 @@ def isolated(pool: Pool, request: Request, row: int, *, doubtful: bool) -> Promo
 
 
 def compute_alone(text: str, row: int, doubtful: bool) -> Promoted:
-    """Have the solver solve a row in this process; note what it cost, with the processes that it started."""
+    """Solve a row in this process; note its cost, with the processes that the solver started."""
     before_s = _process_s()
     result = promoted(request_of(text), row, doubtful=doubtful)
     return replace(result, cpu_s=_process_s() - before_s)

@@ -1,14 +1,16 @@
-"""Estimates of the errors of rows: from a second run of another order, with every constant and start moved by an ulp.
+"""Estimates of the errors of rows, from a second run.
 
+It has another order, and every constant and start number is moved by an ulp.
 `columns_of` turns results and their errors into columns: no value without its error.
 
-Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
-It may be smaller by chance: hence the factor, and a least difference, which is what half an ulp in the constants may
-do. Errors that have grown to many ulps point in one direction, and so may those of a bob with enough energy to rise to
-the pivot: the errors of the two runs may cancel. Then a third run is moved the other way, and the factor is larger.
+Both runs round differently everywhere, the constants included, so that their difference is of the
+size of the error. It may be smaller by chance: hence the factor, and a least difference, which is
+what half an ulp in the constants may do. Errors that have grown to many ulps point in one
+direction, and so may those of a bob with enough energy to rise to the pivot: the errors of the two
+runs may cancel. Then a third run is moved the other way, and the factor is larger.
 
-`pytest --long tests/campaigns/test_sweeps.py -k error` compares 3,500 random rows of 600 s, 500 of them over the top or
-beyond the horizontal, with limbs at 110 bits.
+`pytest --long tests/campaigns/test_sweeps.py -k error` compares 3,500 random rows of 600 s, 500 of
+them over the top or beyond the horizontal, with limbs at 110 bits.
 """
 
 from __future__ import annotations
@@ -89,7 +91,7 @@ class Passages:
 
 
 def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
-    """Return the errors of a run, from one or two moved runs of its engine, and in which rows a moved run stopped."""
+    """Return the errors of a run by one or two moved runs, and where a moved run stopped."""
     moved = engine.solve(rows, MOVED)
     estimated = errors(rows, run, moved)
     stopped = moved.fate == STOPPED
@@ -105,7 +107,7 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
 
 
 def _is_wild(rows: Rows, estimated: Errors) -> Array:
-    """Return where the errors of two runs may cancel: they have grown, or the bob can rise to the pivot."""
+    """Return where the errors may cancel: they have grown, or the bob can reach the pivot."""
     n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
     reaches_the_pivot = (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
     is_small = estimated.position <= _GROWN * rows.length[:, 0]
@@ -113,16 +115,18 @@ def _is_wild(rows: Rows, estimated: Errors) -> Array:
 
 
 def _farthest(rows: Rows, run: Outcomes, moved: Outcomes, back: Outcomes, again: Any) -> Outcomes:
-    """Return the moved run, with the state of the run that was moved back where that is farther from the run's.
+    """Return the moved run, with the states of `back` where these are farther from the run's.
 
-    `back` has the rows `again` alone.
+    `back` was moved the other way; it has the rows `again` alone.
     """
-    rate, state = rows.rate[again, None], moved.state.copy()
+    rate = rows.rate[again, None]
+    state = moved.state.copy()
 
     def distance(other: Array) -> Array:
         gap = np.abs(other - run.state[again])
-        position, velocity = rate * gap[:, :3], gap[:, 3:]
-        return np.asarray(np.linalg.norm(position, axis=1) + np.linalg.norm(velocity, axis=1))
+        in_position = np.linalg.norm(rate * gap[:, :3], axis=1)
+        in_velocity = np.linalg.norm(gap[:, 3:], axis=1)
+        return np.asarray(in_position + in_velocity)
 
     is_farther = distance(back.state) > distance(state[again])
     state[again[is_farther]] = back.state[is_farther]
@@ -130,15 +134,17 @@ def _farthest(rows: Rows, run: Outcomes, moved: Outcomes, back: Outcomes, again:
 
 
 def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = _FACTOR) -> Errors:
-    """Return the errors of a run: its difference from the moved run times a factor, and what follows from it."""
-    length, rate = rows.length[:, 0], rows.rate
+    """Return the errors of a run: its difference from the moved run times a factor."""
+    length = rows.length[:, 0]
+    rate = rows.rate
     gap = run.state - moved.state
     position_gap = np.linalg.norm(gap[:, :3], axis=1)
     velocity_gap = np.linalg.norm(gap[:, 3:], axis=1)
     speed = np.linalg.norm(run.state[:, 3:], axis=1)
     least_gap = _LEAST_ULPS * np.spacing(length) + _of_constants(rows)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # the error of the phase shows in the position at the lowest point, in the velocity at the highest
+        # an error of the phase shows in the position at the lowest point, and in the velocity at
+        # the highest
         phase_gap = np.where(rate > 0, velocity_gap / rate, 0.0)
         position = factor * np.fmax(position_gap, np.fmax(phase_gap, least_gap))
         least_velocity_gap = np.fmax(rate * position / factor, _LEAST_ULPS * np.spacing(speed))
@@ -164,7 +170,7 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = _
 
 
 def _of_constants(rows: Rows) -> Array:
-    """Return how far constants that are wrong by half an ulp may move the bob in the whole span, in m."""
+    """Return how far half an ulp of the constants may move the bob in the whole span, in m."""
     rate = rows.rate
     reach = np.fmin(fastest_of(rows) / rate, 1.0)
     moved_m: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * _HALF_ULP
@@ -183,8 +189,8 @@ def _of_zeros(
         run: the results.
         position: error of the position, in m.
         velocity: error of the velocity, in m/s.
-        vertical: whether the form is the rate of the height. Of a velocity's error it sees the part along the sphere,
-            and an error of the position turns the velocity.
+        vertical: whether the form is the rate of the height. Of a velocity's error it sees the part
+            along the sphere, and an error of the position turns the velocity.
     """
     length = rows.length[:, 0]
     place, motion = run.state[:, :3], run.state[:, 3:]
@@ -192,7 +198,8 @@ def _of_zeros(
     a, b, d = form[:, :3], form[:, 3:6], form[:, 6]
     value = (a * place).sum(axis=1) + (b * motion).sum(axis=1) - d * length
 
-    a_size, b_size = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
+    a_size = np.linalg.norm(a, axis=1)
+    b_size = np.linalg.norm(b, axis=1)
     speed = np.linalg.norm(motion, axis=1)
     fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
     sine = np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
@@ -211,12 +218,15 @@ def _of_zeros(
 
 
 def bend_of_pairs(rows: Rows, angle: Array) -> Array:
-    """Return a bound of |d²xdot/dt²| between two close transits of swings up to an angle; NaN where it is not known.
+    """Return a bound of |d²xdot/dt²| between two close transits of swings up to an angle.
 
-    With T the force along the cord over l, x'' = Coriolis - x T. Let M be the bound and h < π/(2ω) the time between the
-    transits: |xdot| <= M h²/8 there, and x'' is zero somewhere, so that |x| <= 2Ω|v|/T + M h³/8. Below 30° T is within
-    0.86 and 1.56 ω², |T'| <= 0.45 ω³, |v| <= 1.1 ω l sin θ and |a| <= 1.2 ω² l sin θ, so that three quarters of M at
-    most come from M itself, and the rest is the Coriolis force's: M < 16 Ω ω² l sin θ.
+    It is NaN where none is known.
+
+    With T the force along the cord over l, x'' = Coriolis - x T. Let M be the bound and h < π/(2ω)
+    the time between the transits: |xdot| <= M h²/8 there, and x'' is zero somewhere, so that |x| <=
+    2Ω|v|/T + M h³/8. Below 30° T is within 0.86 and 1.56 ω², |T'| <= 0.45 ω³, |v| <= 1.1 ω l sin θ
+    and |a| <= 1.2 ω² l sin θ, so that three quarters of M at most come from M itself, and the rest
+    is the Coriolis force's: M < 16 Ω ω² l sin θ.
     """
     turn = np.linalg.norm(rows.turn[..., 0], axis=1)
     is_xdot = (rows.form[..., 0] == XDOT).all(axis=1)
@@ -255,7 +265,8 @@ def passages_listed(word: str, error: Array, zeros: Passages) -> tuple[dict[str,
         zeros: all zeros of its form, also in directions that do not count.
     """
     counting = zeros[zeros.direction * direction_of(word) >= 0]
-    row, t = counting.row, counting.t
+    row = counting.row
+    t = counting.t
     count = np.bincount(row, minlength=len(error))
     first = np.cumsum(count) - count  # the place of a row's first passage
     t_first = np.where(count > 0, np.append(t, np.nan)[first], np.nan)
@@ -307,9 +318,9 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
 def _with_errors(
     columns: dict[str, Any], described: Sequence[Column]
 ) -> tuple[dict[str, Any], Any]:
-    """Return the columns with each error an ulp of its numbers larger, and in which rows a number has no error.
+    """Return the columns, and in which rows a number has no error.
 
-    There the number and its error become NaN.
+    Each error grows by an ulp of its numbers. A number without an error, and its error, become NaN.
     """
     columns = dict(columns)
     unknown: Any = False

@@ -1,4 +1,4 @@
-"""Frequency and precession of rows in double, from their highest points, and estimates of the errors of both.
+"""Frequency and precession of rows from their highest points, and estimates of their errors.
 
 Intervals for one solved scene: solver/swing.py.
 """
@@ -21,7 +21,8 @@ from ..numbers.table import Table
 from ..solver.solution import Solution
 
 HIGHEST = "highest"  # the section from which the swing follows
-# of half a swing, or of half a turn: with larger errors of times or azimuths there is no frequency, or no precession
+# of half a swing, or of half a turn: with larger errors of times or azimuths there is no frequency,
+# or no precession
 LATE = 0.25
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
 _OFFSETS = 3.0  # of the rest position from the plumb line; see `_may_come_in_pairs`
@@ -35,7 +36,7 @@ _SOON = (
 
 
 def swing_and_precession(run: Outcomes) -> tuple[Array, Array]:
-    """Return frequency in Hz and precession in degrees an hour of rows; NaN with fewer than two highest points."""
+    """Return frequency in Hz and precession in degrees an hour; NaN without two highest points."""
     span = run.apsis_last - run.apsis_first
     return (run.apsides - 1) / (2 * span), run.turn / span * DEGREES_PER_HOUR
 
@@ -45,9 +46,10 @@ def errors_of_swing(
 ) -> tuple[Array, Array]:
     """Estimate the errors of the swing's frequency in Hz and of the precession in degrees an hour.
 
-    Let u be the height of the bob over l. At a highest point u' is wrong by the velocity's error times sin θ, and by
-    the speed at which the bob passes times the position's error. Divided by u'' this is the error of the point's time,
-    in which the bob turns about the plumb line. Over the top sin θ may be almost 0, while u'' is not.
+    Let u be the height of the bob over l. At a highest point u' is wrong by the velocity's error
+    times sin θ, and by the speed at which the bob passes times the position's error. Divided by u''
+    this is the error of the point's time, in which the bob turns about the plumb line. Over the top
+    sin θ may be almost 0, while u'' is not.
 
     Args:
         rows: the rows.
@@ -55,14 +57,15 @@ def errors_of_swing(
         position: error of the position, in m.
         velocity: error of the velocity, in m/s.
     """
-    length, rate = rows.length[:, 0], rows.rate
+    length = rows.length[:, 0]
+    rate = rows.rate
     turn = np.linalg.norm(rows.turn[..., 0], axis=1)
     weakest = rate * np.sqrt(run.least_fall * run.least_bend)  # u'' over sin θ
     highest_sine = np.sin(run.largest_angle)
     least_sine = _least_sine(rows, run)
 
-    # Below 45° the bob passes a highest point no faster than on a cone, as seen from the Earth. Above, its energy
-    # bounds the speed; the bob seldom reaches this bound.
+    # Below 45° the bob passes a highest point no faster than on a cone, as seen from the Earth.
+    # Above, its energy bounds the speed; the bob seldom reaches this bound.
     is_low = run.largest_angle < np.pi / 4
     cone_rate = 2 * (rate + 2 * turn)
     offset_rate = 2 * turn**2 / rate
@@ -91,10 +94,11 @@ def _least_sine(rows: Rows, run: Outcomes) -> Array:
 def _errors_of_highest(
     run: Outcomes, time_error: Array, azimuth_error: Array
 ) -> tuple[Array, Array]:
-    """Return the errors of frequency in Hz and precession in degrees an hour, from those of each highest point.
+    """Return the errors of frequency in Hz and precession in degrees an hour.
 
-    Both are NaN where the times are too uncertain to count the points. The error of the precession is NaN too where the
-    azimuths, in rad, are too uncertain to follow the swing plane.
+    `time_error` in s and `azimuth_error` in rad are those of each highest point. Both results are
+    NaN where the times are too uncertain to count the points. The error of the precession is NaN
+    too where the azimuths are too uncertain to follow the swing plane.
     """
     span = run.apsis_last - run.apsis_first
     gaps = run.apsides - 1
@@ -111,7 +115,7 @@ def _errors_of_highest(
 
 
 def unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
-    """Return in which rows the number of highest points is uncertain; the errors are in m and m/s."""
+    """Return where the number of highest points is uncertain; the errors are in m and m/s."""
     has_points = run.apsides > 0
     at_end = has_points & _may_be_highest_at_end(rows, run, position, velocity)
     # the bend consists of two squares, each wrong by twice the relative error of the position
@@ -121,7 +125,7 @@ def unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arra
 
 
 def _may_be_highest_at_end(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
-    """Return where the last highest point may lie on either side of the end: the bob may rise or fall there."""
+    """Return where a highest point may lie on either side of the end: the bob may rise or fall."""
     length = rows.length[:, 0]
     down = _down(rows)
     n = run.state[:, :3] / length[:, None]
@@ -135,14 +139,16 @@ def _may_be_highest_at_end(rows: Rows, run: Outcomes, position: Array, velocity:
 def _may_come_in_pairs(rows: Rows, run: Outcomes) -> Array:
     """Return where pairs of highest points may come and go without being seen.
 
-    Highest points are seen from the plumb line, which is off the middle of the swing by some d, since the centrifugal
-    force moves the rest position. An orbit with semi-axes a and b has two highest points a turn if it is seen from
-    inside the ellipse's evolute, and one if from outside; d < a - b is inside. On the evolute the bend at a highest
-    point times its distance is at most (3ad - d²)/(a + d) < 3d: above 3d no pair comes or goes.
+    Highest points are seen from the plumb line, which is off the middle of the swing by some d,
+    since the centrifugal force moves the rest position. An orbit with semi-axes a and b has two
+    highest points a turn if it is seen from inside the ellipse's evolute, and one if from outside;
+    d < a - b is inside. On the evolute the bend at a highest point times its distance is at most
+    (3ad - d²)/(a + d) < 3d: above 3d no pair comes or goes.
 
-    On a cone of angle θ the Coriolis force sways the angle by cos φ as well, by 2/3 Ω/ω_c sin² θ/cos² θ with
-    ω_c² = ω²/cos θ. The same holds with this added to d, times ω_c²/ω². Of θ the largest angle is known, and the spin
-    s ω about the line: from s² = sin⁴ θ/cos θ follows that cos θ is above 1/(1 + s²) or above the golden section.
+    On a cone of angle θ the Coriolis force sways the angle by cos φ as well, by 2/3 Ω/ω_c sin²
+    θ/cos² θ with ω_c² = ω²/cos θ. The same holds with this added to d, times ω_c²/ω². Of θ the
+    largest angle is known, and the spin s ω about the line: from s² = sin⁴ θ/cos θ follows that cos
+    θ is above 1/(1 + s²) or above the golden section.
     """
     down = _down(rows)
     turn = rows.turn[..., 0]
@@ -162,7 +168,7 @@ def _down(rows: Rows) -> Array:
 
 
 def fastest_of(rows: Rows) -> Array:
-    """Return a bound of the speed over l in axes that do not turn: all the energy at the lowest point, in 1/s."""
+    """Return a bound of the speed over l in axes that do not turn, in 1/s: at the lowest point."""
     n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
     # height of the release over the lowest point
     height = np.fmax(1 - (n * pull).sum(axis=1) / rows.rate**2, 0.0)
@@ -177,7 +183,8 @@ class SolvedPoints:
 
     Attributes:
         rows: the row.
-        table: times and states of the highest points, with their bounds; empty if they were not asked for.
+        table: times and states of the highest points, with their bounds; empty if they were not
+            asked for.
         decided: whether these are all highest points.
         length: of the cord in m.
         azimuth: about the plumb line, from east to north, in rad.
@@ -224,9 +231,9 @@ class SolvedPoints:
 
     @property
     def release_counts(self) -> bool:
-        """Whether the first highest point is so soon after the release that no digit tells them apart.
+        """Whether the first highest point cannot be distinguished from the release.
 
-        The exact inputs say that the bob rises at the release. It then counts as the first highest point.
+        By the exact inputs the bob rises there. The release then counts as that point.
         """
         soon = _SOON / self.rows.rate
         slow = abs(self.rise[0]) < soon * self.fall[0]
@@ -234,7 +241,7 @@ class SolvedPoints:
         return bool(self.rows.rising[0] > 0 and slow and not another.any())
 
     def fill(self, run: Outcomes) -> None:
-        """Fill in the largest angle, and the highest points where they are decided and the orbit is no cone."""
+        """Fill in the largest angle, and the highest points if they are decided and no cone's."""
         run.largest_angle[0] = self.angle.max()
         first = 0 if self.release_counts else 1
         times = np.append(0.0, self.table["t"])[first:]
@@ -249,7 +256,7 @@ class SolvedPoints:
         run.same_side[0] = np.count_nonzero(half_turns % 2 == 0)
 
     def errors_of_swing(self, run: Outcomes) -> tuple[Array, Array]:
-        """Return the errors of frequency in Hz and precession in degrees an hour, of a run that was filled in."""
+        """Return the errors of frequency in Hz and precession in degrees an hour."""
         time_bounds = np.array(self.table.bound("t"), float)
         time_error = np.max(time_bounds, initial=0) + np.spacing(run.apsis_last)
         turns = self._position_bounds / (self.across[1:-1] * self.length)
@@ -259,8 +266,8 @@ class SolvedPoints:
     def error_of_angle(self, run: Outcomes, grid_error: Array) -> Array:
         """Return the error of the largest angle in rad; NaN where a higher point may be missing.
 
-        The time of a grazing highest point has no bound, and neither has its position: then the angle has the error of
-        the grid's positions, `grid_error` in m, shape (1,).
+        The time of a grazing highest point has no bound, and neither has its position. Then the
+        angle has the error of the grid's positions, `grid_error` in m, shape (1,).
         """
         largest = np.max(self._position_bounds, initial=grid_error[0])
         error_m = np.where(largest < self.length, largest, grid_error)
@@ -276,7 +283,7 @@ class SolvedPoints:
 
 
 def _motion(solution: Solution, rows: Rows, points: Table) -> RowMotion:
-    """Return the motion at the release, at highest points and at the end, in the axes of the plumb line."""
+    """Return the motion at release, highest points and end, in the axes of the plumb line."""
     length = solution.scene.exact.length
     grid = solution.grid
     states = []

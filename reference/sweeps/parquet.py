@@ -1,6 +1,7 @@
-"""The columns of a sweep, once for schema, files and docs, and Parquet files of them; the only door to pyarrow.
+"""The columns of a sweep and Parquet files of them; the only door to pyarrow.
 
-A file that is written here is sealed: near its end is the sha256 of all other bytes and of the part's name.
+A file that is written here is sealed: near its end is the sha256 of all other bytes and of the
+part's name.
 """
 
 from __future__ import annotations
@@ -65,10 +66,10 @@ COLUMNS, TRANSIT_COLUMNS, _OF_SECTION = (_described(table) for table in texts_of
 
 
 def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
-    """Return the columns of sections: for each the number of passages, the time of the first, and the interval.
+    """Return the columns of sections: number of passages, time of the first, and interval.
 
-    The interval is the mean time between passages in the direction of the first. It is the period of a gate or a turn,
-    and half the period of the highest or the lowest points.
+    The interval is the mean time between passages in the direction of the first. It is the period
+    of a gate or a turn, and half the period of the highest or the lowest points.
     """
     columns = []
     for word in words:
@@ -79,7 +80,10 @@ def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
 
 
 def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> bytes:
-    """Return columns as a Parquet file, sealed as `part`: zstd, numbers with their bytes split, words by dictionary."""
+    """Return columns as a Parquet file, sealed as `part`.
+
+    It is compressed with zstd, numbers with their bytes split, words by dictionary.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -148,7 +152,7 @@ def read_columns(stream: BinaryIO, check: Callable[[list[str], int], None]) -> d
 
 
 def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, Any]:
-    """Return columns of several files, one below the other; words as objects, None for a missing word.
+    """Return columns of several files, one below the other; words as objects, None if missing.
 
     Raises:
         OSError: a file cannot be read, or was damaged.

@@ -1,4 +1,4 @@
-"""A part of a sweep solved: its rows side by side, with their errors; rows that need more digits by the solver."""
+"""A part of a sweep solved: its rows side by side, with their errors, and some by the solver."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ class Tally:
 
     Attributes:
         counts: of rows.
-        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them by themselves.
+        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them
+            by themselves.
         fold_s: of these, those of constants and releases.
         store_s: CPU seconds of writing them.
         promoted: rows that the solver was given.
@@ -71,8 +72,9 @@ class Part:
 
     @classmethod
     def unsolved(cls, request: Request, numbers: range) -> Part:
-        """Return rows of which only the values of the fields are known; those with a wrong value have failed."""
-        table, reading = request.table, request.scene.inputs
+        """Return rows without results; those with a wrong value have failed."""
+        table = request.table
+        reading = request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
         kept = (*_KNOWN, *table.values)
         part.nothing = {
@@ -152,8 +154,8 @@ def solve_part(request: Request, numbers: range, promote: Promote | None = promo
     Args:
         request: the sweep.
         numbers: of the rows.
-        promote: has the solver solve a row, as `promoted` does, which is not made for several threads. None: a row that
-            double precision does not decide fails.
+        promote: has the solver solve a row, as `promoted` does, which is not made for several
+            threads. None: a row that double precision does not decide fails.
     """
     started = time.thread_time()
     part = Part.unsolved(request, numbers)
@@ -190,7 +192,7 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
 
 
 def _beyond_double(request: Request, part: Part, places: list[int]) -> dict[int, str]:
-    """Return which rows with a number that is not finite the solver may solve, and why; the others fail."""
+    """Return which rows beyond the range of double the solver may solve, and why; others fail."""
     reasons = {}
     for place in places:
         try:
@@ -224,7 +226,7 @@ def _promote(request: Request, part: Part, place: int, reason: str, promote: Pro
 
 
 def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict[int, str]:
-    """Solve rows side by side; return the places of those that are in doubt or not good enough, and why."""
+    """Solve rows side by side; return the places of rows that need more, and why."""
     reasons: dict[int, str] = {}
     for engine, chosen in _shared(request.engine, rows):
         reasons |= _by_engine(request, part, places[chosen], rows[chosen], engine)
@@ -262,7 +264,7 @@ def _by_engine(
 
 
 def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
-    """Return engines with the rows that each solves: heyoka those with drag if the engine knows no drag."""
+    """Return engines with the rows of each: heyoka has those with drag if the engine has none."""
     engine = batches()[name]
     own = np.full(len(rows), engine.drag) | (rows.drag[:, 0] == 0)
     shares = ((engine, own), (batches()["heyoka"], ~own))
@@ -270,7 +272,7 @@ def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
 
 
 def highest_on_one_side(request: Request) -> bool:
-    """Return whether two successive highest points of the first row lie on one side, as over the top."""
+    """Return whether successive highest points of the first row are on one side."""
     rows = engine_rows(request.scene, request.table, range(1))
     for engine, chosen in _shared(request.engine, rows):
         run = engine.solve(rows[chosen], request.run_options)

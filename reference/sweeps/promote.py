@@ -1,5 +1,6 @@
-"""Rows that the solver solves one at a time: where double leaves a doubt, for a level or digits, or for an audit.
+"""Rows that the solver solves one at a time.
 
+It solves rows that double leaves in doubt, all rows for a level or digits, and those of an audit.
 An audit solves a sample of the rows again: does the truth lie within the estimated errors?
 """
 
@@ -36,7 +37,7 @@ _MORE_DIGITS = 11
 
 
 def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
-    """Return the results of a solved row and their errors, as an engine for many rows would give them.
+    """Return the results of a solved row and their errors, as an engine for many rows does.
 
     Those of the swing are there if the solution has its highest points.
     """
@@ -67,7 +68,7 @@ def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
 
 
 def _fill_transits(run: Outcomes, solution: Solution, rows: Rows) -> tuple[Array, Array]:
-    """Fill in the transits; return the errors of their times in s and of their frequency in Hz, NaN without any."""
+    """Fill in the transits; return the errors of their times in s and of their frequency in Hz."""
     if not solution.directions:
         return np.full(1, np.nan), np.full(1, np.nan)
     table = solution.transits
@@ -147,7 +148,7 @@ def promoted(
 
 
 def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
-    """Return a scene solved, with its highest points if its swing is wanted and it is no cone, which has none."""
+    """Return a scene solved, with its highest points if its swing is wanted and it has one."""
     from ..solver.solve import solve
 
     sections = scene.run.sections or ()
@@ -186,7 +187,9 @@ def _columns_of_section(word: str, solution: Solution) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Audit:
-    """Findings of an audit. A row that the solver refuses in so many digits is neither right nor wrong.
+    """Findings of an audit.
+
+    A row that the solver refuses in so many digits is neither right nor wrong.
 
     Attributes:
         rows: how many rows were solved again.
@@ -254,7 +257,8 @@ def _worst_ratio(request: Request, number: int, row: Mapping[str, Any]) -> float
     truth = promoted(request, number, doubtful=False, level="computed", digits=_AUDIT_DIGITS)
     if truth.failure:
         return None
-    values, ratios = truth.values, [0.0]
+    values = truth.values
+    ratios = [0.0]
     for column in request.columns:
         name, error = column.name, column.error
         is_count = column.kind == "int32" and name != "steps"

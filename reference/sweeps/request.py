@@ -1,4 +1,4 @@
-"""The request of a sweep: the scene, what varies, which quantities, and how the rows are cut into parts.
+"""The request of a sweep: scene, fields that vary, quantities, and parts.
 
 `request` checks what a user asks for before any work, and chooses the engine and the size of parts.
 """
@@ -65,7 +65,8 @@ class Settings:
         want: words of `parquet.WANTS`, "transit-times", or "all".
         level: the level of trust; above computed every row goes through the solver.
         digits: significant digits, by the solver; None for those of double.
-        tolerance: rows with a larger error of the position in m go through the solver as well; None for any error.
+        tolerance: rows with a larger error of the position in m go through the solver as well; None
+            for any error.
         engine: the engine that solves many rows at once, or "auto".
         audit: how many rows are solved again in many digits; None where the default is taken.
     """
@@ -132,7 +133,8 @@ class Request:
         want: words of `parquet.WANTS`, and "transit-times".
         level: the level of trust asked for.
         digits: significant digits asked for, None for those of double.
-        tolerance: largest error of a position in m with which a row stays as computed, None for any.
+        tolerance: largest error of a position in m with which a row stays as computed, None for
+            any.
         engine: the engine that solves many rows at once.
         identity: what decides its digits.
         rows_per_part: rows of a part.
@@ -157,7 +159,7 @@ class Request:
 
     @property
     def solved_by(self) -> str:
-        """What solves the rows: an engine for many at once, or the solver, where every row goes through it."""
+        """The name of what solves the rows: an engine for many at once, or the solver."""
         return "the solver" if self.promotes else self.engine
 
     @property
@@ -177,7 +179,7 @@ class Request:
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
-        """The columns of a row: its number, one for each field that is varied, those that are wanted, of sections."""
+        """The columns: number, fields that vary, quantities that are wanted, and sections."""
         number, *described = COLUMNS
         varied = []
         for key in self.table.values:
@@ -308,7 +310,7 @@ def _check_release(scene: Scene, keys: Iterable[str]) -> None:
 
 
 def _row_s(engine: Batch, scene: Scene) -> float:
-    """Return the CPU seconds that an engine takes for a row, by the small swings in its span and by its sections."""
+    """Return the CPU seconds of a row in an engine, by its small swings and its sections."""
     start = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
     rate = float(start.ctx.norm(start.k.pull) ** 0.5)
     swings = _ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
@@ -317,7 +319,7 @@ def _row_s(engine: Batch, scene: Scene) -> float:
 
 
 def worth_compiling(request: Request) -> str:
-    """Return from how many rows it pays to compile an engine that would be cheaper for each, or "" if there is none."""
+    """Return from how many rows compiling a cheaper engine pays; "" if there is none."""
     row_s = _row_s(batches()[request.engine], request.scene)
     if request.promotes or row_s * request.table.count < _WORTH_A_LINE_S:
         return ""
@@ -353,7 +355,7 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
 
 
 def _fastest(scene: Scene, count: int) -> Batch:
-    """Return the engine that is expected to solve so many rows of a scene first, loading and compiling included."""
+    """Return the engine that is expected to finish first, loading and compiling included."""
     sections = bool(scene.run.sections)
 
     def cost_s(engine: Batch) -> float:

@@ -1,7 +1,7 @@
 """The constants and releases of rows, by the model's own formulas: `Rows` for an engine.
 
-They are computed in double-double arrays, within an ulp of the exact constants, at about two microseconds a row. In
-mpmath a row would cost more than its integration.
+They are computed in double-double arrays, within an ulp of the exact constants, at about two
+microseconds a row. In mpmath a row would cost more than its integration.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class _RowForm:
 
 
 def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
-    """Return a scene's numbers as columns of one row: those of the site, the release and the pendulum, and t_end."""
+    """Return a scene's numbers as columns of one row: site, release, pendulum and t_end."""
     values = {name: getattr(inputs, name) for name in (*_SITE, "t_end")}
     if inputs.position is not None:
         values |= dict(zip(POSITION, inputs.position, strict=True))
@@ -71,7 +71,7 @@ def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
 
 
 def engine_rows(scene: Scene, table: AxisTable, numbers: Any, section: str = "") -> Rows:
-    """Return the constants and releases of rows; not finite where something is wrong with the scene.
+    """Return the constants and releases of rows; not finite where the scene is wrong.
 
     Args:
         scene: the scene that is varied.
@@ -113,7 +113,8 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int, section: 
     """Return the constants and releases of rows.
 
     Args:
-        columns: the numbers of the scenes by the names of `columns_of`, SI units and degrees; one for all or `count`.
+        columns: the numbers of the scenes by the names of `columns_of`, SI units and degrees; one
+            for all or `count`.
         gravity_is: the meaning of gravity, as in `Inputs`.
         count: how many rows.
         section: as in `engine_rows`.
@@ -230,8 +231,9 @@ def _cancel(a: DoubleDouble, b: DoubleDouble) -> Any:
 def _of_section(word: str, n: Vector, v: Vector, k: Constants) -> _RowForm:
     """Return the form of a section.
 
-    Its zero at t = 0 has as many as four derivatives that may vanish if it is a position's, and three if it is a
-    velocity's. Where all of them vanish, the multiplicity is at least as large, and the sign after it is not known.
+    Its zero at t = 0 has as many as four derivatives that may vanish if it is a position's, and
+    three if it is a velocity's. Where all of them vanish, the multiplicity is at least as large,
+    and the sign after it is not known.
     """
     sin, cos = sine_and_cosine(DoubleDouble.of([azimuth_of(word)]))
     form = form_along(word, (cos, sin, 0), k.pull, lambda: _rest_position(k))
@@ -270,7 +272,7 @@ def _jerk(n: Vector, v: Vector, rate: Vector, k: Constants) -> Vector:
 
 
 def _rest_position(k: Constants) -> Vector:
-    """Return the rest position as `model.force.rest_position` does; NaN where another may be near the plumb line."""
+    """Return the rest position, as in `model.force`; NaN where there may be several."""
     size = square_root(dot(k.pull, k.pull))
     north, up = (part / size for part in k.pull[1:])
     for _ in range(_NEWTON_STEPS):

@@ -1,4 +1,4 @@
-"""Period and precession of a scene, from its highest points in double precision: what `foucault show` prints."""
+"""Period and precession of a scene in double precision: what `foucault show` prints."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ _SETTINGS = Settings(want=("frequency", "precession", "amplitude"))
 
 @dataclass(frozen=True)
 class EstimatedSwing:
-    """Period and precession of a scene; their errors are estimates. Proven intervals: `Solution.swing`.
+    """Period and precession of a scene with estimated errors. For proofs: `Solution.swing`.
 
     Attributes:
         over_s: the time in s over which they are means.
         period_s: of a swing to and fro, in s.
         period_error_s: of it, in s.
-        precession_deg_per_h: turn of the swing plane about the plumb line, east to north; None where `reason` says why.
+        precession_deg_per_h: turn of the swing plane about the plumb line, east to north; None
+            where `reason` says why.
         precession_error_deg_per_h: of it.
         reason: why there is no precession; "" if there is one.
     """
@@ -59,7 +60,7 @@ class EstimatedSwing:
 
 
 def swing(scene: AnyScene) -> EstimatedSwing:
-    """Return period and precession of a scene over its run, or over its first 10,000 swings if that is less.
+    """Return period and precession of a scene over its run, or its first 10,000 swings.
 
     Raises:
         InputError: a field of the scene is wrong.
@@ -104,7 +105,7 @@ def swing(scene: AnyScene) -> EstimatedSwing:
 
 
 def _smallest_amplitude_m(start: Start, largest_deg: float, span_s: float) -> float:
-    """Return the distance in m of the last highest point from the lowest one, after drag has let the swing shrink."""
+    """Return the distance of the last highest point from the lowest one, in m: drag shrinks it."""
     chord = 2 * math.sin(math.radians(largest_deg) / 2)
     shrunk = math.exp(-float(start.k.drag) * span_s / 2)
     return float(start.k.length) * chord * shrunk

@@ -1,8 +1,9 @@
-"""A sweep on disk: a folder with its plan and its parts in Parquet, each sealed, and written whole or not at all.
+"""A sweep on disk: a folder with its plan and its parts, each sealed.
 
-`plan.json` has all that decides a number; `rows/part-00000000.parquet` … hold the rows, `transits/part-…` their
-transits if these are wanted; `summary.json` is written last. The seal of a part covers the plan and the part's number:
-parts with a right seal are not computed again.
+`plan.json` has all that decides a number; `rows/part-00000000.parquet` … hold the rows,
+`transits/part-…` their transits if these are wanted; `summary.json` is written last.
+Each file is written whole or not at all. The seal of a
+part covers the plan and the part's number: parts with a right seal are not computed again.
 """
 
 from __future__ import annotations
@@ -51,8 +52,8 @@ class Store:
         """Begin a folder, or go on with that of the same sweep.
 
         Raises:
-            InputError: it holds another sweep, or something else, or other versions would write other bytes, or it
-                cannot be written.
+            InputError: it holds another sweep, or something else, or other versions would write
+                other bytes, or it cannot be written.
         """
         if (folder / PLAN).exists():
             store = cls.opened(folder)
@@ -126,7 +127,7 @@ class Store:
         return self.folder / kind / f"part-{part:08d}.parquet"
 
     def missing(self) -> list[int]:
-        """Return the parts that do not exist yet, were damaged, or belong elsewhere in this plan or to another."""
+        """Return the parts that do not exist yet, were damaged, or have another part's seal."""
         return [
             part
             for part in range(self.request.parts)
@@ -171,7 +172,7 @@ class Store:
         _write(self.folder / SUMS, sums_text(files).encode())
 
     def foreign(self) -> list[str]:
-        """Return the files beside the parts that do not belong to the sweep, by their paths in its folder.
+        """Return the files beside the parts that are not the sweep's, by their paths in its folder.
 
         Names that begin with a dot are left out, as programs that read Parquet do.
         """
@@ -184,7 +185,7 @@ class Store:
     def read(
         self, names: list[str] | None = None, kind: str = ROWS, parts: Iterable[int] | None = None
     ) -> dict[str, Any]:
-        """Return columns of some parts as arrays, one below the other: all columns and parts if none are named.
+        """Return columns of parts as arrays, one below the other: all if none are named.
 
         Raises:
             InputError: a part was damaged or lost since its seal was checked.
@@ -200,7 +201,7 @@ class Store:
 
 
 def _check_empty(folder: Path) -> None:
-    """Raise InputError unless a folder is new, empty, or has only what a sweep leaves that was killed as it began."""
+    """Raise InputError unless a folder is new, empty, or that of a sweep killed as it began."""
     if not folder.exists():
         return
     if not folder.is_dir() or any(_is_foreign(path) for path in folder.iterdir()):

@@ -1,4 +1,4 @@
-"""`reference.sweep` and `reference.load_sweep`: many pendulums in one call, in memory or into a folder."""
+"""`reference.sweep` and `reference.load_sweep`: many pendulums in one call."""
 
 from __future__ import annotations
 
@@ -53,21 +53,28 @@ def sweep(
     """Solve a scene for many values of some of its fields.
 
     Args:
-        scene: what is varied, and the span: its `t_end`; a scene, its id, the path of a TOML file, or nested mappings.
-        over: a mapping from fields to values, `{"site.latitude": range(-90, 91, 10)}`, or words KEY=START:STOP:STEP,
-            KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last fastest.
+        scene: what is varied, and the span: its `t_end`; a scene, its id, the path of a TOML file,
+            or nested mappings.
+        over: a mapping from fields to values, `{"site.latitude": range(-90, 91, 10)}`, or words
+            KEY=START:STOP:STEP, KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last
+            fastest.
         t_end: end of each run in s; None for the scene's.
         rows: instead, a CSV or Parquet file whose columns are fields, one row a scene.
-        out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A sweep that the folder holds is resumed.
-        want: quantities: frequency, precession, transits, state, amplitude, all of these, transit-times.
+        out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A sweep that the folder
+            holds is resumed.
+        want: quantities: frequency, precession, transits, state, amplitude, all of these,
+            transit-times.
         sections: other moments to find, such as ["highest", "gate 30"], instead of the scene's.
         level: level of trust; above computed every row goes through `solve`.
         digits: significant digits, of every row through `solve`; None for double.
         tolerance: rows with a larger error of the position in m go through `solve` as well.
-        engine: the engine that solves many rows at once; "auto" takes the one expected to finish first.
-        audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`, none without.
+        engine: the engine that solves many rows at once; "auto" takes the one expected to finish
+            first.
+        audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`,
+            none without.
         workers: threads, or processes where rows go through `solve`; None for one a core.
-        cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on this machine.
+        cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on
+            this machine.
         report: called with the number of rows that were done since the last call.
 
     Returns:
@@ -105,7 +112,7 @@ def checked_request(
     out: Path | None,
     settings: Settings,
 ) -> Request:
-    """Return the request of a sweep into a folder, or in memory without one; arguments as those of `sweep`.
+    """Return the request of a sweep into a folder or in memory; arguments as those of `sweep`.
 
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.
@@ -158,7 +165,7 @@ def run(
     cluster: str | None = None,
     report: Report = lambda _: None,
 ) -> Swept:
-    """Solve the parts of a sweep that are not done yet, and audit it; arguments and errors as those of `sweep`."""
+    """Solve the parts that are not done yet, and audit; arguments as those of `sweep`."""
     started = time.perf_counter()
     store = None
     parts = list(range(request.parts))

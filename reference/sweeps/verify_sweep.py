@@ -1,4 +1,4 @@
-"""`foucault verify` of the folder of a sweep: every part by its seal, the other files by their checksums."""
+"""`foucault verify` of a sweep: parts by their seals, other files by their checksums."""
 
 from __future__ import annotations
 
