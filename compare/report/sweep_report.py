@@ -21,7 +21,6 @@ from .page import PageTable
 
 if TYPE_CHECKING:
     from reference import Swept
-    from reference.sweeps.promote import Audit
     from reference.sweeps.request import Request
 
 _ROWS_OF_JSON = 10_000  # no more are printed if there is a folder
@@ -107,8 +106,7 @@ def text(swept: Swept, out: Path | None) -> str:
         lines = _table(swept).lines()
     else:
         lines = [f"{out}: {counted(swept.request.parts, 'part')} in Parquet"]
-    if swept.audit is not None:
-        lines.append(_audit_line(swept.audit, swept.audit_s))
+    lines += _audit_lines(swept)
     by_status = ", ".join(f"{count} {Status(word).words}" for word, count in swept.counts.items())
     lines.append(f"{counted(len(swept), 'row')}: {by_status}")
     lines.append(_cost_line(swept))
@@ -144,12 +142,16 @@ def _heads(request: Request) -> dict[str, str]:
     return heads
 
 
-def _audit_line(audit: Audit, cpu_s: float) -> str:
-    """Return the findings of an audit."""
+def _audit_lines(swept: Swept) -> list[str]:
+    """Return a line with the findings of the audit, if there was one."""
+    audit = swept.audit
+    if audit is None:
+        return []
     findings = f"{len(audit.wrong)} wrong, largest error {audit.worst_ratio:.2g} of its estimate"
     if audit.refused:
         findings += f"; {len(audit.refused)} that the solver refuses"
-    return f"{counted(audit.rows, 'row')} solved again in 28 digits: {findings}, CPU {cpu_s:.2f} s"
+    rows = counted(audit.rows, "row")
+    return [f"{rows} solved again in 28 digits: {findings}, CPU {swept.audit_s:.2f} s"]
 
 
 def _cost_line(swept: Swept) -> str:
