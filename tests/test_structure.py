@@ -130,6 +130,7 @@ PUBLIC = {
     "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution "
     "Swept UnreachableError load load_ranges load_scene parse_scene prove_ranges scene_ids "
     "solve trajectory write",
+    "reference.commands.options": "Conflict as_command refuse_conflicts",
     "reference.commands.progress": "progress",
     "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections "
     "Uncertain Workers check_workers chosen completion emit option refuse "
@@ -169,9 +170,9 @@ PUBLIC = {
     "reference.solver.uncertain": "exact_texts widths_of",
     "reference.status": "Status",
     "reference.sweeps.axes": "TEXTS",
-    "reference.sweeps.request": "Request worth_compiling",
+    "reference.sweeps.request": "Request Settings worth_compiling",
     "reference.sweeps.store": "Store",
-    "reference.sweeps.sweep": "asked_for run",
+    "reference.sweeps.sweep": "checked_request run",
     "reference.system": "cache",
     "reference.system.cache": "arrays kept",
     "reference.system.checksums": "SUMS is_sound sealed_line sums_text",

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from reference import InputError, Scene
-from reference.commands.terminal import emit, option, refuse
+from reference.commands.terminal import emit, option
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -89,8 +89,6 @@ def programs_of(
     from ..candidates.external import SETTING, arguments
     from ..methods import named_programs
 
-    if not run:
-        refuse({"--name": names}, "without --run")
     for command in run or ():
         arguments(command.replace(SETTING, "0.1"), scene)
     return named_programs(run or (), names or ())

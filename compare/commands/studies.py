@@ -1,13 +1,15 @@
-"""`foucault study`, `stability` and `methods`: error against run time, difficult scenes, and what can be compared."""
+"""`foucault study`, `stability`, `methods`: error against run time, difficult scenes."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from reference import Scene, load_scene, scene_ids
+from reference.commands.options import Conflict, refuse_conflicts
 from reference.commands.progress import progress
 from reference.commands.terminal import (
     AsJson,
@@ -15,7 +17,6 @@ from reference.commands.terminal import (
     SceneWord,
     emit,
     option,
-    refuse,
     replacements,
     stoppable,
 )
@@ -35,10 +36,12 @@ from .options import (
     resumes,
 )
 
-LIMIT_S, STEPS_S = 8.0, "0.1,0.01"  # defaults of --limit and --settings
-STABILITY_LIMIT_S = 3.0  # default of --limit in `stability`
+LIMIT_S = 8.0  # default of --limit in `study`
+STABILITY_LIMIT_S = 3.0  # the same in `stability`
+STEPS_S = "0.1,0.01"  # default of --settings
 PARIS = "paris"  # the scene with whose values a command is tried for its placeholders
-# fields of a scene that make no difference to a study of these, and why
+# fields of a scene that make no difference to a study of methods, of precisions, of approximations;
+# and why
 OF_METHODS = {
     "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Methods are given doubles, and are held against the solution for doubles.",
@@ -80,151 +83,186 @@ STABILITY_LIMIT = option("--limit", "Allow one run this many CPU seconds.", "S")
 LONG = option("--long", "Also measure how errors grow over 30 days (takes minutes more).")
 
 
-def study(
-    scene_word: SceneWord,
-    methods: Methods = None,
-    precisions: Annotated[str | None, PRECISIONS] = None,
-    approximations: Annotated[bool, APPROXIMATIONS] = False,
-    run: Commands = None,
-    name: Names = None,
-    candidates: Annotated[list[str] | None, CANDIDATES] = None,
-    cpu: Annotated[str | None, CPU] = None,
-    settings: Annotated[str | None, SETTINGS] = None,
-    t_end: Annotated[str | None, T_END] = None,
-    limit: Annotated[float | None, LIMIT] = None,
-    no_formulations: Annotated[bool, NO_FORMULATIONS] = False,
-    out: Folder = None,
-    set_: Assignments = None,
-    as_json: AsJson = False,
-) -> None:
+@dataclass(frozen=True)
+class StudyOptions:
+    """The argument and the options of `foucault study`."""
+
+    scene_word: SceneWord
+    methods: Methods = None
+    precisions: Annotated[str | None, PRECISIONS] = None
+    approximations: Annotated[bool, APPROXIMATIONS] = False
+    run: Commands = None
+    name: Names = None
+    candidates: Annotated[list[str] | None, CANDIDATES] = None
+    cpu: Annotated[str | None, CPU] = None
+    settings: Annotated[str | None, SETTINGS] = None
+    t_end: Annotated[str | None, T_END] = None
+    limit: Annotated[float | None, LIMIT] = None
+    no_formulations: Annotated[bool, NO_FORMULATIONS] = False
+    out: Folder = None
+    set_: Assignments = None
+    as_json: AsJson = False
+
+
+@dataclass(frozen=True)
+class StabilityOptions:
+    """The options of `foucault stability`."""
+
+    scenes: Annotated[str | None, SCENES] = None
+    methods: Methods = None
+    run: Commands = None
+    name: Names = None
+    limit: Annotated[float, STABILITY_LIMIT] = STABILITY_LIMIT_S
+    long: Annotated[bool, LONG] = False
+    out: Folder = None
+    as_json: AsJson = False
+
+
+def _varied(options: StudyOptions) -> bool:
+    """Return whether a program of --run has a setting that can be varied."""
+    from ..candidates.external import SETTING
+
+    return any(SETTING in command for command in options.run or ())
+
+
+STUDY_CONFLICTS = [
+    Conflict(
+        "--methods --precisions --run --name --candidates --cpu --settings --limit --no-formulations",
+        "together with --approximations",
+        lambda options: options.approximations,
+    ),
+    Conflict("--name --settings", "without --run", lambda options: not options.run),
+    Conflict("--cpu", "without --candidates", lambda options: not options.candidates),
+    Conflict(
+        "--settings", "with a --run that has no {setting}", lambda options: not _varied(options)
+    ),
+]
+STABILITY_CONFLICTS = [
+    Conflict("--name", "without --run", lambda options: not options.run),
+]
+
+
+def study(options: StudyOptions) -> None:
     """Measure error against run time.
 
     Every method is run over its settings; with the same --out a study resumes.
     """
-    unused = (
-        OF_APPROXIMATIONS
-        if approximations
-        else OF_PRECISIONS
-        if precisions is not None
-        else OF_METHODS
-    )
-    scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}, unused))
-    if approximations:
-        options: dict[str, object] = {
-            "--methods": methods,
-            "--precisions": precisions,
-            "--run": run,
-            "--name": name,
-        }
-        options |= {
-            "--candidates": candidates,
-            "--cpu": cpu,
-            "--settings": settings,
-            "--limit": limit,
-        }
-        refuse({**options, "--no-formulations": no_formulations}, "together with --approximations")
-        _study_approximations(scene, out, as_json)
-        return
-    if not run:
-        refuse({"--settings": settings}, "without --run")
-    if not candidates:
-        refuse({"--cpu": cpu}, "without --candidates")
-    check_positive("--limit", limit)
+    scene = _scene(options)
+    refuse_conflicts(options, STUDY_CONFLICTS)
+    if options.approximations:
+        _study_approximations(scene, options)
+    else:
+        _study_methods(scene, options)
+
+
+def _scene(options: StudyOptions) -> Scene:
+    """Return the scene of a study.
+
+    Raises:
+        InputError: there is none, or a field of it that makes no difference was replaced.
+    """
+    if options.approximations:
+        unused = OF_APPROXIMATIONS
+    elif options.precisions is not None:
+        unused = OF_PRECISIONS
+    else:
+        unused = OF_METHODS
+    fields = {"--t-end": ("run.t_end", options.t_end)}
+    return load_scene(options.scene_word, replacements(options.set_, fields, unused))
+
+
+def _study_methods(scene: Scene, options: StudyOptions) -> None:
+    check_positive("--limit", options.limit)
     from ..candidates.external import SETTING
     from ..report.study_page import REPORT
     from ..studies.study import study as measured
     from ..studies.study_plan import bits_of, plan, precision_items, precision_scene
     from ..studies.users_program import files_of
 
-    REPORT.check(out)
-    problem, digits = scene, None
-    requested = listed(methods, "--methods")
-    if precisions is None:
-        items = plan(scene, requested, not no_formulations)
+    REPORT.check(options.out)
+    requested = listed(options.methods, "--methods")
+    if options.precisions is None:
+        problem = scene
+        digits = None
+        items = plan(scene, requested, not options.no_formulations)
     else:
-        bits = bits_of(precisions)
+        bits = bits_of(options.precisions)
         items = precision_items(bits, requested)
-        problem, digits = precision_scene(scene, bits, whole=t_end is not None)
-    programs = programs_of(run, name, problem)
-    if not any(SETTING in program for program in programs.values()):
-        refuse({"--settings": settings}, f"with a --run that has no {SETTING}")
-    files = files_of(candidates or (), cpu, programs)
-    steps = numbers(STEPS_S if settings is None else settings, "--settings")
-    for program, words in programs.items():
-        items += [(program, "momentum", step) for step in (steps if SETTING in words else [0.0])]
-    with stoppable(resumes(out)), progress() as show:
+        problem, digits = precision_scene(scene, bits, whole=options.t_end is not None)
+
+    programs = programs_of(options.run, options.name, problem)
+    files = files_of(options.candidates or (), options.cpu, programs)
+    steps_s = numbers(STEPS_S if options.settings is None else options.settings, "--settings")
+    for program, command in programs.items():
+        settings = steps_s if SETTING in command else [0.0]
+        items += [(program, "momentum", setting) for setting in settings]
+
+    with stoppable(resumes(options.out)), progress() as show:
         done = measured(
             problem,
             items=items,
             programs=programs,
             candidates=files,
-            limit_s=LIMIT_S if limit is None else limit,
-            journal_path=out and out / "rows.jsonl",
+            limit_s=LIMIT_S if options.limit is None else options.limit,
+            journal_path=options.out and options.out / "rows.jsonl",
             digits=digits,
             solving=show(f"the truth of {scene.id}", float(problem.exact.t_end)),
             report=show(scene.id, unit="runs"),
             announce=announce,
         )
     document = done.document()
-    finish(document, REPORT.text, REPORT.write(document, out), as_json)
+    finish(document, REPORT.text, REPORT.write(document, options.out), options.as_json)
 
 
-def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
+def _study_approximations(scene: Scene, options: StudyOptions) -> None:
     with stoppable("nothing was kept"), progress() as show:
         from ..report.approximations import Swept, document_of, report_of
 
         swept: Swept = {}
         report = report_of(scene, swept)
-        report.check(out)
+        report.check(options.out)
         document = document_of(scene, swept, show(scene.id, unit="tables"))
-    finish(document, report.text, report.write(document, out), as_json)
+    finish(document, report.text, report.write(document, options.out), options.as_json)
 
 
-def stability(
-    scenes: Annotated[str | None, SCENES] = None,
-    methods: Methods = None,
-    run: Commands = None,
-    name: Names = None,
-    limit: Annotated[float, STABILITY_LIMIT] = STABILITY_LIMIT_S,
-    long: Annotated[bool, LONG] = False,
-    out: Folder = None,
-    as_json: AsJson = False,
-) -> None:
+def stability(options: StabilityOptions) -> None:
     """Run methods, and your program, on the difficult scenes.
 
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """
+    refuse_conflicts(options, STABILITY_CONFLICTS)
     from ..report.stability_page import REPORT, document_of
     from ..studies.long_runs import long_runs
     from ..studies.stability import stability as measured
     from ..studies.study_plan import declared
 
-    check_positive("--limit", limit)
-    REPORT.check(out)
-    chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
-    programs = programs_of(run, name, load_scene(PARIS))
-    items = declared(requested, "long_runs") if long else []
-    with stoppable(resumes(out)), progress() as show:
+    check_positive("--limit", options.limit)
+    REPORT.check(options.out)
+    scenes = listed(options.scenes, "--scenes")
+    requested = listed(options.methods, "--methods")
+    programs = programs_of(options.run, options.name, load_scene(PARIS))
+    items = declared(requested, "long_runs") if options.long else []
+
+    with stoppable(resumes(options.out)), progress() as show:
         cells = measured(
-            chosen,
+            scenes,
             requested,
             programs=programs,
-            limit_s=limit,
-            journal_path=out and out / "cells.jsonl",
+            limit_s=options.limit,
+            journal_path=options.out and options.out / "cells.jsonl",
             solving=show("the truth", unit="scenes"),
             report=show("stability", unit="runs"),
         )
         runs = []
         if items:
-            solving, report = (
-                show("the truth over 30 days", unit="days"),
-                show("30 days", unit="runs"),
-            )
             runs = long_runs(
-                items, journal_path=out and out / "long.jsonl", solving=solving, report=report
+                items,
+                journal_path=options.out and options.out / "long.jsonl",
+                solving=show("the truth over 30 days", unit="days"),
+                report=show("30 days", unit="runs"),
             )
     document = document_of(cells, runs, programs)
-    finish(document, REPORT.text, REPORT.write(document, out), as_json)
+    finish(document, REPORT.text, REPORT.write(document, options.out), options.as_json)
 
 
 def methods(as_json: AsJson = False) -> None:
@@ -248,13 +286,17 @@ def methods(as_json: AsJson = False) -> None:
     if as_json:
         emit({"methods": integrators, "approximations": analytic})
         return
+    _print_ids("Methods (study, stability)", integrators)
+    _print_ids("Approximations (score --approximation, study --approximations)", analytic)
+
+
+def _print_ids(heading: str, entries: Sequence[Mapping[str, str | None]]) -> None:
+    """Print an id and a title a line, and what is not installed that it needs."""
+    from ..approximations import APPROXIMATIONS
+    from ..methods import METHODS
+
     width = max(map(len, (*METHODS, *APPROXIMATIONS)))
-    headings = (
-        "Methods (study, stability)",
-        "Approximations (score --approximation, study --approximations)",
-    )
-    for heading, listed_there in zip(headings, (integrators, analytic), strict=True):
-        typer.echo(f"{heading}:")
-        for each in listed_there:
-            missing = f"  [{each['missing']}]" if each.get("missing") else ""
-            typer.echo(f"  {each['id']:{width}}  {each['title']}{missing}")
+    typer.echo(f"{heading}:")
+    for entry in entries:
+        missing = f"  [{entry['missing']}]" if entry.get("missing") else ""
+        typer.echo(f"  {entry['id']:{width}}  {entry['title']}{missing}")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from reference import InputError, UnreachableError, load_scene
+from reference.commands.options import Conflict, refuse_conflicts
 from reference.commands.progress import progress
 from reference.commands.terminal import (
     AsJson,
@@ -30,10 +32,9 @@ from reference.status import Status
 
 if TYPE_CHECKING:
     from reference import Swept
-    from reference.sweeps.request import Request
+    from reference.sweeps.request import Request, Settings
 
-# options that change the scene, and not what is asked of a sweep of it
-ON_SCENE = ("--set", "--t-end", "--section")
+# fields of a scene that make no difference to a sweep, and what does instead
 _NO_GRID = dict.fromkeys(
     ("run.grid_step", "run.digits", "run.level", "run.transits"),
     "Give --t-end, --digits, --level or --want.",
@@ -74,127 +75,161 @@ OUT = option(
 PLOT = option("--plot", "Draw frequency and precession: .svg, .png or .pdf.", "FILE")
 
 
-def command(
-    scene_word: Annotated[str | None, SCENE] = None,
-    over: Annotated[list[str] | None, OVER] = None,
-    rows: Annotated[Path | None, ROWS] = None,
-    set_: Assignments = None,
-    t_end: EndTime = None,
-    want: Annotated[str | None, WANT] = None,
-    section: Sections = None,
-    level: Annotated[str | None, LEVEL] = None,
-    digits: Annotated[int | None, DIGITS] = None,
-    tolerance: Annotated[float | None, TOLERANCE] = None,
-    engine: Annotated[str | None, ENGINE] = None,
-    audit: Annotated[int | None, AUDIT] = None,
-    out: Annotated[Path | None, OUT] = None,
-    workers: Workers = None,
-    cluster: Cluster = None,
-    plot: Annotated[Path | None, PLOT] = None,
-    as_json: AsJson = False,
-) -> None:
+@dataclass(frozen=True)
+class SweepOptions:
+    """The argument and the options of `foucault sweep`."""
+
+    scene_word: Annotated[str | None, SCENE] = None
+    over: Annotated[list[str] | None, OVER] = None
+    rows: Annotated[Path | None, ROWS] = None
+    set_: Assignments = None
+    t_end: EndTime = None
+    want: Annotated[str | None, WANT] = None
+    section: Sections = None
+    level: Annotated[str | None, LEVEL] = None
+    digits: Annotated[int | None, DIGITS] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    engine: Annotated[str | None, ENGINE] = None
+    audit: Annotated[int | None, AUDIT] = None
+    out: Annotated[Path | None, OUT] = None
+    workers: Workers = None
+    cluster: Cluster = None
+    plot: Annotated[Path | None, PLOT] = None
+    as_json: AsJson = False
+
+
+CONFLICTS = [
+    Conflict(
+        "--over --rows --set --t-end --want --section --level --digits --tolerance --engine --audit",
+        "without SCENE, when a sweep is gone on with",
+        lambda options: options.scene_word is None,
+    ),
+]
+
+
+def sweep(options: SweepOptions) -> None:
     """Solve a scene for many values of its fields.
 
     Frequency, precession, transits, passages of sections and final state, each with its error.
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
     """
-    from reference.sweeps.request import worth_compiling
-    from reference.sweeps.sweep import run
-
-    from ..report.sweep_report import document, text
-
-    request = _request(
-        scene_word, out,
-        {"--over": over, "--rows": rows, "--set": set_, "--t-end": t_end, "--want": want, "--section": section,
-         "--level": level, "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit},
-    )  # fmt: skip
-    check_workers(workers, cluster)
-    if plot is not None:
+    refuse_conflicts(options, CONFLICTS)
+    request = _request(options)
+    check_workers(options.workers, options.cluster)
+    if options.plot is not None:
         from ..report.sweep_report import check
 
-        check(request, plot)
-    kept = (
-        f"what is done is in {out}: `foucault sweep --out {out}` goes on"
-        if out
-        else "nothing was kept; give --out DIR"
-    )
-    with stoppable(kept), progress() as show:
-        move, done = show(f"sweep of {request.scene.id}", request.table.count, "rows"), [0]
+        check(request, options.plot)
 
-        def report(count: int) -> None:
-            done[0] += count
-            move(done[0])
-
-        swept = run(request, out, workers, cluster, report)
-    if plot is not None:
+    swept = _run(request, options)
+    if options.plot is not None:
         from ..report.sweep_report import draw
 
-        draw(swept, plot)
-    if as_json:
-        emit(document(swept, out, workers, cluster))
-    else:
-        typer.echo(text(swept, out))
-        if plot is not None:
-            typer.echo(f"{plot}: the picture")
-        advice = worth_compiling(request) if scene_word is not None and engine is None else ""
-        if advice:
-            typer.echo(advice, err=True)
-    _judge(swept)
+        draw(swept, options.plot)
+    _print(swept, options)
+    _end(swept)
 
 
-def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) -> Request:
+def _request(options: SweepOptions) -> Request:
     """Return the sweep that the options describe, or the one that is in the folder."""
     from reference.sweeps.store import Store
-    from reference.sweeps.sweep import asked_for
+    from reference.sweeps.sweep import checked_request
 
-    if scene_word is None:
-        refuse(options, "without SCENE, when a sweep is gone on with")
-        if out is None:
+    if options.scene_word is None:
+        if options.out is None:
             raise InputError("SCENE", "nothing", "a scene, or --out DIR with a sweep to go on with")
-        return Store.opened(out).request
-    sections = ",".join(options["--section"]) if options["--section"] else None
-    given = {"--t-end": ("run.t_end", options["--t-end"]), "--section": ("run.sections", sections)}
-    scene = load_scene(scene_word, replacements(options["--set"], given, _NO_GRID))
-    chosen = {
-        word.strip("-"): value
-        for word, value in options.items()
-        if value is not None and word not in ON_SCENE
-    }
-    if "want" in chosen:
-        chosen["want"] = [word.strip() for word in chosen["want"].split(",")]
-    request = asked_for(scene, out=out, **chosen)
+        return Store.opened(options.out).request
+
+    sections = ",".join(options.section) if options.section else None
+    fields = {"--t-end": ("run.t_end", options.t_end), "--section": ("run.sections", sections)}
+    scene = load_scene(options.scene_word, replacements(options.set_, fields, _NO_GRID))
+    request = checked_request(
+        scene, options.over or (), options.rows, options.out, _settings(options)
+    )
     if "run.t_end" in request.table.values:
-        refuse({"--t-end": options["--t-end"]}, "together with --over run.t_end")
+        refuse({"--t-end": options.t_end}, "together with --over run.t_end")
     return request
 
 
-def _judge(swept: Swept) -> None:
-    """End with the exit status of a sweep with rows that failed, or with an audit that did.
+def _settings(options: SweepOptions) -> Settings:
+    """Return the settings of the sweep; those that were not given have their defaults."""
+    from reference.sweeps.request import Settings
+
+    names = ("level", "digits", "tolerance", "engine", "audit")
+    values: dict[str, Any] = {name: getattr(options, name) for name in names}
+    if options.want is not None:
+        values["want"] = [word.strip() for word in options.want.split(",")]
+    return Settings(**{name: value for name, value in values.items() if value is not None})
+
+
+def _run(request: Request, options: SweepOptions) -> Swept:
+    """Run the sweep and show its progress; Ctrl-C ends it with a line that says what was kept."""
+    from reference.sweeps.sweep import run
+
+    out = options.out
+    if out is None:
+        kept = "nothing was kept; give --out DIR"
+    else:
+        kept = f"what is done is in {out}: `foucault sweep --out {out}` goes on"
+    with stoppable(kept), progress() as show:
+        move = show(f"sweep of {request.scene.id}", request.table.count, "rows")
+        done = 0
+
+        def report(count: int) -> None:
+            nonlocal done
+            done += count
+            move(done)
+
+        return run(request, out, options.workers, options.cluster, report)
+
+
+def _print(swept: Swept, options: SweepOptions) -> None:
+    """Print the sweep as JSON or as text."""
+    from reference.sweeps.request import worth_compiling
+
+    from ..report.sweep_report import document, text
+
+    if options.as_json:
+        emit(document(swept, options.out, options.workers, options.cluster))
+        return
+    typer.echo(text(swept, options.out))
+    if options.plot is not None:
+        typer.echo(f"{options.plot}: the picture")
+    if options.scene_word is not None and options.engine is None:
+        advice = worth_compiling(swept.request)
+        if advice:
+            typer.echo(advice, err=True)
+
+
+def _end(swept: Swept) -> None:
+    """Name rows that failed, and rows that the audit found wrong; then the exit status is not 0.
 
     Raises:
-        UnreachableError: rows could not reach the level or the digits.
-        typer.Exit: other rows failed, or the audit found a wrong one.
+        typer.Exit: rows failed, or the audit found a wrong one. The status is that of
+            `UnreachableError` if rows could not reach the level or the digits.
     """
     counts = swept.counts
     failed = len(swept) - counts.get(Status.OK.value, 0)
     if failed:
-        first = swept.first_bad
-        words = ", ".join(
-            f"{count} {Status(word).words}"
-            for word, count in counts.items()
-            if word != Status.OK.value
-        )
-        where = ", ".join(f"{key}={text}" for key, text in swept.request.table.texts(first).items())
-        typer.echo(
-            f"foucault: {failed} of {len(swept)} rows failed: {words} (first: row {first}, {where})",
-            err=True,
-        )
+        typer.echo(f"foucault: {failed} of {len(swept)} rows failed: {_failures(swept)}", err=True)
     if swept.audit is not None and swept.audit.wrong:
-        named = ", ".join(map(str, swept.audit.wrong))
-        typer.echo(f"foucault: solved again, rows {named} lie outside of their errors", err=True)
+        wrong = ", ".join(map(str, swept.audit.wrong))
+        typer.echo(f"foucault: solved again, rows {wrong} lie outside of their errors", err=True)
         raise typer.Exit(1)
     if counts.get(Status.UNREACHABLE.value):
         raise typer.Exit(UnreachableError.exit_status)
     if failed:
         raise typer.Exit(1)
+
+
+def _failures(swept: Swept) -> str:
+    """Return how many rows failed in each way, and the first one with its values."""
+    counts = ", ".join(
+        f"{count} {Status(word).words}"
+        for word, count in swept.counts.items()
+        if word != Status.OK.value
+    )
+    first = swept.first_bad
+    values = ", ".join(f"{key}={text}" for key, text in swept.request.table.texts(first).items())
+    return f"{counts} (first: row {first}, {values})"

@@ -1,4 +1,4 @@
-"""A sweep as a JSON document, as the text of a terminal, and as a picture: curves over one field, maps over two."""
+"""A sweep as a JSON document, as text, and as a picture: curves over one field, maps over two."""
 
 from __future__ import annotations
 
@@ -23,16 +23,17 @@ if TYPE_CHECKING:
     from reference import Swept
     from reference.sweeps.request import Request
 
-ROWS_OF_JSON = 10_000  # with a folder, no more are printed
-SHOWN = {
+_ROWS_OF_JSON = 10_000  # no more are printed if there is a folder
+_STATE_COLUMNS = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
+_SHOWN = {
     "swing_hz": "frequency (Hz)",
     "precession_deg_per_h": "precession (°/h)",
     "transits": "transits",
     "max_angle_deg": "angle (°)",
     "position_error_m": "estimated error (m)",
 }  # columns of the table, and their heads; then those of sections
-OF_SECTION = {"passages": "passages", "t_first_s": "first (s)", "interval_s": "interval (s)"}
-LABELS = {
+_OF_SECTION = {"passages": "passages", "t_first_s": "first (s)", "interval_s": "interval (s)"}
+_LABELS = {
     "swing_hz": "frequency of the swing in Hz",
     "precession_deg_per_h": "precession in °/h, east to north",
 }  # of the columns that are drawn
@@ -46,15 +47,20 @@ def document(
 
     Args:
         swept: the sweep.
-        out: its folder, if it has one: then the rows are left out where there are more than `ROWS_OF_JSON`.
+        out: its folder, if it has one: then the rows are left out where there are more than
+            `_ROWS_OF_JSON`.
         workers: how many cores were asked for; None for all.
         cluster: address of the scheduler that had the work done, if one had.
     """
     from reference.engines.registry import batches
     from reference.system.workers import usable_cores
 
-    request, tally = swept.request, swept.tally
-    printed = out is None or len(swept) <= ROWS_OF_JSON
+    request = swept.request
+    tally = swept.tally
+    rows_done = sum(tally.counts.values())
+    rows = None
+    if out is None or len(swept) <= _ROWS_OF_JSON:
+        rows = [_row(request, number, row) for number, row in enumerate(swept.rows())]
     return {
         "scene": request.scene.id,
         "over": request.table.typed,
@@ -66,7 +72,7 @@ def document(
         "workers": None if cluster else workers or usable_cores(),
         "cluster": cluster,
         "rows_total": len(swept),
-        "rows_done": sum(tally.counts.values()),
+        "rows_done": rows_done,
         "counts": swept.counts,
         "audit": asdict(swept.audit) if swept.audit else None,
         "cpu_s": tally.cpu_s + tally.store_s,
@@ -75,81 +81,94 @@ def document(
         "solver_rows": tally.promoted,
         "solver_s": tally.promoted_s,
         "wall_s": swept.wall_s,
-        "rows_per_core_s": sum(tally.counts.values()) / tally.cpu_s if tally.cpu_s else None,
-        "rows": [_row(request, number, row) for number, row in enumerate(swept.rows())]
-        if printed
-        else None,
+        "rows_per_core_s": rows_done / tally.cpu_s if tally.cpu_s else None,
+        "rows": rows,
     }
 
 
 def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
-    texts = request.table.texts(number)
-    state = [
-        row.pop(name) for name in ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s") if name in row
-    ]
-    value = {"value": next(iter(texts.values()))} if len(texts) == 1 else {}
-    rest = {name: entry for name, entry in row.items() if name not in texts and name != "row"}
-    return {
-        **value,
-        "values": texts,
-        **rest,
-        "state": state if state and state[0] is not None else None,
-    }
+    """Return a row of the JSON document: values of the fields, results, and state."""
+    values = request.table.texts(number)
+    entries: dict[str, Any] = {}
+    if len(values) == 1:
+        entries["value"] = next(iter(values.values()))
+    entries["values"] = values
+    hidden = {"row", *values, *_STATE_COLUMNS}
+    entries |= {name: entry for name, entry in row.items() if name not in hidden}
+    state = [row[name] for name in _STATE_COLUMNS if name in row]
+    is_known = bool(state) and state[0] is not None
+    return entries | {"state": state if is_known else None}
 
 
 def text(swept: Swept, out: Path | None) -> str:
-    """Return the table of a sweep, or where its folder is; then what an audit found, statuses and costs."""
-    tally, counts = swept.tally, swept.counts
-    by_status = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items())
-    total = f"{counted(len(swept), 'row')}: {by_status}"
+    """Return the table of a sweep or its folder; then findings of an audit, statuses and costs."""
+    if out is None:
+        lines = _table(swept).lines()
+    else:
+        lines = [f"{out}: {counted(swept.request.parts, 'part')} in Parquet"]
+    lines += _audit_lines(swept)
+    by_status = ", ".join(f"{count} {Status(word).words}" for word, count in swept.counts.items())
+    lines.append(f"{counted(len(swept), 'row')}: {by_status}")
+    lines.append(_cost_line(swept))
+    return "\n".join(lines)
+
+
+def _table(swept: Swept) -> PageTable:
+    """Return the rows as a table: values of the fields, and results or why there are none."""
+    request = swept.request
+    heads = _heads(request)
+    columns = {column.name: column for column in request.columns}
+    shown = [columns[name] for name in heads if name in columns]
+    rows = []
+    for number, row in enumerate(swept.rows()):
+        values = list(request.table.texts(number).values())
+        if row["status"] == Status.OK.value:
+            results = [_cell(row[column.name], row.get(column.error)) for column in shown]
+            rows.append((*values, *results, ""))
+        else:
+            empty = [""] * len(shown)
+            rows.append((*values, *empty, f"{row['status']}: {row['reason']}"))
+    names = [*request.table.values, *(heads[column.name] for column in shown)]
+    return PageTable({**dict.fromkeys(names, "number"), "": ""}, rows)
+
+
+def _heads(request: Request) -> dict[str, str]:
+    """Return the heads of the table by the names of the columns, in order."""
+    heads = dict(_SHOWN)
+    if request.level == "enclosed":
+        heads["position_error_m"] = "bound (m)"
+    for word in request.sections:
+        heads |= {f"{word}: {name}": f"{word}: {head}" for name, head in _OF_SECTION.items()}
+    return heads
+
+
+def _audit_lines(swept: Swept) -> list[str]:
+    """Return a line with the findings of the audit, if there was one."""
+    audit = swept.audit
+    if audit is None:
+        return []
+    findings = f"{len(audit.wrong)} wrong, largest error {audit.worst_ratio:.2g} of its estimate"
+    if audit.refused:
+        findings += f"; {len(audit.refused)} that the solver refuses"
+    rows = counted(audit.rows, "row")
+    return [f"{rows} solved again in 28 digits: {findings}, CPU {swept.audit_s:.2f} s"]
+
+
+def _cost_line(swept: Swept) -> str:
+    """Return what a sweep cost, and what solved it."""
+    tally = swept.tally
     cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s"
     if tally.promoted:
-        cost += f", {tally.promoted_s:.2f} s of them for {counted(tally.promoted, 'row')} that went to the solver"
-    cost += f", compiling {swept.compile_s:.2f} s; {swept.request.solved_by}"
-    lines = []
-    if out is None:
-        columns = {column.name: column for column in swept.request.columns}
-        sections = swept.request.sections
-        heads = SHOWN | {
-            f"{word}: {name}": f"{word}: {head}"
-            for word in sections
-            for name, head in OF_SECTION.items()
-        }
-        if swept.request.level == "enclosed":
-            heads["position_error_m"] = "bound (m)"
-        shown = [columns[name] for name in heads if name in columns]
-        keys = list(swept.request.table.values)
-        rows = []
-        for number, row in enumerate(swept.rows()):
-            texts = swept.request.table.texts(number)
-            ok = row["status"] == Status.OK.value
-            results = [
-                _cell(row[column.name], row.get(column.error)) if ok else "" for column in shown
-            ]
-            rows.append(
-                (
-                    *(texts[key] for key in keys),
-                    *results,
-                    "" if ok else f"{row['status']}: {row['reason']}",
-                )
-            )
-        named = (*keys, *(heads[column.name] for column in shown))
-        lines += PageTable({**dict.fromkeys(named, "number"), "": ""}, rows).lines()
-    else:
-        lines.append(f"{out}: {counted(swept.request.parts, 'part')} in Parquet")
-    if swept.audit is not None:
-        audit = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
-        audit += (
-            f"; {len(swept.audit.refused)} that the solver refuses" if swept.audit.refused else ""
-        )
-        lines.append(
-            f"{counted(swept.audit.rows, 'row')} solved again in 28 digits: {audit}, CPU {swept.audit_s:.2f} s"
-        )
-    return "\n".join([*lines, total, cost])
+        rows = counted(tally.promoted, "row")
+        cost += f", {tally.promoted_s:.2f} s of them for {rows} that went to the solver"
+    return f"{cost}, compiling {swept.compile_s:.2f} s; {swept.request.solved_by}"
 
 
 def _cell(value: Any, error: float | None) -> str:
-    """Return a number with the digits that its error leaves, or ± the error where that is larger; an error with two."""
+    """Return a number with the digits that its error leaves, or with ± a larger error.
+
+    An error itself has two digits.
+    """
     if value is None:
         return "–"
     if isinstance(value, int):
@@ -163,7 +182,8 @@ def check(request: Request, path: Path) -> None:
     """Refuse a picture that could not be drawn, before any work.
 
     Raises:
-        InputError: a wrong path, other than one or two fields that are numbers, or neither quantity is wanted.
+        InputError: a wrong path, other than one or two fields that are numbers, or neither quantity
+            is wanted.
     """
     from reference.sweeps.axes import TEXTS
 
@@ -182,11 +202,14 @@ def draw(swept: Swept, path: Path) -> None:
     drawn = _drawn(request)
     columns = swept.columns(drawn)
     axes = [(key, np.array(texts, float)) for key, texts in request.table.values.items()]
-    draw_panel, height = (_curve, 3.0) if len(axes) == 1 else (_map, 3.6)
+    height = 3.0 if len(axes) == 1 else 3.6
     with sheet((8, height * len(drawn) + 0.4)) as figure:
         panels = np.atleast_1d(figure.subplots(len(drawn), 1, sharex=True))
         for panel, name in zip(panels, drawn, strict=True):
-            draw_panel(figure, panel, axes, LABELS[name], columns[name])
+            if len(axes) == 1:
+                _curve(panel, axes[0][1], _LABELS[name], columns[name])
+            else:
+                _map(figure, panel, axes, _LABELS[name], columns[name])
         panels[-1].set_xlabel(_label(axes[-1][0]))
         panels[0].set_title(f"{request.scene.id}, {float(request.scene.exact.t_end):g} s")
         content = picture(figure, path.suffix[1:].lower())
@@ -194,23 +217,23 @@ def draw(swept: Swept, path: Path) -> None:
 
 
 def _drawn(request: Request) -> list[str]:
+    """Return the columns that are drawn."""
     names = [column.name for column in request.columns]
-    return [name for name in LABELS if name in names]
+    return [name for name in _LABELS if name in names]
 
 
 def _label(key: str) -> str:
-    name, unit = key.rpartition(".")[2].replace("_", " "), unit_of(key).replace("degrees", "°")
+    """Return the label of an axis."""
+    name = key.rpartition(".")[2].replace("_", " ")
+    unit = unit_of(key).replace("degrees", "°")
     return f"{name} in {unit}" if unit else name
 
 
-def _curve(
-    _: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array
-) -> None:
-    ((_, x),) = axes
+def _curve(panel: Any, x: Array, label: str, values: Array) -> None:
+    """Draw a curve over one field."""
     order = np.argsort(x)
-    panel.plot(
-        x[order], values[order], color=BLUE, marker="o" if len(x) <= _MARKED else None, markersize=3
-    )
+    marker = "o" if len(x) <= _MARKED else None
+    panel.plot(x[order], values[order], color=BLUE, marker=marker, markersize=3)
     panel.grid(color=RULE)
     panel.ticklabel_format(axis="y", useOffset=False)
     panel.set_ylabel(label)
@@ -219,16 +242,21 @@ def _curve(
 def _map(
     figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array
 ) -> None:
+    """Draw a map over two fields; colours are symmetric about 0 if values have both signs."""
     (key, y), (_, x) = axes
     grid = values.reshape(len(y), len(x))[np.ix_(np.argsort(y), np.argsort(x))]
-    low, high = np.nanmin(grid, initial=np.inf), np.nanmax(grid, initial=-np.inf)
-    signed = low < 0 < high
-    most = max(-low, high)
-    style = {"vmin": -most, "vmax": most, "cmap": "RdBu_r"} if signed else {"cmap": "cividis"}
+    low = np.nanmin(grid, initial=np.inf)
+    high = np.nanmax(grid, initial=-np.inf)
+    style: dict[str, Any] = {"cmap": "cividis"}
+    if low < 0 < high:
+        largest = max(-low, high)
+        style = {"vmin": -largest, "vmax": largest, "cmap": "RdBu_r"}
     mesh = panel.pcolormesh(np.sort(x), np.sort(y), grid, **style, rasterized=True)
-    for limit, of_axis in ((panel.set_xlim, x), (panel.set_ylim, y)):
-        if len(of_axis) > 1:  # cells reach half a step farther, which may be no latitude
-            limit(of_axis.min(), of_axis.max())
+    # cells reach half a step beyond the values, where there may be no latitude
+    if len(x) > 1:
+        panel.set_xlim(x.min(), x.max())
+    if len(y) > 1:
+        panel.set_ylim(y.min(), y.max())
     panel.set_ylabel(_label(key))
     bar = figure.colorbar(mesh, ax=panel, label=label)
     bar.formatter.set_useOffset(False)

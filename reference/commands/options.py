@@ -28,7 +28,8 @@ def as_command(options: type[Chosen], run: Callable[[Chosen], None]) -> Callable
     """Return a function for typer: one keyword for each field of a dataclass, and the docstring of `run`.
 
     Args:
-        options: a dataclass; each field is annotated with its `typer.Option` or `typer.Argument`.
+        options: a dataclass; each field is annotated with its `typer.Option` or `typer.Argument`. A field without a
+            default is required.
         run: called with the options that a user chose.
     """
 
@@ -36,15 +37,17 @@ def as_command(options: type[Chosen], run: Callable[[Chosen], None]) -> Callable
         run(options(**values))
 
     hints = get_type_hints(options, include_extras=True)
-    command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-        inspect.Parameter(
+    parameters = []
+    for field in dataclasses.fields(options):  # type: ignore[arg-type]
+        required = field.default is dataclasses.MISSING
+        parameter = inspect.Parameter(
             field.name,
             inspect.Parameter.KEYWORD_ONLY,
-            default=field.default,
+            default=inspect.Parameter.empty if required else field.default,
             annotation=hints[field.name],
         )
-        for field in dataclasses.fields(options)  # type: ignore[arg-type]
-    )
+        parameters.append(parameter)
+    command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     command.__annotations__ = hints
     command.__doc__ = run.__doc__
     return command

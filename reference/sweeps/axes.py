@@ -1,4 +1,4 @@
-"""The rows of a sweep: all combinations of the values in `--over` words, or the lines of a file (CSV, Parquet)."""
+"""The rows of a sweep: combinations of the values in `--over` words, or the lines of a file."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ _FIXED = (
     "run.transits",
     "run.sections",
 )
-MOST_ROWS = 10**8
+_MOST_ROWS = 10**8
 MOST_VALUES = 10**7  # of a field: they are held as text
-MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
-FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
-PARQUET = (".parquet", ".pq")
+_MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
+_FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
+_PARQUET = (".parquet", ".pq")
 # thousands, or a decimal comma before three digits
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
@@ -51,11 +51,11 @@ _EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 @dataclass(frozen=True)
 class AxisTable:
-    """Rows of exact values: all combinations of the values of fields, the last one fastest, or a list.
+    """Rows of exact values: all combinations of values, the last field fastest, or a list.
 
     Attributes:
         values: of each field that is varied its values as text; in a list one a row.
-        typed: what stood after the fields' names in `--over` words; None for a list.
+        typed: of each field what a user typed after its name in `--over`; None for a list.
     """
 
     values: dict[str, tuple[str, ...]]
@@ -65,17 +65,14 @@ class AxisTable:
     def of(
         cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading
     ) -> AxisTable:
-        """Return the rows of which `typed` and `stored` are written down."""
-        values = {key: tuple(texts) for key, texts in stored.items()}
+        """Return the rows that were written down as `typed` and `stored`."""
+        from_file = {key: tuple(texts) for key, texts in stored.items()}
         if typed is None:
-            return cls(values)
-        return cls(
-            {
-                key: values.get(key) or axis(f"{key}={word}", reading)[-1]
-                for key, word in typed.items()
-            },
-            typed,
-        )
+            return cls(from_file)
+        values = {}
+        for key, word in typed.items():
+            values[key] = from_file.get(key) or axis(f"{key}={word}", reading).values
+        return cls(values, typed)
 
     @property
     def stored(self) -> dict[str, tuple[str, ...]]:
@@ -88,7 +85,7 @@ class AxisTable:
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
-        """The shape of a column as an array: the numbers of values of the fields, or the length of a list."""
+        """The shape of a column: the numbers of values of the fields, or the length of a list."""
         sizes = tuple(map(len, self.values.values()))
         return sizes[:1] if self.typed is None else sizes
 
@@ -105,10 +102,13 @@ class AxisTable:
         """Return the numbers of rows by field; only where nothing is wrong with them."""
         columns = {}
         for key, texts, places in self._placed(rows):
-            if key not in TEXTS:
-                distinct, back = np.unique(places, return_inverse=True)
-                numbers = _numbers([texts[place] for place in distinct], reading)
-                columns[key] = DoubleDouble(numbers.high[back], numbers.low[back])
+            if key in TEXTS:
+                continue
+            distinct, place_among_distinct = np.unique(places, return_inverse=True)
+            numbers = _numbers([texts[place] for place in distinct], reading)
+            columns[key] = DoubleDouble(
+                numbers.high[place_among_distinct], numbers.low[place_among_distinct]
+            )
         return columns
 
     def words(self, rows: Any) -> dict[str, list[str]]:
@@ -120,41 +120,50 @@ class AxisTable:
         }
 
     def wrong(self, rows: Iterable[int], reading: Reading) -> dict[int, str]:
-        """Return what is wrong with rows of a list, where one of the values is wrong by itself.
+        """Return, by row of a list, why its first wrong value is wrong by itself.
 
-        Those of `--over` words were checked when they were read.
+        The values of `--over` words were checked when they were read.
         """
         reasons: dict[int, str] = {}
-        for key, texts in self.values.items() if self.typed is None else ():
-            refusals = {text: _refusal(key, text, reading) for text in {texts[row] for row in rows}}
+        if self.typed is not None:
+            return reasons
+        for key, texts in self.values.items():
+            distinct = {texts[row] for row in rows}
+            refusals = {text: _refusal(key, text, reading) for text in distinct}
             for row in rows:
-                if refusals[texts[row]]:
-                    reasons.setdefault(row, refusals[texts[row]])
+                refusal = refusals[texts[row]]
+                if refusal:
+                    reasons.setdefault(row, refusal)
         return reasons
 
     def _placed(self, rows: Any) -> Iterator[tuple[str, tuple[str, ...], Any]]:
-        """Yield each field, its values, and where among them those of rows stand."""
+        """Yield each field, its values, and the place of each row's value among them."""
         numbers = np.asarray(rows, np.int64)
-        listed = self.typed is None
-        places = [numbers] * len(self.values) if listed else np.unravel_index(numbers, self.shape)
+        if self.typed is None:
+            places = [numbers] * len(self.values)
+        else:
+            places = list(np.unravel_index(numbers, self.shape))
         return zip(self.values, self.values.values(), places, strict=True)
 
 
 def _numbers(texts: Sequence[str], reading: Reading) -> DoubleDouble:
     """Return decimal numbers, shape (texts,), as a scene with this reading takes them."""
-    high = [float(text) for text in texts]
+    high = np.array([float(text) for text in texts])
     if reading == "binary64":
-        low = [0.0] * len(high)
-    else:
-        pairs = zip(texts, high, strict=True)
-        low = [
-            float(_EXACT.subtract(Decimal(text), Decimal(h))) if math.isfinite(h) else 0.0
-            for text, h in pairs
-        ]
-    return DoubleDouble(np.array(high), np.array(low))
+        return DoubleDouble(high, np.zeros(len(high)))
+    low = [_rounded_off(text, nearest) for text, nearest in zip(texts, high.tolist(), strict=True)]
+    return DoubleDouble(high, np.array(low))
+
+
+def _rounded_off(text: str, nearest: float) -> float:
+    """Return a decimal number minus its nearest double; 0 where that is not finite."""
+    if not math.isfinite(nearest):
+        return 0.0
+    return float(_EXACT.subtract(Decimal(text), Decimal(nearest)))
 
 
 def _refusal(key: str, text: str, reading: Reading) -> str:
+    """Return why a value of a field is wrong; "" if it is right."""
     try:
         checked_value(key, text, reading)
     except InputError as error:
@@ -168,15 +177,11 @@ def varied_names() -> list[str]:
 
 
 def _check_key(option: str, key: str) -> None:
-    """Raise InputError for what is no field of a scene, or none that a sweep can vary."""
-    if full_name(key) not in varied_names():
-        raise unknown(
-            option,
-            key,
-            "a field that a sweep can vary",
-            varied_names(),
-            "`foucault show SCENE` lists them.",
-        )
+    """Raise InputError for a key that is not a field of a scene, or that a sweep cannot vary."""
+    names = varied_names()
+    if full_name(key) not in names:
+        advice = "`foucault show SCENE` lists them."
+        raise unknown(option, key, "a field that a sweep can vary", names, advice)
 
 
 def grid(words: Iterable[str], reading: Reading) -> AxisTable:
@@ -188,43 +193,59 @@ def grid(words: Iterable[str], reading: Reading) -> AxisTable:
     values: dict[str, tuple[str, ...]] = {}
     typed: dict[str, str] = {}
     for word in words:
-        key, typed_values, texts = axis(word, reading)
-        if key in values:
-            raise InputError("--over", key, "each field once")
-        values[key], typed[key] = texts, typed_values
+        read = axis(word, reading)
+        if read.key in values:
+            raise InputError("--over", read.key, "each field once")
+        values[read.key] = read.values
+        typed[read.key] = read.typed
     table = AxisTable(values, typed)
-    if table.count > MOST_ROWS:
-        raise InputError("--over", f"{table.count} rows", f"at most {MOST_ROWS:,} rows")
+    if table.count > _MOST_ROWS:
+        raise InputError("--over", f"{table.count} rows", f"at most {_MOST_ROWS:,} rows")
     return table
 
 
-def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
-    """Read one `--over` word, KEY=…; return the key, what stands after it, and the values, which are checked.
+@dataclass(frozen=True)
+class Axis:
+    """One `--over` word: a field and its values.
+
+    Attributes:
+        key: the full name of the field.
+        typed: what was typed after KEY=.
+        values: the values as text.
+    """
+
+    key: str
+    typed: str
+    values: tuple[str, ...]
+
+
+def axis(word: str, reading: Reading) -> Axis:
+    """Read one `--over` word, KEY=…, and check its values.
 
     Raises:
         InputError: unknown field, or a wrong value: field, got, expected.
     """
     key, sign, typed = (part.strip() for part in word.partition("="))
     if not sign or not typed:
-        raise InputError("--over", word, f"KEY={FORMS}")
+        raise InputError("--over", word, f"KEY={_FORMS}")
     key = full_name(key)
     _check_key("--over", key)
-    if (":" in typed or ".." in typed) and not typed.startswith("@"):
-        texts = _range(key, typed)
-        for text in (texts[0], texts[-1]):
-            checked_value(key, text, reading)  # between these lie the others
-        return key, typed, texts
-    listed: Iterable[str] = (
-        _column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
-    )
-    texts = tuple(text.strip() for text in listed)
+    from_file = typed.startswith("@")
+    if (":" in typed or ".." in typed) and not from_file:
+        values = _range(key, typed)
+        for text in (values[0], values[-1]):
+            checked_value(key, text, reading)  # all others lie between these two
+        return Axis(key, typed, values)
+
+    texts = _column_of_csv(Path(typed[1:]), key) if from_file else typed.split(",")
+    values = tuple(text.strip() for text in texts)
     seen = set()
-    for text in texts:
+    for text in values:
         checked_value(key, text, reading)
         if text in seen:
             raise InputError("--over", word, "each value once", f"{text} stands there twice.")
         seen.add(text)
-    return key, typed, texts
+    return Axis(key, typed, values)
 
 
 def _range(key: str, word: str) -> tuple[str, ...]:
@@ -235,23 +256,28 @@ def _range(key: str, word: str) -> tuple[str, ...]:
     """
     parts = [part.strip() for part in word.split(":")]
     if len(parts) != 3:
-        raise InputError("--over", f"{key}={word}", f"{key}={FORMS}")
+        raise InputError("--over", f"{key}={word}", f"{key}={_FORMS}")
     start, stop, step = (_exactly(key, part) for part in parts)
     if step == 0 or (stop - start) / step < 0:
         raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
     count = (stop - start) // step + 1
     if count > MOST_VALUES:
         raise InputError("--over", f"{key}={word}", f"at most {MOST_VALUES:,} values")
-    decimals = max(0, *(-int(Decimal(part).as_tuple().exponent) for part in parts))
-    first, by = int(start * 10**decimals), int(step * 10**decimals)
-    texts = (with_decimal_point(first + i * by, decimals) for i in range(count))
-    return tuple(text.rstrip("0").rstrip(".") if decimals else text for text in texts)
+    exponents = [int(Decimal(part).as_tuple().exponent) for part in parts]
+    decimals = max(0, -min(exponents))
+    first_scaled = int(start * 10**decimals)
+    step_scaled = int(step * 10**decimals)
+    texts = []
+    for i in range(count):
+        text = with_decimal_point(first_scaled + i * step_scaled, decimals)
+        texts.append(text.rstrip("0").rstrip(".") if decimals else text)
+    return tuple(texts)
 
 
 def _exactly(key: str, text: str) -> Fraction:
-    """Return the exact value of a number that may lie beyond the field's range, as a step does."""
+    """Return the exact value of a number that may lie beyond the field's range, as a step may."""
     try:
-        checked_value("site.altitude", text, "decimal")  # which may be any number
+        checked_value("site.altitude", text, "decimal")  # a field that may be any number
     except InputError as error:
         raise InputError("--over", f"{key}={text}", error.expected, error.advice) from None
     return Fraction(text)
@@ -263,11 +289,10 @@ def listed(path: Path) -> AxisTable:
     Raises:
         InputError: it cannot be read, has no rows, or a column is no field that can be varied.
     """
-    columns = (
-        _columns_of_parquet(path)
-        if path.suffix.lower() in PARQUET
-        else _columns_of_csv("--rows", path)
-    )
+    if path.suffix.lower() in _PARQUET:
+        columns = _columns_of_parquet(path)
+    else:
+        columns = _columns_of_csv("--rows", path)
     names = [name for name, _ in columns]
     for name in names:
         if names.count(name) > 1:
@@ -281,7 +306,10 @@ def listed(path: Path) -> AxisTable:
 def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
     needed("pyarrow", "sweep", "--rows", "reading Parquet")
-    with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
+    with (
+        _readable("--rows", path),
+        regular(path, "--rows", _MOST_BYTES, "a Parquet file") as stream,
+    ):
         columns = read_columns(stream, _check_size)
     return [(full_name(key), tuple(map(_text, column))) for key, column in columns.items()]
 
@@ -295,16 +323,19 @@ def _check_size(names: Iterable[str], rows: int) -> None:
 
 
 def _text(value: Any) -> str:
-    return format(Decimal(value), "f") if isinstance(value, float | int) else str(value)
+    """Return a value of a Parquet file as text, a number in full."""
+    if isinstance(value, float | int):
+        return format(Decimal(value), "f")
+    return str(value)
 
 
 def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]]:
-    """Return the columns of a CSV file: of each its name, which may be a value, and the values below it.
+    """Return the columns of a CSV file: a name, which may be a value, and the values below it.
 
-    The first line tells whether commas, semicolons or tabs separate them. A first column without a name is the index
-    of a data frame, and is left out.
+    The separator is a semicolon or a tab if the first line has one, else a comma. A first column
+    without a name is the index of a data frame, and is left out.
     """
-    with _readable(option, path), regular(path, option, MOST_BYTES, "a CSV file") as stream:
+    with _readable(option, path), regular(path, option, _MOST_BYTES, "a CSV file") as stream:
         text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
         first = text.readline()
         separator = next((mark for mark in ";\t" if mark in first), ",")
@@ -317,13 +348,17 @@ def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]
         if len(line) != len(names):
             expected = f"{len(names)} values as in the first"
             raise InputError(option, f"{path}, row {number}", expected, f"It has {len(line)}.")
-    if len(names) > 1 and not names[0].strip():
-        names, below = names[1:], [line[1:] for line in below]
-    if separator != ",":
-        below = [[_with_point(option, cell) for cell in line] for line in below]
-    return [
-        (full_name(name), tuple(line[i].strip() for line in below)) for i, name in enumerate(names)
-    ]
+
+    is_indexed = len(names) > 1 and not names[0].strip()
+    columns = []
+    for place, name in enumerate(names):
+        if place == 0 and is_indexed:
+            continue
+        cells = [line[place] for line in below]
+        if separator != ",":
+            cells = [_with_point(option, cell) for cell in cells]
+        columns.append((full_name(name), tuple(cell.strip() for cell in cells)))
+    return columns
 
 
 def _with_point(option: str, cell: str) -> str:
@@ -332,15 +367,19 @@ def _with_point(option: str, cell: str) -> str:
     Raises:
         InputError: its comma may separate thousands.
     """
-    if _GROUPED.fullmatch(cell.strip()):
-        raise InputError(
-            option, cell, "a point for the decimal mark", "Does its comma separate thousands?"
-        )
-    return cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell.strip()) else cell
+    number = cell.strip()
+    if _GROUPED.fullmatch(number):
+        advice = "Does its comma separate thousands?"
+        raise InputError(option, cell, "a point for the decimal mark", advice)
+    if _DECIMAL_COMMA.fullmatch(number):
+        return cell.replace(",", ".")
+    return cell
 
 
 def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
-    """Return the values of one field from a CSV file: its column of that name, or the only one.
+    """Return the values of one field from a CSV file: the column of its name, or the only column.
+
+    A file of a single column may have no name above it: then its first line is a value.
 
     Raises:
         InputError: it cannot be read, or there is no such column.
@@ -350,14 +389,15 @@ def _column_of_csv(path: Path, key: str) -> tuple[str, ...]:
         if name == key:
             return values
     if len(columns) > 1:
-        raise InputError(
-            "--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(dict(columns))}."
-        )
-    return (columns[0][0], *columns[0][1])
+        advice = f"It has {', '.join(dict(columns))}."
+        raise InputError("--over", f"{key}=@{path}", f"a column {key}", advice)
+    ((first, below),) = columns
+    return (first, *below)
 
 
 @contextmanager
 def _readable(option: str, path: Path) -> Iterator[None]:
+    """Have a file that cannot be read raise InputError."""
     try:
         with usable(option, path, "a readable file"):
             yield

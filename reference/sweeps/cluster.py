@@ -1,6 +1,7 @@
-"""Clusters through dask.distributed, to which this is the only door: a scheduler somewhere, or one on this machine.
+"""Clusters through dask.distributed, here or on other machines; the only door to dask.
 
-dask sends a part again when its worker is lost. A part that was lost as often as dask allows has killed its workers.
+dask sends a part again if its worker is lost. A part that was lost as often as dask allows has
+killed its workers.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ from .driver import Executor, isolated, prepared, solve_and_save
 from .part import Part
 from .request import Request, request_of
 
-LOCAL = "local:"
-SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
-# alike everywhere
-PACKAGES = ("foucault-reference", "heyoka", "numba", "numpy", "python-flint", "mpmath", "pyarrow")
-WAIT_S = 10.0  # for an answer of the scheduler
-FOREVER_S = 1e7
-RETRIES = 3  # of a part that raised an error which is none of this project's
-LOST = "the scheduler was lost; what is done stays, and the same command goes on."
+_LOCAL = "local:"
+_SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
+# packages whose versions must be equal everywhere
+_PACKAGES = ("foucault-reference", "heyoka", "numba", "numpy", "python-flint", "mpmath", "pyarrow")
+_WAIT_S = 10.0  # for an answer of the scheduler
+_FOREVER_S = 1e7
+_RETRIES = 3  # of a part that raised an error
+_LOST = "the scheduler was lost; what is done stays, and the same command goes on."
 
 
 class ClusterError(FoucaultError):
@@ -55,13 +56,15 @@ class Scheduler:
     """
 
     def __init__(self, client: Any, workers: int, versions: dict[str, Any]) -> None:
-        self.client, self.workers, self.versions = client, workers, versions
+        self.client = client
+        self.workers = workers
+        self.versions = versions
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call on some worker; its future may raise `WorkerDied` or `ClusterError`."""
         future: Future[Any] = Future()
         dask_future = self.client.submit(
-            _called, self.versions, function, *arguments, pure=False, retries=RETRIES
+            _called, self.versions, function, *arguments, pure=False, retries=_RETRIES
         )
         dask_future.add_done_callback(partial(_settle, future))
         return future
@@ -73,31 +76,32 @@ class Scheduler:
             ClusterError: it is.
         """
         if self.client.status != "running":
-            raise ClusterError(LOST)
+            raise ClusterError(_LOST)
 
 
 @contextmanager
 def scheduler_at(address: str) -> Iterator[Scheduler]:
-    """Provide a scheduler whose workers all have the versions that are here; leave it, or end one that is started here.
+    """Provide a scheduler whose workers have our versions; end it if it was started here.
 
     Args:
-        address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's configuration, or local:N for
-            N processes of one thread on this machine.
+        address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's
+            configuration, or local:N for N processes of one thread on this machine.
 
     Raises:
-        InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
+        InputError: no scheduler answers there, it has no workers, or their versions differ from
+            those here.
     """
-    # a lost scheduler is told in one line
+    # `ClusterError` reports a lost scheduler in one line
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         client = _connected(address, stack)
         try:
-            client.wait_for_workers(1, timeout=WAIT_S)
+            client.wait_for_workers(1, timeout=_WAIT_S)
         except TimeoutError:
             advice = "Start them: `dask worker ADDRESS`."
             raise InputError("--cluster", address, "a scheduler with workers", advice) from None
         workers = sum(client.nthreads().values())
-        versions = client.get_versions(packages=PACKAGES)
+        versions = client.get_versions(packages=_PACKAGES)
         here = versions["client"]["packages"]
         for worker, there in versions["workers"].items():
             _check_versions(there["packages"], here, worker)
@@ -105,76 +109,77 @@ def scheduler_at(address: str) -> Iterator[Scheduler]:
 
 
 def _connected(address: str, stack: ExitStack) -> Any:
-    """Return a client of the scheduler that answers at an address, or of one that is started here."""
-    if address.startswith(LOCAL):
-        count = address[len(LOCAL) :]
-        if not count.isdigit() or not int(count):
-            raise InputError("--cluster", address, "local:N with a number of workers from 1")
-        # dask gives a local worker up that is being started again some seconds after its death: the last one, too
-        stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
-        scratch = stack.enter_context(workspace(Path(gettempdir()), "foucault-dask"))
-        stack.enter_context(dask.config.set({"temporary-directory": str(scratch)}))
-        # Ctrl-C reaches the workers as well, which would print where they are: they begin with signals held back, and
-        # so do those that replace them. This process ends them. What multiprocessing starts first lets signals through
-        # again, in the thread that starts it.
-        resource_tracker.ensure_running()
-        with held():
-            try:
-                cluster = distributed.LocalCluster(
-                    n_workers=int(count),
-                    threads_per_worker=1,
-                    dashboard_address=None,
-                    silence_logs=50,
-                    # any port: dask warns where another has its own
-                    scheduler_kwargs={"dashboard_address": ":0"},
-                )
-            except RuntimeError as error:
-                raise InputError(
-                    "--cluster", address, "processes that dask can start here", f"{error}"
-                ) from None
-            return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
-    if not address.startswith(SCHEMES):
-        raise InputError(
-            "--cluster",
-            address,
-            "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N",
-        )
+    """Return a client of the scheduler at an address, or of one that is started here."""
+    if address.startswith(_LOCAL):
+        return _started(address, stack)
+    if not address.startswith(_SCHEMES):
+        expected = "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N"
+        raise InputError("--cluster", address, expected)
     try:
-        return stack.enter_context(distributed.Client(address, timeout=WAIT_S))
+        return stack.enter_context(distributed.Client(address, timeout=_WAIT_S))
     except (OSError, ValueError):
+        expected = f"a scheduler that answers within {_WAIT_S:g} s"
         advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
-        raise InputError(
-            "--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice
-        ) from None
-    except TypeError as error:  # of tls:// without certificates
-        raise InputError(
-            "--cluster", address, "certificates in dask's configuration", f"{error}."
-        ) from None
+        raise InputError("--cluster", address, expected, advice) from None
+    except TypeError as error:  # tls:// without certificates
+        expected = "certificates in dask's configuration"
+        raise InputError("--cluster", address, expected, f"{error}.") from None
+
+
+def _started(address: str, stack: ExitStack) -> Any:
+    """Return a client of a scheduler that is started here, with N workers for local:N."""
+    count = address.removeprefix(_LOCAL)
+    if not count.isdigit() or not int(count):
+        raise InputError("--cluster", address, "local:N with a number of workers from 1")
+    # dask waits only some seconds for a worker that is started again after its death, even for the
+    # last one
+    stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": _FOREVER_S}))
+    scratch = stack.enter_context(workspace(Path(gettempdir()), "foucault-dask"))
+    stack.enter_context(dask.config.set({"temporary-directory": str(scratch)}))
+    # Ctrl-C reaches the workers as well, and they would print tracebacks. So they begin with
+    # signals held back, as do those that replace them, and this process ends them. The resource
+    # tracker of multiprocessing lets signals through again in the thread that starts it: it is
+    # started before.
+    resource_tracker.ensure_running()
+    with held():
+        try:
+            cluster = distributed.LocalCluster(
+                n_workers=int(count),
+                threads_per_worker=1,
+                dashboard_address=None,
+                silence_logs=50,
+                # any port: dask warns if its usual port is taken
+                scheduler_kwargs={"dashboard_address": ":0"},
+            )
+        except RuntimeError as error:
+            expected = "processes that dask can start here"
+            raise InputError("--cluster", address, expected, f"{error}") from None
+        return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
 
 
 def _check_versions(there: dict[str, Any], here: dict[str, Any], worker: str) -> None:
-    for name in PACKAGES:
-        if (got := there[name]) != here[name]:
-            advice = "Install the same versions everywhere."
-            raise InputError(
-                "--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice
-            )
+    """Refuse a worker whose packages have other versions than here."""
+    for name in _PACKAGES:
+        if there[name] != here[name]:
+            got = f"{name} {there[name]} on {worker}"
+            expected = f"{name} {here[name]}, as here"
+            raise InputError("--cluster", got, expected, "Install the same versions everywhere.")
 
 
 def _called(versions: dict[str, Any], function: Callable[..., Any], *arguments: Any) -> Any:
-    """Call a function on a worker, which may have come since the versions of the others were checked."""
-    _check_versions(get_package_info(PACKAGES), versions, distributed.get_worker().address)
+    """Call a function on a worker, which may have joined after the others were checked."""
+    _check_versions(get_package_info(_PACKAGES), versions, distributed.get_worker().address)
     return function(*arguments)
 
 
 def _settle(future: Future[Any], dask_future: Any) -> None:
-    """Give a future the outcome of dask's; what was lost with its worker meanwhile is waited for."""
+    """Give a future the outcome of dask's."""
     try:
         future.set_result(dask_future.result())
     except KilledWorker:
         future.set_exception(WorkerDied("its workers died"))
     except distributed.client.FutureCancelledError:
-        future.set_exception(ClusterError(LOST))
+        future.set_exception(ClusterError(_LOST))
     except BaseException as error:
         future.set_exception(error)
 
@@ -190,21 +195,18 @@ def on_cluster(request: Request, folder: Path | None, address: str) -> Iterator[
     """
     with scheduler_at(address) as scheduler:
         compile_s = max(scheduler.client.run(_prepare, request.text).values())
-        shared = (
-            folder.resolve()
-            if folder is not None and _is_seen(folder.resolve(), scheduler)
-            else None
-        )
-        yield Executor(
-            scheduler.workers,
-            lambda rows: scheduler.submit(compute, request.text, rows, shared),
-            scheduler.check,
-            compile_s,
-        )
+        shared = None
+        if folder is not None and _is_seen(folder.resolve(), scheduler):
+            shared = folder.resolve()
+
+        def begin(rows: range) -> Future[Any]:
+            return scheduler.submit(compute, request.text, rows, shared)
+
+        yield Executor(scheduler.workers, begin, scheduler.check, compile_s)
 
 
 def _is_seen(folder: Path, scheduler: Scheduler) -> bool:
-    """Return whether every worker sees a folder; a file of a random name tells."""
+    """Return whether every worker sees a folder: whether a file of a random name exists there."""
     nonce = folder / f".seen-by-workers-{token_hex(8)}"
     nonce.touch()
     try:
@@ -213,7 +215,7 @@ def _is_seen(folder: Path, scheduler: Scheduler) -> bool:
         nonce.unlink()
 
 
-_alone = Pool(1)  # of a worker, for rows that the solver solves by themselves
+_alone = Pool(1)  # the process of a worker for rows that the solver solves
 
 
 def _prepare(text: str) -> float:

@@ -1,6 +1,9 @@
-"""Run the parts of a sweep on workers that may die: a part that kills its worker is run again row by row.
+"""Run the parts of a sweep on workers that may die.
 
-Workers on this machine are threads for rows side by side, and processes for rows that the solver solves.
+A part that kills its worker is run again row by row.
+
+Workers on this machine are threads for rows side by side, and processes for rows that the solver
+solves.
 """
 
 from __future__ import annotations
@@ -25,10 +28,10 @@ from .promote import Promoted, promoted
 from .request import Request, request_of
 from .store import Store
 
-BLOCKS = 16  # of a whole part, solved one after the other: a thread that is to end ends after one
-LEAST_BLOCK = 256  # rows
-PER_WORKER = 3  # parts that wait or are computed for each worker
-DIED_REASON = "Its process died each time, alone as well"
+_BLOCKS = 16  # of a whole part, solved one after the other; a thread can end after each
+_LEAST_BLOCK = 256  # rows
+_PER_WORKER = 3  # parts that wait or are computed for each worker
+_DIED_REASON = "Its process died each time, alone as well"
 
 
 @dataclass
@@ -37,8 +40,9 @@ class Executor:
 
     Attributes:
         workers: how many.
-        begin: begins a part, or some of its rows: the result is that of `solve_and_save`, or `WorkerDied` is raised.
-        check: raises if nothing will come any more; None where that cannot be.
+        begin: begins a part, or some of its rows; the result is that of `solve_and_save`, or
+            `WorkerDied` is raised.
+        check: raises if the workers are lost; None if they cannot be.
         compile_s: CPU seconds of compiling.
     """
 
@@ -61,7 +65,8 @@ def drive(
 ) -> Tally:
     """Run parts to their end; return the tally of all.
 
-    The rows of a part whose worker died are run alone, one after the other: those whose worker dies again are crashed.
+    The rows of a part whose worker died are run alone, one after the other. Those whose worker dies
+    again are crashed.
 
     Args:
         request: the sweep.
@@ -70,11 +75,11 @@ def drive(
         keep: called with every part that `solve_and_save` did not save.
         report: called with the number of rows that were done since the last call.
     """
-    total, died = Tally(), list[range]()
-    at_once = PER_WORKER * executor.workers
-    for rows, future in as_done(
-        executor.begin, map(request.rows_of, parts), at_once, executor.check
-    ):
+    total = Tally()
+    died: list[range] = []
+    at_once = _PER_WORKER * executor.workers
+    whole = map(request.rows_of, parts)
+    for rows, future in as_done(executor.begin, whole, at_once, executor.check):
         try:
             solved = future.result()
         except WorkerDied:
@@ -84,21 +89,28 @@ def drive(
         if solved.columns:
             keep(request.part_of(rows.start), solved)
         report(len(rows))
+
     for rows in died:
-        alone = []
-        for row, future in as_done(
-            executor.begin, (range(number, number + 1) for number in rows), 1, executor.check
-        ):
-            try:
-                alone.append(future.result())
-            except WorkerDied as death:
-                alone.append(_crashed(request, row, f"{DIED_REASON}: {death}."))
-            report(1)
-        solved = Part.joined(alone)
+        solved = _row_by_row(request, rows, executor, report)
         total += solved.tally
         if solved.columns:  # else the row is a whole part, which `solve_and_save` has saved
             keep(request.part_of(rows.start), solved)
     return total
+
+
+def _row_by_row(
+    request: Request, rows: range, executor: Executor, report: Callable[[int], None]
+) -> Part:
+    """Return rows run alone, one after the other; those whose worker dies are crashed."""
+    solved = []
+    single = (range(number, number + 1) for number in rows)
+    for row, future in as_done(executor.begin, single, 1, executor.check):
+        try:
+            solved.append(future.result())
+        except WorkerDied as death:
+            solved.append(_crashed(request, row, f"{_DIED_REASON}: {death}."))
+        report(1)
+    return Part.joined(solved)
 
 
 def _crashed(request: Request, rows: range, reason: str) -> Part:
@@ -116,18 +128,21 @@ def solve_and_save(
     promote: Promote = promoted,
     stop: threading.Event | None = None,
 ) -> Part:
-    """Return rows solved; where they are a whole part and there is a folder, save them and return their tally alone.
+    """Return rows solved; save a whole part if there is a folder, and return its tally alone.
 
     Raises:
         Interrupted: the event `stop` was set meanwhile.
         InputError: it cannot be saved.
     """
-    blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
+    size = max(request.rows_per_part // _BLOCKS, _LEAST_BLOCK)
+    blocks = []
     for first in range(rows.start, rows.stop, size):
         if stop is not None and stop.is_set():
             raise Interrupted
-        blocks.append(solve_part(request, range(first, min(first + size, rows.stop)), promote))
-    solved, part = Part.joined(blocks), request.part_of(rows.start)
+        block = range(first, min(first + size, rows.stop))
+        blocks.append(solve_part(request, block, promote))
+    solved = Part.joined(blocks)
+    part = request.part_of(rows.start)
     if folder is None or rows != request.rows_of(part):
         return solved
     started = time.thread_time()
@@ -140,8 +155,8 @@ def solve_and_save(
 def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
     """Provide workers on this machine.
 
-    Where the sweep is interrupted, processes are ended; threads end after the block of rows that they are at, which may
-    take minutes and is not waited for.
+    If the sweep is interrupted, processes are ended. Threads end after their block of rows, which
+    may take minutes, and are not waited for.
 
     Args:
         request: the sweep.
@@ -154,12 +169,13 @@ def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iter
         return
 
     def prepare() -> None:
-        took_s = prepared(request)  # before the sum is read, to which other threads add meanwhile
-        executor.compile_s += took_s
+        compile_s = prepared(request)  # first, as other threads add to the sum meanwhile
+        executor.compile_s += compile_s
 
-    executor = Executor(
-        workers, lambda rows: threads.submit(solve_and_save, request, rows, folder, promote, stop)
-    )
+    def begin(rows: range) -> Future[Any]:
+        return threads.submit(solve_and_save, request, rows, folder, promote, stop)
+
+    executor = Executor(workers, begin)
     stop = threading.Event()
     threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=prepare)
     try:
@@ -175,8 +191,10 @@ def prepared(request: Request) -> float:
     """Compile in this thread what the rows need; return the CPU seconds that it took."""
     started = time.thread_time()
     engine = batches()[request.engine]
-    for options in (request.run_options, MOVED, *([PASSAGES] if request.sections else [])):
+    for options in (request.run_options, MOVED):
         engine.prepare(options)
+    if request.sections:
+        engine.prepare(PASSAGES)
     return time.thread_time() - started
 
 
@@ -186,16 +204,21 @@ def compute(text: str, rows: range, folder: Path | None) -> Part:
 
 
 def isolated(pool: Pool, request: Request, row: int, *, doubtful: bool) -> Promoted:
-    """Return what `promoted` does, from a process of its own: the solver is not made for several threads."""
+    """Call `promoted` in another process: the solver is not made for several threads."""
     try:
         result: Promoted = pool.submit(compute_alone, request.text, row, doubtful).result()
     except WorkerDied as death:
-        return Promoted({}, ([], []), str(death))
+        return Promoted.failed(str(death))
     return result
 
 
 def compute_alone(text: str, row: int, doubtful: bool) -> Promoted:
-    """Have the solver solve a row in this process; note what it cost, with the processes that it started."""
-    before = sum(os.times()[:4])
+    """Solve a row in this process; note its cost, with the processes that the solver started."""
+    before_s = _process_s()
     result = promoted(request_of(text), row, doubtful=doubtful)
-    return replace(result, cpu_s=sum(os.times()[:4]) - before)
+    return replace(result, cpu_s=_process_s() - before_s)
+
+
+def _process_s() -> float:
+    """Return the CPU seconds of this process and of those that it started and that have ended."""
+    return sum(os.times()[:4])

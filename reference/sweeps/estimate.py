@@ -1,14 +1,16 @@
-"""How large the error of a row is: from a second run of another order, with every constant and start moved by an ulp.
+"""Estimates of the errors of rows, from a second run.
 
-`columns_of` makes the columns of rows from results and errors: no value without its error.
+It has another order, and every constant and start number is moved by an ulp.
+`columns_of` turns results and their errors into columns: no value without its error.
 
-Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
-It may be smaller by chance: therefore the factor, and a least difference, what half an ulp in the constants may do.
-Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
-one way, and the two may cancel. There a third run is moved the other way, and the factor is larger.
+Both runs round differently everywhere, the constants included, so that their difference is of the
+size of the error. It may be smaller by chance: hence the factor, and a least difference, which is
+what half an ulp in the constants may do. Errors that have grown to many ulps point in one
+direction, and so may those of a bob with enough energy to rise to the pivot: the errors of the two
+runs may cancel. Then a third run is moved the other way, and the factor is larger.
 
-`pytest --long tests/campaigns/test_sweeps.py -k error` holds 3,500 random rows of 600 s, 500 of them over the top or
-beyond the horizontal, against limbs at 110 bits.
+`pytest --long tests/campaigns/test_sweeps.py -k error` compares 3,500 random rows of 600 s, 500 of
+them over the top or beyond the horizontal, with limbs at 110 bits.
 """
 
 from __future__ import annotations
@@ -32,13 +34,14 @@ from .highest_points import (
 )
 from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
 
-FACTOR = 16.0
-WILD_FACTOR = 64.0  # where there are three runs
-LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
-HALF_ULP = 2.0**-53  # of a number just above 1, relative
-GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
-HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
-MOVED, MOVED_BACK = (RunOptions(transits=False, apsides=False, moved=way) for way in (1, -1))
+_FACTOR = 16.0
+_WILD_FACTOR = 64.0  # where there are three runs
+_LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
+_HALF_ULP = 2.0**-53  # of a number just above 1, relative
+_GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
+_HEIGHT = _FACTOR * _LEAST_ULPS * _HALF_ULP  # what rounding may do to a height over the cord length
+MOVED = RunOptions(transits=False, apsides=False, moved=1)
+MOVED_BACK = RunOptions(transits=False, apsides=False, moved=-1)
 PASSAGES = RunOptions(apsides=False, times=True, form=True)
 
 
@@ -53,8 +56,8 @@ class Errors:
         frequency, swing: of both frequencies, in Hz.
         precession: in degrees an hour.
         angle: of the largest angle, in degrees.
-        undecided: where the number of transits hangs on these errors.
-        unsure_of_highest: where that of highest points does.
+        undecided: where the number of transits depends on these errors.
+        unsure_of_highest: where the number of highest points does.
     """
 
     position: Array
@@ -68,49 +71,91 @@ class Errors:
     unsure_of_highest: Array
 
 
+@dataclass(frozen=True)
+class Passages:
+    """The zeros of a section's form in several rows, ordered by row and time.
+
+    Attributes:
+        row: in which row each is, from 0.
+        t: its time in s.
+        direction: 1 where the form grows, else -1.
+    """
+
+    row: Any
+    t: Array
+    direction: Any
+
+    def __getitem__(self, chosen: Any) -> Passages:
+        """Return some of the passages."""
+        return Passages(self.row[chosen], self.t[chosen], self.direction[chosen])
+
+
 def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
-    """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
+    """Return the errors of a run by one or two moved runs, and where a moved run stopped."""
     moved = engine.solve(rows, MOVED)
-    estimated, stopped = errors(rows, run, moved), moved.fate == STOPPED
+    estimated = errors(rows, run, moved)
+    stopped = moved.fate == STOPPED
+    wild = _is_wild(rows, estimated)
+    again = np.flatnonzero(~stopped & wild)
+    if not len(again):
+        return estimated, stopped
+
+    back = engine.solve(rows[again], MOVED_BACK)
+    stopped[again] |= back.fate == STOPPED
+    moved = _farthest(rows, run, moved, back, again)
+    return errors(rows, run, moved, np.where(wild, _WILD_FACTOR, _FACTOR)), stopped
+
+
+def _is_wild(rows: Rows, estimated: Errors) -> Array:
+    """Return where the errors may cancel: they have grown, or the bob can reach the pivot."""
     n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
     reaches_the_pivot = (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
-    wild = ~(estimated.position <= GROWN * rows.length[:, 0]) | reaches_the_pivot
-    grown = np.flatnonzero(~stopped & wild)
-    if not len(grown):
-        return estimated, stopped
-    back = engine.solve(rows[grown], MOVED_BACK)
-    rate, state = rows.rate[grown, None], moved.state.copy()
-    gaps = [np.abs(other - run.state[grown]) for other in (state[grown], back.state)]
-    near, far = (
-        np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1)
-        for gap in gaps
-    )
-    state[grown[far > near]] = back.state[far > near]
-    stopped[grown] |= back.fate == STOPPED
-    return errors(
-        rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)
-    ), stopped
+    is_small = estimated.position <= _GROWN * rows.length[:, 0]
+    return np.asarray(~is_small | reaches_the_pivot)
 
 
-def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
-    """Return the errors of a run, from the run that was moved, and what their difference is multiplied by."""
-    length, rate = rows.length[:, 0], rows.rate
+def _farthest(rows: Rows, run: Outcomes, moved: Outcomes, back: Outcomes, again: Any) -> Outcomes:
+    """Return the moved run, with the states of `back` where these are farther from the run's.
+
+    `back` was moved the other way; it has the rows `again` alone.
+    """
+    rate = rows.rate[again, None]
+    state = moved.state.copy()
+
+    def distance(other: Array) -> Array:
+        gap = np.abs(other - run.state[again])
+        in_position = np.linalg.norm(rate * gap[:, :3], axis=1)
+        in_velocity = np.linalg.norm(gap[:, 3:], axis=1)
+        return np.asarray(in_position + in_velocity)
+
+    is_farther = distance(back.state) > distance(state[again])
+    state[again[is_farther]] = back.state[is_farther]
+    return replace(moved, state=state)
+
+
+def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = _FACTOR) -> Errors:
+    """Return the errors of a run: its difference from the moved run times a factor."""
+    length = rows.length[:, 0]
+    rate = rows.rate
     gap = run.state - moved.state
-    position, velocity = np.linalg.norm(gap[:, :3], axis=1), np.linalg.norm(gap[:, 3:], axis=1)
-    ulp = LEAST_ULPS * np.spacing(length) + _of_constants(rows)
+    position_gap = np.linalg.norm(gap[:, :3], axis=1)
+    velocity_gap = np.linalg.norm(gap[:, 3:], axis=1)
     speed = np.linalg.norm(run.state[:, 3:], axis=1)
+    least_gap = _LEAST_ULPS * np.spacing(length) + _of_constants(rows)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # where a swing is late its position tells at the lowest point, its velocity at the highest
-        position = factor * np.fmax(
-            position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp)
-        )
-        velocity = factor * np.fmax(
-            velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed))
-        )
+        # an error of the phase shows in the position at the lowest point, and in the velocity at
+        # the highest
+        phase_gap = np.where(rate > 0, velocity_gap / rate, 0.0)
+        position = factor * np.fmax(position_gap, np.fmax(phase_gap, least_gap))
+        least_velocity_gap = np.fmax(rate * position / factor, _LEAST_ULPS * np.spacing(speed))
+        velocity = factor * np.fmax(velocity_gap, least_velocity_gap)
+
         transit, undecided = _of_zeros(rows, run, position, velocity)
         span = run.t_last - run.t_first
         share = (run.transits - 1) * transit / span
         swing, precession = errors_of_swing(rows, run, position, velocity)
+    # a height rounds to about an ulp, which says little about an angle next to the top
+    rounding = np.fmin(_HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * _HEIGHT))
     return Errors(
         position=position,
         velocity=velocity,
@@ -118,115 +163,130 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         frequency=np.where((run.transits > 1) & (share < LATE), share / span, np.nan),
         swing=swing,
         precession=precession,
-        # the height, which rounds to about an ulp, tells little of an angle next to the top
-        angle=np.degrees(
-            position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))
-        ),
+        angle=np.degrees(position / length + rounding),
         undecided=undecided,
         unsure_of_highest=unsure_of_highest(rows, run, position, velocity),
     )
 
 
 def _of_constants(rows: Rows) -> Array:
-    """Return how far constants that are off by half an ulp may turn a swing in the whole span, in m."""
+    """Return how far half an ulp of the constants may move the bob in the whole span, in m."""
     rate = rows.rate
     reach = np.fmin(fastest_of(rows) / rate, 1.0)
-    turned: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * HALF_ULP
-    return np.where(rate > 0, turned, 0.0)
+    moved_m: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * _HALF_ULP
+    return np.where(rate > 0, moved_m, 0.0)
 
 
 def _of_zeros(
     rows: Rows, run: Outcomes, position: Array, velocity: Array, vertical: bool = False
 ) -> tuple[Array, Array]:
-    """Return the error of the worst transit's time, and where one may lie beyond the end, or a close pair be none.
+    """Return the error of the worst zero's time in s, and where the number of zeros is undecided.
 
-    Of a section likewise, from how wrong its form may be; `vertical` says that it is the rate of the height, of which
-    a velocity's error is the part along the sphere, and a position's turns the velocity.
+    It is where a zero may lie beyond the end, or where a close pair of zeros may not exist.
+
+    Args:
+        rows: the rows, with the form whose zeros the run has: that of xdot, or of a section.
+        run: the results.
+        position: error of the position, in m.
+        velocity: error of the velocity, in m/s.
+        vertical: whether the form is the rate of the height. Of a velocity's error it sees the part
+            along the sphere, and an error of the position turns the velocity.
     """
-    length, speed = rows.length[:, 0], np.linalg.norm(run.state[:, 3:], axis=1)
-    form, state = rows.form[..., 0], run.state
-    value = (
-        (form[:, :3] * state[:, :3]).sum(axis=1)
-        + (form[:, 3:6] * state[:, 3:]).sum(axis=1)
-        - form[:, 6] * length
-    )
-    of_place, of_velocity = (np.linalg.norm(part, axis=1) for part in (form[:, :3], form[:, 3:6]))
+    length = rows.length[:, 0]
+    place, motion = run.state[:, :3], run.state[:, 3:]
+    form = rows.form[..., 0]
+    a, b, d = form[:, :3], form[:, 3:6], form[:, 6]
+    value = (a * place).sum(axis=1) + (b * motion).sum(axis=1) - d * length
+
+    a_size = np.linalg.norm(a, axis=1)
+    b_size = np.linalg.norm(b, axis=1)
+    speed = np.linalg.norm(motion, axis=1)
     fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
     sine = np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
-    off, bend = of_place * position + of_velocity * velocity, fastest**2 * length * sine
-    bend = np.fmin(
-        bend * (of_place + of_velocity * fastest), bend_of_pairs(rows, run.largest_angle)
-    )
+    form_error = a_size * position + b_size * velocity
+    bend = fastest**2 * length * sine * (a_size + b_size * fastest)
+    bend = np.fmin(bend, bend_of_pairs(rows, run.largest_angle))
     if vertical:
         passing = fastest_of(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
-        off, bend = of_velocity * (sine * velocity + passing * position), 8 * sine * bend
-    pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * bend * off)
-    undecided: Array = ~rows.still & ((np.abs(value) <= off) | pair)
-    return off / run.least_ax + np.spacing(run.t_last), undecided
+        form_error = b_size * (sine * velocity + passing * position)
+        bend = 8 * sine * bend
+
+    may_cross_the_end = np.abs(value) <= form_error
+    may_not_exist = (run.close_pairs > 0) & (run.least_ax**2 < 4 * bend * form_error)
+    undecided: Array = ~rows.still & (may_cross_the_end | may_not_exist)
+    return form_error / run.least_ax + np.spacing(run.t_last), undecided
 
 
 def bend_of_pairs(rows: Rows, angle: Array) -> Array:
-    """Return a bound of |d²xdot/dt²| between two close transits of swings up to an angle; NaN where it is not known.
+    """Return a bound of |d²xdot/dt²| between two close transits of swings up to an angle.
 
-    With T the force along the cord over l, x'' = Coriolis - x T. Let M be the bound and h < π/(2ω) the time between the
-    transits: |xdot| <= M h²/8 there, and x'' is zero somewhere, so that |x| <= 2Ω|v|/T + M h³/8. Below 30° T is within
-    0.86 and 1.56 ω², |T'| <= 0.45 ω³, |v| <= 1.1 ω l sin θ and |a| <= 1.2 ω² l sin θ, so that three quarters of M at
-    most come from M itself, and the rest is the Coriolis force's: M < 16 Ω ω² l sin θ.
+    It is NaN where none is known.
+
+    With T the force along the cord over l, x'' = Coriolis - x T. Let M be the bound and h < π/(2ω)
+    the time between the transits: |xdot| <= M h²/8 there, and x'' is zero somewhere, so that |x| <=
+    2Ω|v|/T + M h³/8. Below 30° T is within 0.86 and 1.56 ω², |T'| <= 0.45 ω³, |v| <= 1.1 ω l sin θ
+    and |a| <= 1.2 ω² l sin θ, so that three quarters of M at most come from M itself, and the rest
+    is the Coriolis force's: M < 16 Ω ω² l sin θ.
     """
     turn = np.linalg.norm(rows.turn[..., 0], axis=1)
-    known = (
-        (rows.form[..., 0] == XDOT).all(axis=1)
-        & (angle < np.pi / 6)
-        & (rows.rate > 30 * (turn + rows.drag[:, 0]))
-    )
-    return np.where(known, 16 * turn * rows.rate**2 * rows.length[:, 0] * np.sin(angle), np.nan)
+    is_xdot = (rows.form[..., 0] == XDOT).all(axis=1)
+    is_slow = rows.rate > 30 * (turn + rows.drag[:, 0])
+    bound = 16 * turn * rows.rate**2 * rows.length[:, 0] * np.sin(angle)
+    return np.where(is_xdot & (angle < np.pi / 6) & is_slow, bound, np.nan)
 
 
 def passages(
     engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors
 ) -> tuple[dict[str, Any], Any]:
-    """Return the columns of a section by its engine, and in which rows its passages are not decided.
+    """Return the columns of a section, and in which rows its passages are undecided.
 
-    The rows are those with its form; run and errors are of those without.
+    Args:
+        engine: solves the rows for these passages.
+        word: the section.
+        rows: with the section's form.
+        run: the results of the same rows without it.
+        errors: those of `run`.
     """
-    zeros = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
-    error, undecided = _of_zeros(
-        rows, zeros, errors.position, errors.velocity, direction_of(word) != 0
-    )
-    columns, unknown = passages_listed(
-        word, error, zeros.transit_row, zeros.transit_t, zeros.transit_direction
-    )
-    return columns, (zeros.fate != OK) | ~np.isfinite(rows.form).all(
-        axis=(1, 2)
-    ) | undecided | unknown
+    of_section = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
+    vertical = direction_of(word) != 0
+    error, undecided = _of_zeros(rows, of_section, errors.position, errors.velocity, vertical)
+    zeros = Passages(of_section.transit_row, of_section.transit_t, of_section.transit_direction)
+    columns, unknown = passages_listed(word, error, zeros)
+    no_form = ~np.isfinite(rows.form).all(axis=(1, 2))
+    return columns, (of_section.fate != OK) | no_form | undecided | unknown
 
 
-def passages_listed(
-    word: str, error: Array, row: Any, t: Array, direction: Any
-) -> tuple[dict[str, Any], Any]:
-    """Return the columns of a section, and where a number has no error, from the error of each row's times.
+def passages_listed(word: str, error: Array, zeros: Passages) -> tuple[dict[str, Any], Any]:
+    """Return the columns of a section, and in which rows a number has no error.
 
-    `row`, `t` and `direction` are those of every zero of its form, ordered by row and time.
+    Args:
+        word: the section.
+        error: of the times of each row, in s, shape (rows,).
+        zeros: all zeros of its form, also in directions that do not count.
     """
-    kept = direction * direction_of(word) >= 0
-    row, t, direction = row[kept], t[kept], direction[kept]
+    counting = zeros[zeros.direction * direction_of(word) >= 0]
+    row = counting.row
+    t = counting.t
     count = np.bincount(row, minlength=len(error))
-    first = np.cumsum(count) - count
-    same = direction == direction[first[row]]
-    alike = np.bincount(row[same], minlength=len(error))
-    start = np.where(count > 0, np.append(t, np.nan)[first], np.nan)
-    end = np.append(t[same], np.nan)[np.cumsum(alike) - 1]
+    first = np.cumsum(count) - count  # the place of a row's first passage
+    t_first = np.where(count > 0, np.append(t, np.nan)[first], np.nan)
+
+    # those in the direction of the first
+    alike = counting[counting.direction == counting.direction[first[row]]]
+    alike_count = np.bincount(alike.row, minlength=len(error))
+    t_last = np.append(alike.t, np.nan)[np.cumsum(alike_count) - 1]
+    gaps = alike_count - 1
     with np.errstate(divide="ignore", invalid="ignore"):
-        interval = np.where(alike > 1, (end - start) / (alike - 1), np.nan)
-        apart = np.where(error < LATE * interval / 2, 2 * error / (alike - 1), np.nan)
-        columns, arrays = section_columns([word]), (count, start, error, interval, apart)
-        return _stated(
-            {column.name: values for column, values in zip(columns, arrays, strict=True)}, columns
-        )
+        interval = np.where(gaps > 0, (t_last - t_first) / gaps, np.nan)
+        interval_error = np.where(error < LATE * interval / 2, 2 * error / gaps, np.nan)
+        described = section_columns([word])
+        names = [column.name for column in described]
+        numbers = (count, t_first, error, interval, interval_error)
+        return _with_errors(dict(zip(names, numbers, strict=True)), described)
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
-    """Return the columns by name, and in which rows a number has no error: there neither stands."""
+    """Return the columns by name, and in which rows a number has no error: there both are NaN."""
     span = run.t_last - run.t_first
     with np.errstate(divide="ignore", invalid="ignore"):
         swing, precession = swing_and_precession(run)
@@ -252,19 +312,25 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
             "max_angle_deg": np.degrees(run.largest_angle),
             "max_angle_error_deg": errors.angle,
         }
-        return _stated(columns, COLUMNS)
+        return _with_errors(columns, COLUMNS)
 
 
-def _stated(columns: dict[str, Any], described: Sequence[Column]) -> tuple[dict[str, Any], Any]:
-    """Return columns, each error an ulp of its numbers larger, and where a number has none: there neither stands."""
+def _with_errors(
+    columns: dict[str, Any], described: Sequence[Column]
+) -> tuple[dict[str, Any], Any]:
+    """Return the columns, and in which rows a number has no error.
+
+    Each error grows by an ulp of its numbers. A number without an error, and its error, become NaN.
+    """
+    columns = dict(columns)
     unknown: Any = False
-    for error_name in {column.error for column in described if column.error}:
+    for error_name in dict.fromkeys(column.error for column in described if column.error):
         names = [column.name for column in described if column.error == error_name]
-        error = columns[error_name] + np.spacing(
-            np.max(np.abs([columns[name] for name in names]), axis=0)
-        )
-        none = ~np.isfinite(error)
-        unknown = unknown | none & np.isfinite([columns[name] for name in names]).any(axis=0)
-        columns |= {name: np.where(none, np.nan, columns[name]) for name in names}
-        columns[error_name] = np.where(none, np.nan, error)
+        numbers = np.array([columns[name] for name in names])
+        error = columns[error_name] + np.spacing(np.max(np.abs(numbers), axis=0))
+        missing = ~np.isfinite(error)
+        unknown = unknown | missing & np.isfinite(numbers).any(axis=0)
+        columns[error_name] = error
+        for name in (*names, error_name):
+            columns[name] = np.where(missing, np.nan, columns[name])
     return columns, unknown

@@ -1,9 +1,12 @@
-"""Frequency and precession of rows in double, from their highest points, and how far both may be off.
+"""Frequency and precession of rows from their highest points, and estimates of their errors.
 
-Exact numbers of one solved scene: solver/swing.py.
+Intervals for one solved scene: solver/swing.py.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -17,19 +20,23 @@ from ..numbers.precision import Array
 from ..numbers.table import Table
 from ..solver.solution import Solution
 
-HIGHEST = "highest"  # the section that tells the swing
-# of half a swing or turn: transits and highest points that may be as far off have no frequency
+HIGHEST = "highest"  # the section from which the swing follows
+# of half a swing, or of half a turn: with larger errors of times or azimuths there is no frequency,
+# or no precession
 LATE = 0.25
-OFFSETS = 3.0  # of the rest position from the plumb line; see `unsure_of_highest`
-# over cos² of a cone's angle, of Ω/ω sin² of it: how far the Coriolis force sways the cone
-SWAYS = 2.0 / 3.0
-GOLDEN = (np.sqrt(5.0) - 1) / 2
-SOON = 1e-4  # of a radian of the swing after the release
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
+_OFFSETS = 3.0  # of the rest position from the plumb line; see `_may_come_in_pairs`
+_SWAYS = (
+    2.0 / 3.0
+)  # over cos² of a cone's angle, of Ω/ω sin² of it: how far the Coriolis force sways the cone
+_GOLDEN = (np.sqrt(5.0) - 1) / 2
+_SOON = (
+    1e-4  # of a radian of the swing: a highest point so soon after the release may be the release
+)
 
 
 def swing_and_precession(run: Outcomes) -> tuple[Array, Array]:
-    """Return frequency in Hz and precession in degrees an hour of rows; NaN with fewer than two highest points."""
+    """Return frequency in Hz and precession in degrees an hour; NaN without two highest points."""
     span = run.apsis_last - run.apsis_first
     return (run.apsides - 1) / (2 * span), run.turn / span * DEGREES_PER_HOUR
 
@@ -37,137 +44,262 @@ def swing_and_precession(run: Outcomes) -> tuple[Array, Array]:
 def errors_of_swing(
     rows: Rows, run: Outcomes, position: Array, velocity: Array
 ) -> tuple[Array, Array]:
-    """Return the errors of the swing's frequency and of the precession.
+    """Estimate the errors of the swing's frequency in Hz and of the precession in degrees an hour.
 
-    With u the height of the bob over l, u' is wrong at a highest point by the velocity's error times sin θ, and where
-    the bob passes, by its speed times the position's error; that over u'' is how late the point is, and the bob turns
-    about the plumb line meanwhile. Over the top, sin θ may be next to nothing, and u'' is not.
+    Let u be the height of the bob over l. At a highest point u' is wrong by the velocity's error
+    times sin θ, and by the speed at which the bob passes times the position's error. Divided by u''
+    this is the error of the point's time, in which the bob turns about the plumb line. Over the top
+    sin θ may be almost 0, while u'' is not.
+
+    Args:
+        rows: the rows.
+        run: their results.
+        position: error of the position, in m.
+        velocity: error of the velocity, in m/s.
     """
-    length, rate, turn = rows.length[:, 0], rows.rate, np.linalg.norm(rows.turn[..., 0], axis=1)
-    # amplitude at the end, over the largest
-    shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)
-    highest = np.sin(run.largest_angle)
-    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk)
+    length = rows.length[:, 0]
+    rate = rows.rate
+    turn = np.linalg.norm(rows.turn[..., 0], axis=1)
     weakest = rate * np.sqrt(run.least_fall * run.least_bend)  # u'' over sin θ
-    # a point that is not high passes no faster than on a cone, seen from the Earth: seldom as fast as the energy allows
-    low, round_, offset = run.largest_angle < np.pi / 4, 2 * (rate + 2 * turn), 2 * turn**2 / rate
+    highest_sine = np.sin(run.largest_angle)
+    least_sine = _least_sine(rows, run)
+
+    # Below 45° the bob passes a highest point no faster than on a cone, as seen from the Earth.
+    # Above, its energy bounds the speed; the bob seldom reaches this bound.
+    is_low = run.largest_angle < np.pi / 4
+    cone_rate = 2 * (rate + 2 * turn)
+    offset_rate = 2 * turn**2 / rate
     fastest = fastest_of(rows) + turn
-    passing = np.where(low, round_ / weakest + offset / run.least_fall, fastest / run.least_fall)
-    slow = velocity * np.fmin(1 / weakest, 1 / run.least_fall)
-    late = (slow + passing * position) / length + np.spacing(run.apsis_last)
-    turned = (
-        position / (length * sine) + np.where(low, round_ + offset / sine, fastest / highest) * late
+
+    passing = np.where(
+        is_low,
+        cone_rate / weakest + offset_rate / run.least_fall,
+        fastest / run.least_fall,
     )
-    return errors_of_highest(run, late, turned)
+    of_velocity = velocity * np.fmin(1 / weakest, 1 / run.least_fall)
+    time_error = (of_velocity + passing * position) / length + np.spacing(run.apsis_last)
+
+    turn_rate = np.where(is_low, cone_rate + offset_rate / least_sine, fastest / highest_sine)
+    azimuth_error = position / (length * least_sine) + turn_rate * time_error
+    return _errors_of_highest(run, time_error, azimuth_error)
 
 
-def errors_of_highest(run: Outcomes, late: Array, turned: Array) -> tuple[Array, Array]:
-    """Return the errors of frequency and precession of highest points that may be so late, in s, and turned, in rad.
+def _least_sine(rows: Rows, run: Outcomes) -> Array:
+    """Return sin θ at the lowest of the highest points, which drag lets shrink until the end."""
+    shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)
+    at_end = np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk
+    return np.asarray(np.fmin(np.sin(run.largest_angle), at_end))
 
-    Both are NaN where a point may be so late that it cannot be counted, that of precession where it cannot be followed.
+
+def _errors_of_highest(
+    run: Outcomes, time_error: Array, azimuth_error: Array
+) -> tuple[Array, Array]:
+    """Return the errors of frequency in Hz and precession in degrees an hour.
+
+    `time_error` in s and `azimuth_error` in rad are those of each highest point. Both results are
+    NaN where the times are too uncertain to count the points. The error of the precession is NaN
+    too where the azimuths are too uncertain to follow the swing plane.
     """
-    span, gaps = run.apsis_last - run.apsis_first, run.apsides - 1
-    counted = (gaps > 0) & (gaps * late < LATE * span)
-    drift = np.where(
-        turned < LATE * np.pi, 2 * turned / span + np.abs(run.turn) * 2 * late / span**2, np.nan
-    )
-    return np.where(counted, gaps * late / span**2, np.nan), np.where(
-        counted, drift * DEGREES_PER_HOUR, np.nan
+    span = run.apsis_last - run.apsis_first
+    gaps = run.apsides - 1
+    is_counted = (gaps > 0) & (gaps * time_error < LATE * span)
+    is_followed = azimuth_error < LATE * np.pi
+
+    frequency_error = gaps * time_error / span**2
+    drift_error = 2 * azimuth_error / span + np.abs(run.turn) * 2 * time_error / span**2
+    drift_error = np.where(is_followed, drift_error, np.nan)
+    return (
+        np.where(is_counted, frequency_error, np.nan),
+        np.where(is_counted, drift_error * DEGREES_PER_HOUR, np.nan),
     )
 
 
 def unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
-    """Return where a highest point may lie on either side of the end, or where pairs of them may come and go unseen.
+    """Return where the number of highest points is uncertain; the errors are in m and m/s."""
+    has_points = run.apsides > 0
+    at_end = has_points & _may_be_highest_at_end(rows, run, position, velocity)
+    # the bend consists of two squares, each wrong by twice the relative error of the position
+    least_bend_m = LEAST_BEND * rows.length[:, 0] * np.sin(run.largest_angle)
+    no_cone = ~has_points & (4 * position >= least_bend_m)
+    return np.asarray(at_end | _may_come_in_pairs(rows, run) | no_cone)
 
-    Highest points are seen from the plumb line, which is off the middle of the swing by some d: at rest by the
-    centrifugal force. From inside the ellipse's evolute an orbit with semi-axes a, b shows two a turn, from outside
-    one, and d < a - b is inside. There the bend at the highest, times its distance, is at most (3ad - d²)/(a + d),
-    below 3d, so that 3d tell the ones from the others. On a cone of angle θ the Coriolis force sways the angle by
-    cos φ as well, by 2/3 Ω/ω_c sin² θ/cos² θ, ω_c² = ω²/cos θ, and the same holds with this added to d, times
-    ω_c²/ω². Of θ are known the largest angle and the spin s ω about the line: with s² = sin⁴ θ/cos θ, cos θ is above
-    1/(1 + s²) or the golden section. And a cone is one only where the error of its bend leaves it so.
+
+def _may_be_highest_at_end(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
+    """Return where a highest point may lie on either side of the end: the bob may rise or fall."""
+    length = rows.length[:, 0]
+    down = _down(rows)
+    n = run.state[:, :3] / length[:, None]
+    v = run.state[:, 3:]
+    sine = np.linalg.norm(np.cross(n, down), axis=1) + position / length
+    speed = np.linalg.norm(v, axis=1)
+    fall_error = velocity * sine + speed * position / length
+    return np.asarray(np.abs((v * down).sum(axis=1)) <= fall_error)
+
+
+def _may_come_in_pairs(rows: Rows, run: Outcomes) -> Array:
+    """Return where pairs of highest points may come and go without being seen.
+
+    Highest points are seen from the plumb line, which is off the middle of the swing by some d,
+    since the centrifugal force moves the rest position. An orbit with semi-axes a and b has two
+    highest points a turn if it is seen from inside the ellipse's evolute, and one if from outside;
+    d < a - b is inside. On the evolute the bend at a highest point times its distance is at most
+    (3ad - d²)/(a + d) < 3d: above 3d no pair comes or goes.
+
+    On a cone of angle θ the Coriolis force sways the angle by cos φ as well, by 2/3 Ω/ω_c sin²
+    θ/cos² θ with ω_c² = ω²/cos θ. The same holds with this added to d, times ω_c²/ω². Of θ the
+    largest angle is known, and the spin s ω about the line: from s² = sin⁴ θ/cos θ follows that cos
+    θ is above 1/(1 + s²) or above the golden section.
     """
-    length, down = rows.length[:, 0], rows.pull[..., 0] / rows.rate[:, None] ** 2
-    n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
-    sine, speed = (
-        np.linalg.norm(np.cross(n, down), axis=1) + position / length,
-        np.linalg.norm(v, axis=1),
-    )
-    at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
-    turn, has_apsides, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
-    across = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
-    offset = np.abs((turn * down).sum(axis=1)) * across
-    spun = np.abs((np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1))
-    upright = np.fmax(
-        np.cos(run.largest_angle), np.fmin(GOLDEN, rows.rate**2 / (rows.rate**2 + spun**2))
-    )
-    near = np.where(has_apsides, run.least_bend, 1) * lean < OFFSETS * (
-        offset + SWAYS * across * spun / upright**2
-    )
-    # of two squares, each twice its relative error
-    round_ = ~has_apsides & (4 * position >= LEAST_BEND * length * lean)
-    return np.asarray(has_apsides & at_end | near | round_)
+    down = _down(rows)
+    turn = rows.turn[..., 0]
+    sway = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
+    offset = np.abs((turn * down).sum(axis=1)) * sway
+    spin = np.abs((np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1))
+
+    by_spin = np.fmin(_GOLDEN, rows.rate**2 / (rows.rate**2 + spin**2))
+    least_cosine = np.fmax(np.cos(run.largest_angle), by_spin)
+    bend = np.where(run.apsides > 0, run.least_bend, 1) * np.sin(run.largest_angle)
+    return np.asarray(bend < _OFFSETS * (offset + _SWAYS * sway * spin / least_cosine**2))
+
+
+def _down(rows: Rows) -> Array:
+    """Return the unit vector along c, down the plumb line, shape (n, 3)."""
+    return np.asarray(rows.pull[..., 0] / rows.rate[:, None] ** 2)
 
 
 def fastest_of(rows: Rows) -> Array:
-    """Return a speed over l, seen in axes that do not turn, that no row exceeds: all its energy at the lowest point."""
-    n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
-    # of the release over the lowest point
-    above = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)
-    return np.asarray(rate * np.sqrt(2 * above) + np.linalg.norm(V, axis=1))
+    """Return a bound of the speed over l in axes that do not turn, in 1/s: at the lowest point."""
+    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
+    # height of the release over the lowest point
+    height = np.fmax(1 - (n * pull).sum(axis=1) / rows.rate**2, 0.0)
+    return np.asarray(rows.rate * np.sqrt(2 * height) + np.linalg.norm(V, axis=1))
 
 
-def note_highest_points(
-    run: Outcomes, rows: Rows, solution: Solution, position: Array
-) -> tuple[Array, Array, Array]:
-    """Fill in the highest points and the largest angle, also of release and end; return the errors of what they tell.
+@dataclass(frozen=True)
+class SolvedPoints:
+    """The highest points of a single row that the solver solved, in the axes of the plumb line.
 
-    These are those of frequency and precession, as in `Errors`, and of the angle in rad. Where a highest point grazes,
-    its time has no bound, and its angle that of the grid, `position` in m. One so soon after the release that no digit
-    tells it, as the exact inputs do, counts as the release. On a cone, which has none, release and end tell the angle.
+    The arrays `azimuth` to `fall` hold the release, the highest points after it, and the end.
+
+    Attributes:
+        rows: the row.
+        table: times and states of the highest points, with their bounds; empty if they were not
+            asked for.
+        decided: whether these are all highest points.
+        length: of the cord in m.
+        azimuth: about the plumb line, from east to north, in rad.
+        across: distance from the plumb line over l.
+        angle: from the plumb line, in rad.
+        rise: rate of the height over l, u', in 1/s.
+        fall: -u'', in 1/s².
     """
-    section, grid, axes = solution.sections.get(HIGHEST), solution.grid, PlumbAxes.of(rows)
-    decided, points = (
-        section and not section.possible,
-        section.table if section else Table(SECTION, 0, []),
-    )
-    length, turn = solution.scene.exact.length, (0, axes.turn[0].high, axes.turn[1].high)
-    states = [
-        DoubleDouble.of(
-            q / length for q in (grid.exact(name)[0], *points.exact(name), grid.exact(name)[-1])
+
+    rows: Rows
+    table: Table
+    decided: bool
+    length: float
+    azimuth: Array
+    across: Array
+    angle: Array
+    rise: Array
+    fall: Array
+
+    @classmethod
+    def of(cls, solution: Solution, rows: Rows) -> Self:
+        """Return the highest points of a solution, whose constants and release are `rows`."""
+        section = solution.sections.get(HIGHEST)
+        table = section.table if section else Table(SECTION, 0, [])
+        motion = _motion(solution, rows, table)
+        x, p, u = motion.n
+        across = np.hypot(x, p)
+        return cls(
+            rows=rows,
+            table=table,
+            decided=section is not None and not section.possible,
+            length=float(solution.scene.exact.length),
+            azimuth=np.arctan2(p, x),
+            across=across,
+            angle=np.arctan2(across, -u),
+            rise=motion.v[2],
+            fall=-motion.a[2],
         )
-        for name in STATE
-    ]
-    n, v = (
-        (east.high, *(part.high for part in turned(north, up, axes.sin, axes.cos)))
-        for east, north, up in (states[:3], states[3:])
-    )
-    k = Constants(turn=turn, pull=(0, 0, -axes.size.high), drag=rows.drag[:, 0])
-    motion = RowMotion.of([*n, *cross(n, add(v, cross(turn, n)))], k)
-    (x, p, u), fall = motion.n, -motion.a[2]
-    across, azimuth = np.hypot(x, p), np.arctan2(p, x)
-    run.largest_angle[0] = np.arctan2(across, -u).max()
-    t, soon = np.append(0.0, points["t"]), SOON / rows.rate
-    unresolved = (
-        rows.rising[0] > 0
-        and abs(motion.v[2][0]) < soon * fall[0]
-        and not (t[1:2] < 2 * soon).any()
-    )
-    high = slice(0 if unresolved else 1, -1)
-    t, azimuth = t[high.start :], azimuth[high]
-    bent = fall > LEAST_BEND * (rows.rate * across) ** 2
-    if decided and len(t) and bent[high].all():
-        run.apsides[0], run.apsis_first[0], run.apsis_last[0] = len(t), t[0], t[-1]
+
+    @property
+    def is_bent(self) -> Array:
+        """Whether the bob falls clearly from each point, and does not go round on a cone."""
+        return np.asarray(self.fall > LEAST_BEND * (self.rows.rate * self.across) ** 2)
+
+    @property
+    def release_counts(self) -> bool:
+        """Whether the first highest point cannot be distinguished from the release.
+
+        By the exact inputs the bob rises there. The release then counts as that point.
+        """
+        soon = _SOON / self.rows.rate
+        slow = abs(self.rise[0]) < soon * self.fall[0]
+        another = self.table["t"][:1] < 2 * soon
+        return bool(self.rows.rising[0] > 0 and slow and not another.any())
+
+    def fill(self, run: Outcomes) -> None:
+        """Fill in the largest angle, and the highest points if they are decided and no cone's."""
+        run.largest_angle[0] = self.angle.max()
+        first = 0 if self.release_counts else 1
+        times = np.append(0.0, self.table["t"])[first:]
+        if not (self.decided and len(times) and self.is_bent[first:-1].all()):
+            return
+        azimuth = self.azimuth[first:-1]
         half_turns = np.round(np.diff(azimuth) / np.pi)
+        run.apsides[0] = len(times)
+        run.apsis_first[0] = times[0]
+        run.apsis_last[0] = times[-1]
         run.turn[0] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)
         run.same_side[0] = np.count_nonzero(half_turns % 2 == 0)
-    late = np.max(np.array(points.bound("t"), float), initial=0) + np.spacing(run.apsis_last)
-    off = np.linalg.norm([np.array(points.bound(name), float) for name in POSITION], axis=0)
-    aside = np.max(off / (across[1:-1] * float(length)), initial=0) + np.spacing(2 * np.pi)
-    reach = np.max(off, initial=position[0])
-    leaning = np.where(reach < length, reach, position) / float(length) + np.spacing(
-        run.largest_angle
-    )
-    return *errors_of_highest(run, late, aside), np.where(
-        decided or not bent.any(), leaning, np.nan
-    )
+
+    def errors_of_swing(self, run: Outcomes) -> tuple[Array, Array]:
+        """Return the errors of frequency in Hz and precession in degrees an hour."""
+        time_bounds = np.array(self.table.bound("t"), float)
+        time_error = np.max(time_bounds, initial=0) + np.spacing(run.apsis_last)
+        turns = self._position_bounds / (self.across[1:-1] * self.length)
+        azimuth_error = np.max(turns, initial=0) + np.spacing(2 * np.pi)
+        return _errors_of_highest(run, time_error, azimuth_error)
+
+    def error_of_angle(self, run: Outcomes, grid_error: Array) -> Array:
+        """Return the error of the largest angle in rad; NaN where a higher point may be missing.
+
+        The time of a grazing highest point has no bound, and neither has its position. Then the
+        angle has the error of the grid's positions, `grid_error` in m, shape (1,).
+        """
+        largest = np.max(self._position_bounds, initial=grid_error[0])
+        error_m = np.where(largest < self.length, largest, grid_error)
+        error = error_m / self.length + np.spacing(run.largest_angle)
+        is_complete = self.decided or not self.is_bent.any()
+        return np.where(is_complete, error, np.nan)
+
+    @property
+    def _position_bounds(self) -> Array:
+        """Bounds on the errors of the highest points' positions, in m."""
+        bounds = [np.array(self.table.bound(name), float) for name in POSITION]
+        return np.asarray(np.linalg.norm(bounds, axis=0))
+
+
+def _motion(solution: Solution, rows: Rows, points: Table) -> RowMotion:
+    """Return the motion at release, highest points and end, in the axes of the plumb line."""
+    length = solution.scene.exact.length
+    grid = solution.grid
+    states = []
+    for name in STATE:
+        at_grid = grid.exact(name)
+        values = (at_grid[0], *points.exact(name), at_grid[-1])
+        states.append(DoubleDouble.of(value / length for value in values))
+
+    axes = PlumbAxes.of(rows)
+    vectors = []
+    for east, north, up in (states[:3], states[3:]):
+        along, height = turned(north, up, axes.sin, axes.cos)
+        vectors.append((east.high, along.high, height.high))
+    n, v = vectors
+
+    turn = (0, axes.turn[0].high, axes.turn[1].high)
+    k = Constants(turn=turn, pull=(0, 0, -axes.size.high), drag=rows.drag[:, 0])
+    momentum = cross(n, add(v, cross(turn, n)))
+    return RowMotion.of([*n, *momentum], k)

@@ -1,12 +1,13 @@
-"""The columns of a sweep, once for schema, files and docs, and Parquet files of them; the only door to pyarrow.
+"""The columns of a sweep and Parquet files of them; the only door to pyarrow.
 
-A file that is written here is sealed: at its end stands the sha256 of all other bytes, and of what the file is.
+A file that is written here is sealed: near its end is the sha256 of all other bytes and of the
+part's name.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from hashlib import sha256
@@ -18,20 +19,20 @@ import numpy as np
 from ..numbers.columns import POSITION, VELOCITY
 from ..system.documents import texts_of
 
-FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = (
-    "frequency",
-    "precession",
-    "transits",
-    "state",
-    "amplitude",
-)
+FREQUENCY = "frequency"
+PRECESSION = "precession"
+TRANSITS = "transits"
+STATE = "state"
+AMPLITUDE = "amplitude"
 TIMES = "transit-times"
-# what `all` means; the times of the transits are more
+# the quantities that `all` stands for; the times of the transits are extra
 WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)
 WORDS = "dictionary"  # the kind of a column of words that repeat
 
-_PART, _SEAL = "foucault.part", "foucault.seal"  # keys of a file's metadata
-_MARK, _HEX = b"sha256:", 64  # what stands before the digits of a seal, and how many these are
+_PART = "foucault.part"  # keys of a file's metadata
+_SEAL = "foucault.seal"
+_MARK = b"sha256:"  # precedes the digits of a seal
+_HEX_DIGITS = 64  # of a seal
 
 
 @dataclass(frozen=True)
@@ -45,72 +46,88 @@ class Column:
     error: str = ""  # the column of its error
 
     def empty(self, count: int) -> Any:
-        """Return the column of some rows with nothing known: NaN, 0, or None."""
-        nothing = {WORDS: (None, object), "float64": (np.nan, float)}.get(self.kind, (0, self.kind))
-        return np.full(count, *nothing)
+        """Return the column of rows without results: NaN, 0, or None."""
+        if self.kind == WORDS:
+            return np.full(count, None, object)
+        if self.kind == "float64":
+            return np.full(count, np.nan)
+        return np.full(count, 0, self.kind)
 
 
-STATE_COLUMNS = tuple([f"{name}_m" for name in POSITION] + [f"{name}_m_s" for name in VELOCITY])
+STATE_COLUMNS = (*(f"{name}_m" for name in POSITION), *(f"{name}_m_s" for name in VELOCITY))
 
-COLUMNS, TRANSIT_COLUMNS, _OF_SECTION = (
-    tuple(Column(name, *described) for name, described in table.items())
-    for table in texts_of(__file__).values()
-)
+
+def _described(table: Mapping[str, Sequence[Any]]) -> tuple[Column, ...]:
+    """Return the columns of a table of parquet.toml."""
+    return tuple(Column(name, *entries) for name, entries in table.items())
+
+
+COLUMNS, TRANSIT_COLUMNS, _OF_SECTION = (_described(table) for table in texts_of(__file__).values())
 
 
 def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
-    """Return the columns of sections: of each the number of passages, the first one, and the time from one to the next.
+    """Return the columns of sections: number of passages, time of the first, and interval.
 
-    That time is the mean between passages in the direction of the first: the period of a gate or a turn, and half of it
-    of the highest or the lowest points.
+    The interval is the mean time between passages in the direction of the first. It is the period
+    of a gate or a turn, and half the period of the highest or the lowest points.
     """
-    return tuple(
-        replace(
-            column, name=f"{word}: {column.name}", error=column.error and f"{word}: {column.error}"
-        )
-        for word in words
-        for column in _OF_SECTION
-    )
+    columns = []
+    for word in words:
+        for column in _OF_SECTION:
+            error = f"{word}: {column.error}" if column.error else ""
+            columns.append(replace(column, name=f"{word}: {column.name}", error=error))
+    return tuple(columns)
 
 
 def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> bytes:
-    """Return columns as a Parquet file, sealed as `part`: zstd, numbers with their bytes split, words by dictionary."""
+    """Return columns as a Parquet file, sealed as `part`.
+
+    It is compressed with zstd, numbers with their bytes split, words by dictionary.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     fields = []
     for column in columns:
-        kind = (
-            pa.dictionary(pa.int32(), pa.string())
-            if column.kind == WORDS
-            else getattr(pa, column.kind)()
-        )
+        if column.kind == WORDS:
+            kind = pa.dictionary(pa.int32(), pa.string())
+        else:
+            kind = getattr(pa, column.kind)()
         fields.append(pa.field(column.name, kind, metadata={"meaning": column.meaning}))
     table = pa.table(values, schema=pa.schema(fields, metadata={_PART: part}))
     words = [field.name for field in fields if pa.types.is_dictionary(field.type)]
     split = [field.name for field in fields if field.type == pa.float64()]
     stream = io.BytesIO()
     with pq.ParquetWriter(
-        stream, table.schema, compression="zstd", use_dictionary=words, use_byte_stream_split=split,
+        stream,
+        table.schema,
+        compression="zstd",
+        use_dictionary=words,
+        use_byte_stream_split=split,
         write_page_checksum=True,
-    ) as writer:  # fmt: skip
+    ) as writer:
         writer.write_table(table)
-        writer.add_key_value_metadata({_SEAL: _MARK.decode() + "0" * _HEX})
+        writer.add_key_value_metadata({_SEAL: _MARK.decode() + "0" * _HEX_DIGITS})
     data = stream.getvalue()
-    at, seal = _seal(data, part)
-    return data[:at] + seal + data[at + _HEX :]
+    place = _place_of_seal(data)
+    return data[: place.start] + _seal(data, part) + data[place.stop :]
 
 
 def is_sealed(data: bytes, part: str) -> bool:
     """Return whether a file has every byte that `parquet` wrote as `part`."""
-    at, seal = _seal(data, part)
-    return data[at : at + _HEX] == seal
+    return data[_place_of_seal(data)] == _seal(data, part)
 
 
-def _seal(data: bytes, part: str) -> tuple[int, bytes]:
-    """Return where in a file its seal stands, and what it has to be."""
-    at = data.rfind(_MARK) + len(_MARK)
-    return at, sha256(part.encode() + data[:at] + data[at + _HEX :]).hexdigest().encode()
+def _place_of_seal(data: bytes) -> slice:
+    """Return where the digits of a file's seal are."""
+    start = data.rfind(_MARK) + len(_MARK)
+    return slice(start, start + _HEX_DIGITS)
+
+
+def _seal(data: bytes, part: str) -> bytes:
+    """Return the digits that a file's seal must have."""
+    place = _place_of_seal(data)
+    return sha256(part.encode() + data[: place.start] + data[place.stop :]).hexdigest().encode()
 
 
 def read_columns(stream: BinaryIO, check: Callable[[list[str], int], None]) -> dict[str, list[Any]]:
@@ -121,7 +138,7 @@ def read_columns(stream: BinaryIO, check: Callable[[list[str], int], None]) -> d
         check: called with their names and the number of rows before any is read.
 
     Raises:
-        OSError: it cannot be read, or is none.
+        OSError: it cannot be read, or is not a Parquet file.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -135,7 +152,7 @@ def read_columns(stream: BinaryIO, check: Callable[[list[str], int], None]) -> d
 
 
 def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, Any]:
-    """Return columns of several files, one below the other; words as objects, None where there is none.
+    """Return columns of several files, one below the other; words as objects, None if missing.
 
     Raises:
         OSError: a file cannot be read, or was damaged.
@@ -150,8 +167,7 @@ def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, A
         raise OSError(0, str(error).splitlines()[0]) from None
     columns = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
-        words = pa.types.is_dictionary(column.type)
-        columns[name] = (column.cast(pa.string()) if words else column).to_numpy(
-            zero_copy_only=False
-        )
+        is_words = pa.types.is_dictionary(column.type)
+        plain = column.cast(pa.string()) if is_words else column
+        columns[name] = plain.to_numpy(zero_copy_only=False)
     return columns

@@ -1,10 +1,10 @@
-"""A part of a sweep solved: the rows side by side, their errors, and by the solver those that ask for more."""
+"""A part of a sweep solved: its rows side by side, with their errors, and some by the solver."""
 
 from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
@@ -35,7 +35,8 @@ class Tally:
 
     Attributes:
         counts: of rows.
-        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them by themselves.
+        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them
+            by themselves.
         fold_s: of these, those of constants and releases.
         store_s: CPU seconds of writing them.
         promoted: rows that the solver was given.
@@ -71,72 +72,80 @@ class Part:
 
     @classmethod
     def unsolved(cls, request: Request, numbers: range) -> Part:
-        """Return rows of which nothing is known but their values; those with a wrong value have failed."""
-        table, inputs = request.table, request.scene.inputs
+        """Return rows without results; those with a wrong value have failed."""
+        table = request.table
+        reading = request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
-        failing = (
-            column for column in request.columns if column.name not in (*_KNOWN, *table.values)
-        )
-        part.nothing = {column.name: column.empty(1)[0] for column in failing}
+        kept = (*_KNOWN, *table.values)
+        part.nothing = {
+            column.name: column.empty(1)[0] for column in request.columns if column.name not in kept
+        }
         part.fill(slice(None), {"row": numbers, "level": "computed", **table.words(numbers)})
-        for row, reason in table.wrong(numbers, inputs).items():
-            part.fail(row - numbers.start, Status.INVALID, reason)
-            for key, text in table.texts(row).items():
-                if key not in TEXTS:
-                    with suppress(ValueError):
-                        part.columns[key][row - numbers.start] = float(text)
+        for row, reason in table.wrong(numbers, reading).items():
+            part._fail_as_typed(row - numbers.start, reason, table.texts(row))
+
         places = part.unknown
-        for key, values in table.numbers(part.columns["row"][places], inputs).items():
+        for key, values in table.numbers(part.columns["row"][places], reading).items():
             part.columns[key][places] = values.high
         if request.run_options.times:
             part.transits = {column.name: column.empty(0) for column in TRANSIT_COLUMNS}
         return part
 
+    def _fail_as_typed(self, place: int, reason: str, texts: Mapping[str, str]) -> None:
+        """Fail a row with a wrong value, and keep those of its values that are numbers."""
+        self.fail(place, Status.INVALID, reason)
+        for key, text in texts.items():
+            if key not in TEXTS:
+                with suppress(ValueError):
+                    self.columns[key][place] = float(text)
+
     @classmethod
     def joined(cls, pieces: Sequence[Part]) -> Part:
         """Return the rows of several pieces, in order."""
         return cls(
-            {
-                name: np.concatenate([piece.columns[name] for piece in pieces])
-                for name in pieces[0].columns
-            },
-            {
-                name: np.concatenate([piece.transits[name] for piece in pieces])
-                for name in pieces[0].transits
-            },
+            _joined([piece.columns for piece in pieces]),
+            _joined([piece.transits for piece in pieces]),
             sum((piece.tally for piece in pieces), Tally()),
         )
 
     @property
     def unknown(self) -> Any:
         """The places of rows that have no status yet."""
+        statuses = self.columns["status"]
         return np.array(
-            [place for place, status in enumerate(self.columns["status"]) if status is None],
-            np.int64,
+            [place for place, status in enumerate(statuses) if status is None], np.int64
         )
 
     def fill(self, places: Any, values: dict[str, Any]) -> None:
-        """Put values into those columns that there are, at one place or several."""
+        """Put values into those of the columns that the part has, at one place or several."""
         for name, value in values.items():
             if name in self.columns:
                 self.columns[name][places] = value
 
     def fail(self, place: int, status: Status, reason: str) -> None:
-        """Say why a row failed, and take its numbers away."""
+        """Set the status of a row that failed and the reason, and take its numbers away."""
         self.fill(place, {**self.nothing, "status": status.value, "reason": reason})
 
-    def list_transits(
-        self, replaced: Iterable[int], rows: Any, times: Any, directions: Any
-    ) -> None:
-        """List transits in the order of their rows, in place of those that are listed for some rows."""
-        stays = ~np.isin(self.transits["row"], list(replaced))
+    def add_transits(self, rows: Any, times: Any, directions: Any) -> None:
+        """Add transits, in the order of their rows."""
         added = dict(zip(self.transits, (rows, times, directions), strict=True))
         columns = {
-            name: np.concatenate([listed[stays], np.asarray(added[name], listed.dtype)])
-            for name, listed in self.transits.items()
+            name: np.concatenate([present, np.asarray(added[name], present.dtype)])
+            for name, present in self.transits.items()
         }
         order = np.argsort(columns["row"], kind="stable")
         self.transits = {name: values[order] for name, values in columns.items()}
+
+    def replace_transits(self, row: int, times: Any, directions: Any) -> None:
+        """Replace the transits of a row."""
+        stays = self.transits["row"] != row
+        self.transits = {name: values[stays] for name, values in self.transits.items()}
+        self.add_transits(np.full(len(times), row), times, directions)
+
+
+def _joined(tables: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return tables of the same columns, one below the other."""
+    return {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
 
 
 def solve_part(request: Request, numbers: range, promote: Promote | None = promoted) -> Part:
@@ -145,8 +154,8 @@ def solve_part(request: Request, numbers: range, promote: Promote | None = promo
     Args:
         request: the sweep.
         numbers: of the rows.
-        promote: solves a row by itself, as `promoted` does, which is not made for several threads; None: a row that
-            double precision does not decide fails.
+        promote: has the solver solve a row, as `promoted` does, which is not made for several
+            threads. None: a row that double precision does not decide fails.
     """
     started = time.thread_time()
     part = Part.unsolved(request, numbers)
@@ -164,21 +173,15 @@ def solve_part(request: Request, numbers: range, promote: Promote | None = promo
 
 def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promote | None) -> None:
     """Solve rows whose values are right one by one."""
-    sound = _finite(rows)
-    reasons: dict[int, str] = {}  # places of rows that the solver has to solve, and why
-    for place in places[~sound].tolist():
-        try:
-            request.scene_of(int(part.columns["row"][place]))
-            reasons[place] = "A number of the scene is beyond the range of binary64."
-        except InputError as error:
-            part.fail(place, Status.INVALID, str(error))
-        except FoucaultError as error:
-            part.fail(place, Status.UNREACHABLE, str(error))
-    rows, places = rows[sound], places[sound]
+    finite = _finite(rows)
+    # places of rows that go to the solver or fail, and why; "" where the request wants it
+    reasons = _beyond_double(request, part, places[~finite].tolist())
+    rows, places = rows[finite], places[finite]
     if request.promotes:
         reasons |= dict.fromkeys(places.tolist(), "")
     elif len(places):
         reasons |= _side_by_side(request, part, places, rows)
+
     for place, reason in sorted(reasons.items()):
         if reason == STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
@@ -188,12 +191,27 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
             _promote(request, part, place, reason, promote)
 
 
+def _beyond_double(request: Request, part: Part, places: list[int]) -> dict[int, str]:
+    """Return which rows beyond the range of double the solver may solve, and why; others fail."""
+    reasons = {}
+    for place in places:
+        try:
+            request.scene_of(int(part.columns["row"][place]))
+            reasons[place] = "A number of the scene is beyond the range of binary64."
+        except InputError as error:
+            part.fail(place, Status.INVALID, str(error))
+        except FoucaultError as error:
+            part.fail(place, Status.UNREACHABLE, str(error))
+    return reasons
+
+
 def _promote(request: Request, part: Part, place: int, reason: str, promote: Promote) -> None:
     """Have the solver solve a row: all its columns are the solver's.
 
-    The reason for it, empty if by request, stays the row's reason where the solver failed.
+    The reason, empty if the request wants it, remains the row's reason if the solver fails.
     """
-    row, before = int(part.columns["row"][place]), time.thread_time()
+    row = int(part.columns["row"][place])
+    before = time.thread_time()
     result = promote(request, row, doubtful=bool(reason))
     part.tally.cpu_s += result.cpu_s
     part.tally.promoted += 1
@@ -204,61 +222,70 @@ def _promote(request: Request, part: Part, place: int, reason: str, promote: Pro
     else:
         part.fill(place, {**result.values, "status": Status.OK.value, "reason": None})
     if request.run_options.times:
-        times, directions = result.times
-        part.list_transits([row], np.full(len(times), row), times, directions)
+        part.replace_transits(row, *result.times)
 
 
 def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict[int, str]:
-    """Solve rows side by side; return those that are in doubt, or not good enough, and why."""
-    options = request.run_options
+    """Solve rows side by side; return the places of rows that need more, and why."""
     reasons: dict[int, str] = {}
     for engine, chosen in _shared(request.engine, rows):
-        of_engine, at = rows[chosen], places[chosen]
-        run = engine.solve(of_engine, options)
-        errors, lost = judged(engine, of_engine, run)
-        columns, unknown = columns_of(of_engine, run, errors)
-        part.fill(at, {**columns, "status": Status.OK.value})
-        part.columns["engine"][at] = engine.name
-        if options.times:
-            listed = part.columns["row"][at][run.transit_row]
-            part.list_transits([], listed, run.transit_t, run.transit_direction)
-        stopped = (run.fate == STOPPED) | lost
-        unsure = (run.fate != OK) | unknown | errors.unsure_of_highest
-        for word in request.sections:
-            sought = engine_rows(request.scene, request.table, part.columns["row"][at], word)
-            columns, undecided = passages(engine, word, sought, run, errors)
-            part.fill(at, columns)
-            unsure |= undecided
-        unsure |= errors.undecided if options.transits else False
-        if request.tolerance is not None:
-            unsure = unsure | ~(errors.position <= request.tolerance)
-        reasons |= dict.fromkeys(at[unsure].tolist(), DOUBTFUL_REASON)
-        reasons |= dict.fromkeys(at[stopped].tolist(), STOPPED_REASON)
+        reasons |= _by_engine(request, part, places[chosen], rows[chosen], engine)
     return reasons
 
 
+def _by_engine(
+    request: Request, part: Part, places: Any, rows: Rows, engine: Batch
+) -> dict[int, str]:
+    """Solve rows by one engine; return as `_side_by_side` does."""
+    options = request.run_options
+    run = engine.solve(rows, options)
+    errors, stopped = judged(engine, rows, run)
+    columns, unknown = columns_of(rows, run, errors)
+    part.fill(places, {**columns, "status": Status.OK.value})
+    part.columns["engine"][places] = engine.name
+    numbers = part.columns["row"][places]
+    if options.times:
+        part.add_transits(numbers[run.transit_row], run.transit_t, run.transit_direction)
+
+    unsure = (run.fate != OK) | unknown | errors.unsure_of_highest
+    if options.transits:
+        unsure |= errors.undecided
+    if request.tolerance is not None:
+        unsure |= ~(errors.position <= request.tolerance)
+    for word in request.sections:
+        of_section = engine_rows(request.scene, request.table, numbers, word)
+        columns, undecided = passages(engine, word, of_section, run, errors)
+        part.fill(places, columns)
+        unsure |= undecided
+
+    stopped = stopped | (run.fate == STOPPED)
+    reasons = dict.fromkeys(places[unsure].tolist(), DOUBTFUL_REASON)
+    return reasons | dict.fromkeys(places[stopped].tolist(), STOPPED_REASON)
+
+
 def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
-    """Return engines with the rows that each solves: heyoka those with drag where the other has none."""
+    """Return engines with the rows of each: heyoka has those with drag if the engine has none."""
     engine = batches()[name]
-    chosen = np.full(len(rows), engine.drag) | (rows.drag[:, 0] == 0)
-    shares = ((engine, chosen), (batches()["heyoka"], ~chosen))
-    return [(solver, share) for solver, share in shares if share.any()]
+    own = np.full(len(rows), engine.drag) | (rows.drag[:, 0] == 0)
+    shares = ((engine, own), (batches()["heyoka"], ~own))
+    return [(solver, chosen) for solver, chosen in shares if chosen.any()]
 
 
 def highest_on_one_side(request: Request) -> bool:
-    """Return whether two highest points of the first row that follow one another lie on one side, as over the top."""
+    """Return whether successive highest points of the first row are on one side."""
     rows = engine_rows(request.scene, request.table, range(1))
-    runs = [
-        engine.solve(rows[chosen], request.run_options)
-        for engine, chosen in _shared(request.engine, rows)
-    ]
-    return any(run.same_side.any() for run in runs)
+    for engine, chosen in _shared(request.engine, rows):
+        run = engine.solve(rows[chosen], request.run_options)
+        if run.same_side.any():
+            return True
+    return False
 
 
 def _finite(rows: Rows) -> Any:
-    numbers = (
+    """Return which rows have finite numbers, and a release that is not at the suspension."""
+    numbers = [
         getattr(rows, name).reshape(len(rows), -1)
         for name in ("length", "drag", "turn", "pull", "n", "V")
-    )
-    sound = np.isfinite(np.concatenate(list(numbers), axis=1)).all(axis=1)
-    return sound & (rows.n[:, :, 0] != 0).any(axis=1)
+    ]
+    is_finite = np.isfinite(np.concatenate(numbers, axis=1)).all(axis=1)
+    return is_finite & (rows.n[:, :, 0] != 0).any(axis=1)

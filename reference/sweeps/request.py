@@ -1,4 +1,4 @@
-"""The request of a sweep: the scene, what varies, which quantities, and how the rows are cut into parts.
+"""The request of a sweep: scene, fields that vary, quantities, and parts.
 
 `request` checks what a user asks for before any work, and chooses the engine and the size of parts.
 """
@@ -9,10 +9,11 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pydantic import PositiveInt
 from pydantic.dataclasses import dataclass as checked
@@ -25,7 +26,7 @@ from ..model.sections import direction_of
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
-from ..scenes.scene import Scene, checked_value, parse_scene
+from ..scenes.scene import Reading, Scene, checked_value, parse_scene
 from ..system.imports import needed
 from .axes import TEXTS, AxisTable, grid, listed
 from .parquet import (
@@ -43,16 +44,83 @@ from .parquet import (
 )
 from .row_constants import ANGLES, POSITION
 
-SCHEMA = 2
-PART_S = 10.0  # CPU seconds of a part, by the cost model
-LEAST_PART, MOST_PART = 8, 65_536  # rows
-# as they are
-SETTINGS = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")
-ALL = "all"
-PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
-ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
-# CPU seconds of rows, above which it is told that a compiled engine would be cheaper
-WORTH_A_LINE_S = 1.0
+_SCHEMA = 2
+_PART_S = 10.0  # CPU seconds of a part, by the cost model
+_LEAST_PART = 8  # rows
+_MOST_PART = 65_536  # rows
+# attributes of a request that its document has as they are
+_STORED = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")
+_ALL = "all"
+_PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
+_ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
+# CPU seconds of a sweep, above which a line says that a compiled engine would be cheaper
+_WORTH_A_LINE_S = 1.0
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How the rows of a sweep are solved, as a user chooses it.
+
+    Attributes:
+        want: words of `parquet.WANTS`, "transit-times", or "all".
+        level: the level of trust; above computed every row goes through the solver.
+        digits: significant digits, by the solver; None for those of double.
+        tolerance: rows with a larger error of the position in m go through the solver as well; None
+            for any error.
+        engine: the engine that solves many rows at once, or "auto".
+        audit: how many rows are solved again in many digits; None where the default is taken.
+    """
+
+    want: Sequence[str] = (_ALL,)
+    level: str = "computed"
+    digits: int | None = None
+    tolerance: float | None = None
+    engine: str = AUTO
+    audit: int | None = None
+
+    def check(self, reading: Reading) -> None:
+        """Refuse a wrong level, or a number out of range.
+
+        Raises:
+            InputError: one of these.
+        """
+        if self.level not in LEVELS:
+            advice = f"There are {', '.join(LEVELS)}."
+            raise unknown("--level", self.level, "a level of trust", LEVELS, advice)
+        if self.level == "enclosed":
+            needed("flint", "enclose", "--level", "the level enclosed")
+        if self.digits is not None:
+            checked_value("run.digits", str(self.digits), reading)
+        tolerance = self.tolerance
+        if tolerance is not None and not (isinstance(tolerance, Real) and tolerance >= 0):
+            raise InputError("--tolerance", tolerance, "a number of metres from 0")
+        if self.audit is not None:
+            check_whole("--audit", self.audit, 0, "a number of rows from 0")
+
+    @property
+    def promotes(self) -> bool:
+        """Whether every row goes through the solver, by its level or digits."""
+        return self.level != "computed" or self.digits is not None
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The quantities wanted, in the order of `parquet.WANTS`.
+
+        Raises:
+            InputError: a word is no quantity.
+        """
+        choices = (*WANTS, TIMES, _ALL)
+        for word in self.want:
+            if word not in choices:
+                advice = f"There are {', '.join(WANTS)}."
+                raise unknown("--want", word, "a quantity of a sweep", choices, advice)
+        wanted = set(self.want)
+        if _ALL in wanted:
+            wanted |= set(WANTS)
+        return tuple(word for word in (*WANTS, TIMES) if word in wanted)
+
+
+_DEFAULTS = Settings()
 
 
 @checked(frozen=True)
@@ -65,7 +133,8 @@ class Request:
         want: words of `parquet.WANTS`, and "transit-times".
         level: the level of trust asked for.
         digits: significant digits asked for, None for those of double.
-        tolerance: largest error of a position in m with which a row stays as computed, None for any.
+        tolerance: largest error of a position in m with which a row stays as computed, None for
+            any.
         engine: the engine that solves many rows at once.
         identity: what decides its digits.
         rows_per_part: rows of a part.
@@ -90,7 +159,7 @@ class Request:
 
     @property
     def solved_by(self) -> str:
-        """What solves the rows: an engine for many at once, or the solver, where every row goes through it."""
+        """The name of what solves the rows: an engine for many at once, or the solver."""
         return "the solver" if self.promotes else self.engine
 
     @property
@@ -110,19 +179,15 @@ class Request:
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
-        """The columns of a row: its number, one for each field that is varied, those that are wanted, of sections."""
-        varied = [
-            Column(
-                key, WORDS if key in TEXTS else "float64", f"{key} of the scene, the nearest double"
-            )
-            for key in self.table.values
-        ]
-        results = [
-            column
-            for column in COLUMNS[1:]
-            if not column.wants or set(column.wants) & set(self.want)
-        ]
-        return (COLUMNS[0], *varied, *results, *section_columns(self.sections))
+        """The columns: number, fields that vary, quantities that are wanted, and sections."""
+        number, *described = COLUMNS
+        varied = []
+        for key in self.table.values:
+            kind = WORDS if key in TEXTS else "float64"
+            varied.append(Column(key, kind, f"{key} of the scene, the nearest double"))
+        want = set(self.want)
+        results = [column for column in described if not column.wants or want & set(column.wants)]
+        return (number, *varied, *results, *section_columns(self.sections))
 
     @property
     def parts(self) -> int:
@@ -144,20 +209,19 @@ class Request:
         Raises:
             InputError: the combination of its values is wrong.
         """
-        texts = self.table.texts(row)
-        return self.scene.with_values(
-            texts | {"run.grid_step": texts.get("run.t_end", self.scene.run.t_end)}
-        )
+        values = self.table.texts(row)
+        t_end = values.get("run.t_end", self.scene.run.t_end)
+        return self.scene.with_values(values | {"run.grid_step": t_end})
 
     def document(self) -> dict[str, Any]:
         """Return the request as JSON, all that decides the digits."""
         return {
-            "schema": SCHEMA,
+            "schema": _SCHEMA,
             "scene": self.scene.model_dump(exclude_none=True),
             "over": self.table.typed,
             "values": self.table.stored,
             "rows": self.table.count,
-            **{name: getattr(self, name) for name in SETTINGS},
+            **{name: getattr(self, name) for name in _STORED},
         }
 
     @classmethod
@@ -165,7 +229,7 @@ class Request:
         """Return the request that `document` wrote."""
         scene = parse_scene(document["scene"])
         table = AxisTable.of(document["over"], document["values"], scene.inputs)
-        return cls(scene, table, **{name: document[name] for name in SETTINGS})
+        return cls(scene, table, **{name: document[name] for name in _STORED})
 
     @cached_property
     def text(self) -> str:
@@ -176,9 +240,8 @@ class Request:
     def hash(self) -> str:
         """The sha256 of `document` and of the columns, which every part carries."""
         columns = [(column.name, column.kind) for column in (*self.columns, *TRANSIT_COLUMNS)]
-        return hashlib.sha256(
-            json.dumps([self.document(), columns], sort_keys=True).encode()
-        ).hexdigest()
+        text = json.dumps([self.document(), columns], sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
 
 
 @lru_cache(maxsize=1)
@@ -191,106 +254,86 @@ def request(
     scene: Scene,
     over: Iterable[str] = (),
     rows: Path | None = None,
-    *,
-    want: Sequence[str] = (ALL,),
-    level: str = "computed",
-    digits: int | None = None,
-    tolerance: float | None = None,
-    engine: str = AUTO,
-    audit: int | None = None,
+    settings: Settings = _DEFAULTS,
 ) -> Request:
-    """Return a sweep, checked, its engine and the size of its parts chosen; arguments as those of `sweep.sweep`.
+    """Return the request of a sweep, checked; the engine and the size of its parts are chosen.
+
+    Args:
+        scene: the scene that is varied.
+        over: words of `--over`; all their combinations are rows.
+        rows: instead, a file with a row a scene.
+        settings: how the rows are solved.
 
     Raises:
-        InputError: a wrong axis, option or value.
+        InputError: a wrong axis, setting or value.
     """
-    if level not in LEVELS:
-        raise unknown(
-            "--level", level, "a level of trust", LEVELS, f"There are {', '.join(LEVELS)}."
-        )
-    if level == "enclosed":
-        needed("flint", "enclose", "--level", "the level enclosed")
-    if digits is not None:
-        checked_value("run.digits", str(digits), scene.inputs)
-    if tolerance is not None and not (isinstance(tolerance, Real) and tolerance >= 0):
-        raise InputError("--tolerance", tolerance, "a number of metres from 0")
-    if audit is not None:
-        check_whole("--audit", audit, 0, "a number of rows from 0")
+    settings.check(scene.inputs)
     words = list(over)
     if bool(words) == (rows is not None):
-        raise InputError(
-            "--over",
-            " ".join(words) or "nothing",
-            "--over KEY=…, or --rows FILE",
-            "Give one of the two.",
-        )
+        got = " ".join(words) or "nothing"
+        expected = "--over KEY=…, or --rows FILE"
+        raise InputError("--over", got, expected, "Give one of the two.")
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
     table = listed(rows) if rows else grid(words, scene.inputs)
     _check_release(scene, table.values)
-    chosen = _engine(engine, scene, table.count)
-    row_s = PROMOTED_S if level != "computed" or digits is not None else _row_s(chosen, scene)
+    engine = _engine(settings.engine, scene, table.count)
+    row_s = _PROMOTED_S if settings.promotes else _row_s(engine, scene)
     return Request(
         scene=scene,
         table=table,
-        want=_quantities(want),
-        level=level,
-        digits=digits,
-        tolerance=tolerance,
-        engine=chosen.name,
-        identity=chosen.identity,
-        rows_per_part=min(
-            max(1 << round(math.log2(max(PART_S / row_s, 1))), LEAST_PART), MOST_PART
-        ),
-        audit=min(audit or 0, table.count),
+        want=settings.quantities,
+        level=cast(Level, settings.level),
+        digits=settings.digits,
+        tolerance=settings.tolerance,
+        engine=engine.name,
+        identity=engine.identity,
+        rows_per_part=_rows_per_part(row_s),
+        audit=min(settings.audit or 0, table.count),
     )
+
+
+def _rows_per_part(row_s: float) -> int:
+    """Return the power of two of rows that take about `_PART_S`, within the limits of a part."""
+    rows = 1 << round(math.log2(max(_PART_S / row_s, 1)))
+    return min(max(rows, _LEAST_PART), _MOST_PART)
 
 
 def _check_release(scene: Scene, keys: Iterable[str]) -> None:
     """Refuse fields of the kind of release that the scene does not have."""
     kind, other = (POSITION, ANGLES) if scene.release.angle is None else (ANGLES, POSITION)
+    refused = [f"release.{name}" for name in other]
     for key in keys:
-        if key in [f"release.{name}" for name in other]:
-            expected = f"one of {', '.join(f'release.{name}' for name in kind)}, the scene's kind of release"
+        if key in refused:
+            names = ", ".join(f"release.{name}" for name in kind)
+            expected = f"one of {names}, the scene's kind of release"
             raise InputError("--over", key, expected, "Or take a scene with the other kind.")
 
 
-def _quantities(words: Sequence[str]) -> tuple[str, ...]:
-    known = (*WANTS, TIMES, ALL)
-    for word in words:
-        if word not in known:
-            raise unknown(
-                "--want", word, "a quantity of a sweep", known, f"There are {', '.join(WANTS)}."
-            )
-    return tuple(
-        word for word in (*WANTS, TIMES) if word in words or (ALL in words and word in WANTS)
-    )
-
-
 def _row_s(engine: Batch, scene: Scene) -> float:
-    """Return the CPU seconds that an engine takes for a row, by the small swings in its span and by its sections."""
+    """Return the CPU seconds of a row in an engine, by its small swings and its sections."""
     start = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
     rate = float(start.ctx.norm(start.k.pull) ** 0.5)
-    swings = ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
+    swings = _ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
     work = sum(engine.section_work[abs(direction_of(word))] for word in scene.run.sections or ())
     return engine.swing_s * swings * (1 + work)
 
 
 def worth_compiling(request: Request) -> str:
-    """Return from how many rows it pays to compile an engine that would be cheaper for each, or "" if there is none."""
+    """Return from how many rows compiling a cheaper engine pays; "" if there is none."""
     row_s = _row_s(batches()[request.engine], request.scene)
-    if request.promotes or row_s * request.table.count < WORTH_A_LINE_S:
+    if request.promotes or row_s * request.table.count < _WORTH_A_LINE_S:
         return ""
+    has_drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
     for other in batches().values():
-        once_s, gained_s = (
-            other.compiling_s(bool(request.sections)),
-            row_s - _row_s(other, request.scene),
-        )
-        drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
-        if once_s and gained_s > 0 and other.installed and (other.drag or not drag):
-            rows = float(f"{once_s / gained_s:.1g}")
+        if not other.installed or (has_drag and not other.drag):
+            continue
+        compiling_s = other.compiling_s(bool(request.sections))
+        gained_s = row_s - _row_s(other, request.scene)
+        if compiling_s and gained_s > 0:
+            rows = float(f"{compiling_s / gained_s:.1g}")
             return (
                 f"From some {rows:,.0f} such rows on, in one sweep or several, {other.name} costs less "
-                f"than {request.engine}: it is compiled once, for about {once_s:.0f} s (--engine {other.name})."
+                f"than {request.engine}: it is compiled once, for about {compiling_s:.0f} s (--engine {other.name})."
             )
     return ""
 
@@ -303,25 +346,24 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
     """
     engines = batches()
     if name == AUTO:
-        serving = [
-            engine
-            for engine in engines.values()
-            if engine.installed and (engine.drag or not scene.exact.drag)
-        ]
-        sections = bool(scene.run.sections)
-        return min(
-            serving,
-            key=lambda engine: (
-                engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
-            ),
-        )
+        return _fastest(scene, count)
     if name not in engines:
-        raise unknown(
-            "--engine",
-            name,
-            "an engine for many rows",
-            (AUTO, *engines),
-            f"There are {', '.join(engines)}.",
-        )
+        advice = f"There are {', '.join(engines)}."
+        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), advice)
     engines[name].check_installed()
     return engines[name]
+
+
+def _fastest(scene: Scene, count: int) -> Batch:
+    """Return the engine that is expected to finish first, loading and compiling included."""
+    sections = bool(scene.run.sections)
+
+    def cost_s(engine: Batch) -> float:
+        return engine.load_s + engine.compiling_s(sections) + count * _row_s(engine, scene)
+
+    serving = [
+        engine
+        for engine in batches().values()
+        if engine.installed and (engine.drag or not scene.exact.drag)
+    ]
+    return min(serving, key=cost_s)

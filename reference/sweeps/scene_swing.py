@@ -1,4 +1,4 @@
-"""Period and precession of a scene, from its highest points in double precision: what `foucault show` prints."""
+"""Period and precession of a scene in double precision: what `foucault show` prints."""
 
 from __future__ import annotations
 
@@ -10,22 +10,23 @@ from ..model.start import Start
 from ..scenes.scene import AnyScene, as_scene
 from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, ONE_SIDE, SMALL, offset, turns_too_far
 from .part import highest_on_one_side, solve_part
-from .request import request
+from .request import Settings, request
 
-MOST_SWINGS = 10_000  # that are followed
-PREC = 96  # bits of the plumb line and the rest position
-WANT = ["frequency", "precession", "amplitude"]
+_MOST_SWINGS = 10_000  # that are followed
+_PRECISION_BITS = 96  # of the plumb line and the rest position
+_SETTINGS = Settings(want=("frequency", "precession", "amplitude"))
 
 
 @dataclass(frozen=True)
 class EstimatedSwing:
-    """Period and precession of a scene; their errors are estimates. Proven intervals: `Solution.swing`.
+    """Period and precession of a scene with estimated errors. For proofs: `Solution.swing`.
 
     Attributes:
         over_s: the time in s over which they are means.
         period_s: of a swing to and fro, in s.
         period_error_s: of it, in s.
-        precession_deg_per_h: turn of the swing plane about the plumb line, east to north; None where `reason` says why.
+        precession_deg_per_h: turn of the swing plane about the plumb line, east to north; None
+            where `reason` says why.
         precession_error_deg_per_h: of it.
         reason: why there is no precession; "" if there is one.
     """
@@ -59,42 +60,39 @@ class EstimatedSwing:
 
 
 def swing(scene: AnyScene) -> EstimatedSwing:
-    """Return period and precession of a scene over its run, or over its first 10,000 swings if that is less.
+    """Return period and precession of a scene over its run, or its first 10,000 swings.
 
     Raises:
         InputError: a field of the scene is wrong.
         UnreachableError: the bob does not swing to and fro, or double precision does not decide it.
     """
     scene = as_scene(scene)
-    start = Start.of(scene.exact, PREC)
-    longest = MOST_SWINGS * 2 * math.pi / start.fastest_rate
-    if scene.exact.t_end > longest:
-        scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
-    one_row = request(scene, [f"site.latitude={scene.site.latitude}"], want=WANT)
+    start = Start.of(scene.exact, _PRECISION_BITS)
+    longest_s = _MOST_SWINGS * 2 * math.pi / start.fastest_rate
+    if scene.exact.t_end > longest_s:
+        scene = scene.with_values({"run.t_end": f"{longest_s:.4g}"})
+    one_row = request(scene, [f"site.latitude={scene.site.latitude}"], settings=_SETTINGS)
     columns = solve_part(one_row, range(1), promote=None).columns
     row = {name: values[0] for name, values in columns.items()}
     hz = float(row["swing_hz"])
     if not hz > 0:
         raise UnreachableError(row["reason"] or NO_SWING)
 
-    seconds = float(scene.run.t_end)
-    smallest_angle = 2 * math.sin(math.radians(float(row["max_angle_deg"])) / 2)
-    smallest_m = (
-        float(start.k.length) * smallest_angle * math.exp(-float(start.k.drag) * seconds / 2)
-    )
-    off = offset(start, smallest_m)
-    if off > 1:
+    span_s = float(scene.run.t_end)
+    smallest_m = _smallest_amplitude_m(start, float(row["max_angle_deg"]), span_s)
+    offset_rad = offset(start, smallest_m)
+    if offset_rad > 1:
         raise UnreachableError(LEAN)
     too_fast = turns_too_far(start, 0.5 / hz)
     if not too_fast and highest_on_one_side(one_row):
         raise UnreachableError(ONE_SIDE)
 
     precession = float(row["precession_deg_per_h"])
-    turned = math.radians(abs(precession)) * seconds / HOUR
+    turned_rad = math.radians(abs(precession)) * span_s / HOUR
     reason = ""
     if too_fast:
         reason = FAST
-    elif off > turned:
+    elif offset_rad > turned_rad:
         reason = SMALL
     return EstimatedSwing(
         over_s=scene.run.t_end,
@@ -104,3 +102,10 @@ def swing(scene: AnyScene) -> EstimatedSwing:
         precession_error_deg_per_h=float(row["precession_error_deg_per_h"]),
         reason=reason,
     )
+
+
+def _smallest_amplitude_m(start: Start, largest_deg: float, span_s: float) -> float:
+    """Return the distance of the last highest point from the lowest one, in m: drag shrinks it."""
+    chord = 2 * math.sin(math.radians(largest_deg) / 2)
+    shrunk = math.exp(-float(start.k.drag) * span_s / 2)
+    return float(start.k.length) * chord * shrunk

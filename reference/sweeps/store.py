@@ -1,15 +1,15 @@
-"""A sweep on disk: a folder with its plan and its parts in Parquet, each sealed, and written whole or not at all.
+"""A sweep on disk: a folder with its plan and its parts, each sealed.
 
-`plan.json` says all that decides a number, `rows/part-00000000.parquet` … hold the rows, `transits/part-…` their
-transits where these are wanted, `summary.json` comes last. A part appears whole or not at all, and is sealed with the
-plan and its number: those whose seals are right are not computed again.
+`plan.json` has all that decides a number; `rows/part-00000000.parquet` … hold the rows,
+`transits/part-…` their transits if these are wanted; `summary.json` is written last.
+Each file is written whole or not at all. The seal of a
+part covers the plan and the part's number: parts with a right seal are not computed again.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -25,9 +25,12 @@ from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, parquet
 from .part import Part
 from .request import Request
 
-PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
-PARQUET = ("pyarrow", "sweep", "--out", "a folder of Parquet files")  # what is needed, and for what
-MOST_BYTES = 1 << 40  # of a part: no limit but that of a disk
+PLAN = "plan.json"
+SUMMARY = "summary.json"
+ROWS = "rows"
+TRANSITS = "transits"
+_PARQUET = ("pyarrow", "sweep", "--out", "a folder of Parquet files")  # arguments of `needed`
+_MOST_BYTES = 1 << 40  # of a part: the limit is that of a disk
 
 
 @dataclass(frozen=True)
@@ -49,18 +52,15 @@ class Store:
         """Begin a folder, or go on with that of the same sweep.
 
         Raises:
-            InputError: it holds another sweep, or something else, or other versions would write other bytes, or it
-                cannot be written.
+            InputError: it holds another sweep, or something else, or other versions would write
+                other bytes, or it cannot be written.
         """
         if (folder / PLAN).exists():
             store = cls.opened(folder)
             store._check_same(request)
         else:
-            needed(*PARQUET)
-            if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
-                raise InputError(
-                    "--out", str(folder), "a new or empty folder, or that of this sweep"
-                )
+            needed(*_PARQUET)
+            _check_empty(folder)
             store = cls(folder, request, version("pyarrow"))
         with usable("--out", folder):
             for kind in store._kinds:
@@ -69,10 +69,8 @@ class Store:
                 clear(folder / kind)
             clear(folder)
         if not (folder / PLAN).exists():
-            write_json(
-                folder / PLAN,
-                {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()},
-            )
+            plan = {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()}
+            _write_json(folder / PLAN, plan)
         return store
 
     @classmethod
@@ -82,22 +80,20 @@ class Store:
         Raises:
             InputError: there is none, or its plan is damaged.
         """
-        needed(*PARQUET)
+        needed(*_PARQUET)
         try:
             document = json_document(folder / PLAN, "--out")
             request = Request.of(document)
             unchanged = request.hash == document["hash"]
         except FileNotFoundError:
+            expected = f"a folder of a sweep, with {PLAN}"
             advice = "Give a scene and --over to begin one."
-            raise InputError(
-                "--out", str(folder), f"a folder of a sweep, with {PLAN}", advice
-            ) from None
+            raise InputError("--out", str(folder), expected, advice) from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
             unchanged = False
         if not unchanged:
-            raise InputError(
-                "--out", str(folder), f"a {PLAN} as this version writes it", "Sweep anew."
-            )
+            expected = f"a {PLAN} as this version writes it"
+            raise InputError("--out", str(folder), expected, "Sweep anew.")
         return cls(folder, request, str(document.get("pyarrow")))
 
     def _check_same(self, request: Request) -> None:
@@ -106,9 +102,9 @@ class Store:
         Raises:
             InputError: it differs from the plan.
         """
-        there, here = self.request.document(), request.document()
-        keys = sorted(here.keys() - {"identity"})  # which tells of versions, below
-        differing = [key for key in keys if json.dumps(there.get(key)) != json.dumps(here[key])]
+        stored, asked = self.request.document(), request.document()
+        keys = sorted(asked.keys() - {"identity"})  # the identity has versions, compared below
+        differing = [key for key in keys if json.dumps(stored.get(key)) != json.dumps(asked[key])]
         if differing:
             expected = f"the sweep that is there, which differs in {', '.join(differing)}"
             raise InputError("--out", str(self.folder), expected, "Take another folder.")
@@ -123,6 +119,7 @@ class Store:
 
     @property
     def _kinds(self) -> tuple[str, ...]:
+        """The kinds of files that each part has."""
         return (ROWS, TRANSITS) if self.request.run_options.times else (ROWS,)
 
     def path(self, part: int, kind: str = ROWS) -> Path:
@@ -130,7 +127,7 @@ class Store:
         return self.folder / kind / f"part-{part:08d}.parquet"
 
     def missing(self) -> list[int]:
-        """Return the parts that are not there yet, were damaged, or are others of this plan or of another."""
+        """Return the parts that do not exist yet, were damaged, or have another part's seal."""
         return [
             part
             for part in range(self.request.parts)
@@ -138,15 +135,16 @@ class Store:
         ]
 
     def _sound(self, part: int, kind: str) -> bool:
-        with (
-            suppress(FileNotFoundError, InputError),
-            regular(self.path(part, kind), "--out", MOST_BYTES, "a part") as stream,
-        ):
-            return is_sealed(stream.read(), self._named(part, kind))
-        return False
+        """Return whether the file of a part exists with the right seal."""
+        path = self.path(part, kind)
+        try:
+            with regular(path, "--out", _MOST_BYTES, "a part") as stream:
+                return is_sealed(stream.read(), self._named(part, kind))
+        except (FileNotFoundError, InputError):
+            return False
 
     def _named(self, part: int, kind: str) -> str:
-        """Return what a part is, for its seal."""
+        """Return the name of a part that its seal covers."""
         return f"{kind} {part} of {self.request.hash}"
 
     def save(self, part: int, solved: Part) -> None:
@@ -160,33 +158,34 @@ class Store:
             TRANSITS: (TRANSIT_COLUMNS, solved.transits),
         }
         for kind in self._kinds:
-            _write(self.path(part, kind), parquet(*tables[kind], self._named(part, kind)))
+            described, columns = tables[kind]
+            _write(self.path(part, kind), parquet(described, columns, self._named(part, kind)))
 
     def finish(self, summary: dict[str, Any]) -> None:
-        """Write what the sweep has found, and the checksums of the files that have no seal of their own.
+        """Write the summary, and the checksums of the files that have no seal of their own.
 
         Raises:
             InputError: they cannot be written.
         """
-        write_json(self.folder / SUMMARY, summary)
+        _write_json(self.folder / SUMMARY, summary)
         files = {name: (self.folder / name).read_bytes() for name in (PLAN, SUMMARY)}
         _write(self.folder / SUMS, sums_text(files).encode())
 
     def foreign(self) -> list[str]:
-        """Return the files beside the parts that are none of the sweep's, by their paths in its folder.
+        """Return the files beside the parts that are not the sweep's, by their paths in its folder.
 
-        Those whose names begin with a dot are left out, as they are by programs that read Parquet.
+        Names that begin with a dot are left out, as programs that read Parquet do.
         """
-        parts = {
-            self.path(part, kind) for kind in self._kinds for part in range(self.request.parts)
-        }
-        found = {path for kind in (ROWS, TRANSITS) for path in (self.folder / kind).glob("[!.]*")}
-        return sorted(str(path.relative_to(self.folder)) for path in found - parts)
+        own = {self.path(part, kind) for kind in self._kinds for part in range(self.request.parts)}
+        present: set[Path] = set()
+        for kind in (ROWS, TRANSITS):
+            present.update((self.folder / kind).glob("[!.]*"))
+        return sorted(str(path.relative_to(self.folder)) for path in present - own)
 
     def read(
         self, names: list[str] | None = None, kind: str = ROWS, parts: Iterable[int] | None = None
     ) -> dict[str, Any]:
-        """Return columns of some parts as arrays, one below the other: all columns and parts if none are named.
+        """Return columns of parts as arrays, one below the other: all if none are named.
 
         Raises:
             InputError: a part was damaged or lost since its seal was checked.
@@ -201,12 +200,20 @@ class Store:
             ) from None
 
 
-def _foreign(path: Path) -> bool:
-    """Return whether a file is none of those that a sweep leaves which was killed as it began."""
+def _check_empty(folder: Path) -> None:
+    """Raise InputError unless a folder is new, empty, or that of a sweep killed as it began."""
+    if not folder.exists():
+        return
+    if not folder.is_dir() or any(_is_foreign(path) for path in folder.iterdir()):
+        raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
+
+
+def _is_foreign(path: Path) -> bool:
+    """Return whether a sweep that was killed as it began cannot have left a file."""
     return path.name not in (ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
 
 
-def write_json(path: Path, document: dict[str, Any]) -> None:
+def _write_json(path: Path, document: dict[str, Any]) -> None:
     """Write a document of a sweep, whole or not at all."""
     _write(path, (plain_json(document) + "\n").encode())
 

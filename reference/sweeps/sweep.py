@@ -1,9 +1,9 @@
-"""`reference.sweep` and `reference.load_sweep`: many pendulums in one call, in memory or into a folder."""
+"""`reference.sweep` and `reference.load_sweep`: many pendulums in one call."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -17,15 +17,17 @@ from ..system.workers import usable_cores
 from .driver import Executor, drive, on_this_machine
 from .part import Part, Tally
 from .promote import audited
-from .request import Request, request
+from .request import Request, Settings, request
 from .store import PLAN, Store
 from .swept import Swept
 
-MOST_IN_MEMORY = 100_000  # rows
-PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
-ROWS_OF_FRAME = "Of a data frame write rows.to_csv(FILE, index=False), and give FILE."
-# audited rows: at least, at most, else one in AUDITED
-LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000
+_MOST_IN_MEMORY = 100_000  # rows
+_PIECES = 16  # of a sweep in memory
+_LEAST_PIECE = 256  # rows of such a piece
+_ROWS_OF_FRAME = "Of a data frame write rows.to_csv(FILE, index=False), and give FILE."
+_AUDITED = 1000  # one row in so many is audited, within these limits
+_LEAST_AUDIT = 8  # rows
+_MOST_AUDIT = 1000
 
 Report = Callable[[int], None]
 
@@ -51,21 +53,28 @@ def sweep(
     """Solve a scene for many values of some of its fields.
 
     Args:
-        scene: what is varied, and the span: its `t_end`; a scene, its id, the path of a TOML file, or nested mappings.
-        over: a mapping from fields to values, `{"site.latitude": range(-90, 91, 10)}`, or words KEY=START:STOP:STEP,
-            KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last fastest.
-        t_end: end of each run in s, where it is not the scene's.
+        scene: what is varied, and the span: its `t_end`; a scene, its id, the path of a TOML file,
+            or nested mappings.
+        over: a mapping from fields to values, `{"site.latitude": range(-90, 91, 10)}`, or words
+            KEY=START:STOP:STEP, KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last
+            fastest.
+        t_end: end of each run in s; None for the scene's.
         rows: instead, a CSV or Parquet file whose columns are fields, one row a scene.
-        out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A folder of the same sweep is gone on with.
-        want: quantities: frequency, precession, transits, state, amplitude, all of these, transit-times.
+        out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A sweep that the folder
+            holds is resumed.
+        want: quantities: frequency, precession, transits, state, amplitude, all of these,
+            transit-times.
         sections: other moments to find, such as ["highest", "gate 30"], instead of the scene's.
         level: level of trust; above computed every row goes through `solve`.
         digits: significant digits, of every row through `solve`; None for double.
         tolerance: rows with a larger error of the position in m go through `solve` as well.
-        engine: the engine that solves many rows at once; "auto" takes the one that is expected to be done first.
-        audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`, none without.
+        engine: the engine that solves many rows at once; "auto" takes the one expected to finish
+            first.
+        audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`,
+            none without.
         workers: threads, or processes where rows go through `solve`; None for one a core.
-        cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on this machine.
+        cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on
+            this machine.
         report: called with the number of rows that were done since the last call.
 
     Returns:
@@ -74,65 +83,72 @@ def sweep(
     Raises:
         InputError: a wrong axis, option or folder; before any work.
     """
-    file = (
-        None if rows is None else checked_path("rows", rows, "a CSV or Parquet file", ROWS_OF_FRAME)
-    )
-    folder = None if out is None else checked_path("out", out, "a folder")
+    file = folder = None
+    if rows is not None:
+        file = checked_path("rows", rows, "a CSV or Parquet file", _ROWS_OF_FRAME)
+    if out is not None:
+        folder = checked_path("out", out, "a folder")
     if workers is not None:
         check_whole("workers", workers, words="a whole number from 1, or None for one a core")
-    quantities = want.split(",") if isinstance(want, str) else words_of(want)
-    options = {
-        "want": quantities,
-        "level": level,
-        "digits": digits,
-        "tolerance": tolerance,
-        "engine": engine,
-    }
-    run_values = {"run.t_end": t_end, "run.sections": sections}
-    scene = as_scene(scene).with_values(
-        {key: value for key, value in run_values.items() if value is not None}
+    settings = Settings(
+        want=want.split(",") if isinstance(want, str) else words_of(want),
+        level=level,
+        digits=digits,
+        tolerance=tolerance,
+        engine=engine,
+        audit=audit_rows,
     )
-    request = asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options)
+    fields = {"run.t_end": t_end, "run.sections": sections}
+    replaced = {name: value for name, value in fields.items() if value is not None}
+    scene = as_scene(scene).with_values(replaced)
+    request = checked_request(scene, words_of(over), file, folder, settings)
     return run(request, folder, workers, cluster, report)
 
 
-def asked_for(
+def checked_request(
     scene: Scene,
-    over: Iterable[str] = (),
-    rows: Path | None = None,
-    out: Path | None = None,
-    **options: Any,
+    over: Iterable[str],
+    rows: Path | None,
+    out: Path | None,
+    settings: Settings,
 ) -> Request:
-    """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `request.request`.
+    """Return the request of a sweep into a folder or in memory; arguments as those of `sweep`.
 
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.
     """
-    if out is not None and options.get("engine", AUTO) == AUTO and (out / PLAN).exists():
-        options["engine"] = Store.opened(out).request.engine  # a sweep goes on as it began
-    checked = request(scene, over, rows, **options)
-    count = checked.table.count
     if out is None:
-        if count > MOST_IN_MEMORY:
-            raise InputError(
-                "--out",
-                "nothing",
-                f"a folder, for more than {MOST_IN_MEMORY:,} rows",
-                "Give --out DIR.",
-            )
-        return replace(
-            checked, rows_per_part=min(checked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES)))
-        )
-    if options.get("audit") is None:
-        return replace(checked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
-    return checked
+        return _in_memory(request(scene, over, rows, settings))
+    if settings.engine == AUTO and (out / PLAN).exists():
+        # a sweep goes on with the engine that it began with
+        settings = replace(settings, engine=Store.opened(out).request.engine)
+    checked = request(scene, over, rows, settings)
+    if settings.audit is not None:
+        return checked
+    count = checked.table.count
+    audit = max(count // _AUDITED, _LEAST_AUDIT)
+    return replace(checked, audit=min(audit, _MOST_AUDIT, count))
+
+
+def _in_memory(checked: Request) -> Request:
+    """Return a request with parts small enough for all workers to have some.
+
+    Raises:
+        InputError: there are too many rows.
+    """
+    count = checked.table.count
+    if count > _MOST_IN_MEMORY:
+        expected = f"a folder, for more than {_MOST_IN_MEMORY:,} rows"
+        raise InputError("--out", "nothing", expected, "Give --out DIR.")
+    piece = max(_LEAST_PIECE, -(-count // _PIECES))
+    return replace(checked, rows_per_part=min(checked.rows_per_part, piece))
 
 
 def load_sweep(folder: str | Path) -> Swept:
     """Return the sweep in a folder.
 
     Raises:
-        InputError: there is none, or it is not done yet, or a part of it was damaged.
+        InputError: there is none, it is not complete, or a part of it was damaged.
     """
     store = Store.opened(checked_path("folder", folder, "the folder of a sweep"))
     count = len(store.missing())
@@ -149,37 +165,52 @@ def run(
     cluster: str | None = None,
     report: Report = lambda _: None,
 ) -> Swept:
-    """Do what of a sweep is not done yet, and audit it; arguments and errors as those of `sweep`."""
+    """Solve the parts that are not done yet, and audit; arguments as those of `sweep`."""
     started = time.perf_counter()
-    store, parts = None, list(range(request.parts))
+    store = None
+    parts = list(range(request.parts))
     if out is not None:
         store = Store.begun(out, request)
         parts = store.missing()
-        report(request.table.count - sum(len(request.rows_of(part)) for part in parts))
+        missing_rows = sum(len(request.rows_of(part)) for part in parts)
+        report(request.table.count - missing_rows)
+
     in_memory: dict[int, Part] = {}
-    save = store.save if store is not None else in_memory.__setitem__
-    tally, compile_s = Tally(), 0.0
+    keep = store.save if store is not None else in_memory.__setitem__
+    tally = Tally()
+    compile_s = 0.0
     if parts:
         with _workers(request, out, workers, cluster, len(parts)) as executor:
-            tally = drive(request, parts, executor, save, report)
+            tally = drive(request, parts, executor, keep, report)
         compile_s = executor.compile_s
-    audit, audit_from = None, time.process_time()
-    if request.audit:
-        audit = audited(
-            request, lambda part: store.read(parts=[part]) if store else in_memory[part].columns
-        )
+
+    def columns_of(part: int) -> Mapping[str, Any]:
+        return store.read(parts=[part]) if store is not None else in_memory[part].columns
+
+    audit_started = time.process_time()
+    audit = audited(request, columns_of) if request.audit else None
+    audit_s = time.process_time() - audit_started
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
-    audit_s, wall_s = time.process_time() - audit_from, time.perf_counter() - started
-    swept = Swept(request, store, solved, tally, audit, compile_s, audit_s, wall_s)
+    swept = Swept(
+        request=request,
+        store=store,
+        solved=solved,
+        tally=tally,
+        audit=audit,
+        compile_s=compile_s,
+        audit_s=audit_s,
+        wall_s=time.perf_counter() - started,
+    )
     if store is not None:
-        document = asdict(audit) if audit is not None else None
-        store.finish({"rows": len(swept), "counts": swept.counts, "audit": document})
+        findings = asdict(audit) if audit is not None else None
+        store.finish({"rows": len(swept), "counts": swept.counts, "audit": findings})
     return swept
 
 
 def _workers(
     request: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
 ) -> AbstractContextManager[Executor]:
+    """Provide the workers of a cluster, or as many of this machine as there are parts for."""
     if cluster is not None:
         needed("distributed", "cluster", "--cluster", "sending rows to a cluster")
         from .cluster import on_cluster

@@ -29,9 +29,10 @@ class Swept(Framed):
     Attributes:
         request: the sweep: the scene, what varies, what is computed.
         store: its folder, if it has one.
-        solved: its rows, if it has none.
-        tally: counts by status and costs; of the rows that were computed now, where a folder was gone on with.
-        audit: what solving a sample again has found, if it was done.
+        solved: its rows, if it has no folder.
+        tally: counts by status and costs, of the rows that were computed now if a sweep was
+            resumed.
+        audit: the findings of an audit, if there was one.
         compile_s: CPU seconds of compiling.
         audit_s: CPU seconds of the audit.
         wall_s: seconds from the start to the end.
@@ -70,12 +71,12 @@ class Swept(Framed):
 
     @property
     def first_bad(self) -> int:
-        """The first row that is not ok; only where there is one."""
+        """The first row that is not ok; there must be one."""
         statuses = chain.from_iterable(self._statuses())
         return next(row for row, status in enumerate(statuses) if status != Status.OK.value)
 
     def _statuses(self) -> Iterator[Any]:
-        """Yield the status of every row; of a folder part by part, so that memory does not grow with the rows."""
+        """Yield the status of every row; a folder is read part by part, which saves memory."""
         if self.store is None:
             yield self["status"]
             return
@@ -88,7 +89,7 @@ class Swept(Framed):
         return tuple(column.name for column in self.request.columns)
 
     def columns(self, names: Iterable[str] | None = None) -> dict[str, Any]:
-        """Return columns as arrays of shape (rows,), all if no names are given; `pandas.DataFrame` takes them."""
+        """Return columns as arrays of shape (rows,), all if no names are given."""
         chosen = list(self.names if names is None else names)
         for name in chosen:
             if name not in self.names:
@@ -102,9 +103,9 @@ class Swept(Framed):
         return self.columns([name])[name]
 
     def grid(self, name: str) -> Any:
-        """Return a column on the grid of the axes: an xarray.DataArray where xarray is installed, else an array.
+        """Return a column on the grid of the axes: a DataArray if xarray is installed.
 
-        Of a list of rows it is the column itself.
+        Without it, it is an array. For a list of rows it is the column itself.
         """
         table = self.request.table
         values = self[name].reshape(table.shape)
@@ -125,20 +126,16 @@ class Swept(Framed):
             InputError: they were not.
         """
         if not self.request.run_options.times:
-            raise unknown(
-                "transits",
-                "transits",
-                "a sweep with --want transit-times",
-                (),
-                "Sweep again with it.",
-            )
-        return self.store.read(kind=TRANSITS) if self.store is not None else self.solved.transits
+            expected = "a sweep with --want transit-times"
+            raise unknown("transits", "transits", expected, (), "Sweep again with it.")
+        if self.store is None:
+            return self.solved.transits
+        return self.store.read(kind=TRANSITS)
 
     def rows(self, most: int | None = None) -> Iterator[dict[str, Any]]:
-        """Yield the first rows, each as a mapping from column to Python value; None where there is no number."""
+        """Yield the first rows by column, as Python values; None for a missing number."""
         columns = {name: values[:most].tolist() for name, values in self.columns().items()}
-        for row in zip(*columns.values(), strict=True):
-            yield {
-                name: None if value != value else value
-                for name, value in zip(columns, row, strict=True)
-            }
+        for values in zip(*columns.values(), strict=True):
+            row = dict(zip(columns, values, strict=True))
+            # a NaN differs from itself
+            yield {name: None if value != value else value for name, value in row.items()}

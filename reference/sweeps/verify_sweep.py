@@ -1,4 +1,4 @@
-"""`foucault verify` of the folder of a sweep: every part by its seal, the other files by their checksums."""
+"""`foucault verify` of a sweep: parts by their seals, other files by their checksums."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from .swept import Swept
 
 
 def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:
-    """Return what is wrong with a sweep, and what cannot be told.
+    """Return what is wrong with a sweep, and what cannot be decided.
 
     Raises:
         InputError: its plan is damaged, or pyarrow is not installed.
     """
     store = Store.opened(folder)
-    problems, undecided = [], []
+    problems = []
+    undecided = []
     missing = store.missing()
     if missing:
         first = store.path(missing[0]).name
-        begin = (
-            f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {first}"
+        problems.append(
+            f"{len(missing)} of {store.request.parts} parts are missing or damaged, first {first}; "
+            f"`foucault sweep --out {folder}` makes them again"
         )
-        problems.append(f"{begin}; `foucault sweep --out {folder}` makes them again")
     for name in store.foreign():
         problems.append(
             f"{name} is no part of this sweep: remove it, as whoever reads the folder would take its rows"
@@ -42,7 +43,7 @@ def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:
 
 
 def _summary_problems(store: Store) -> list[str]:
-    """Return what the summary says otherwise than the parts."""
+    """Return where the summary differs from the parts."""
     try:
         summary = json_document(store.folder / SUMMARY, "PATH")
     except FileNotFoundError:
@@ -50,6 +51,8 @@ def _summary_problems(store: Store) -> list[str]:
     except InputError as error:
         return [str(error)]
     swept = Swept(store.request, store)
-    told = {"rows": summary.get("rows"), "counts": summary.get("counts")}
-    found = {"rows": len(swept), "counts": swept.counts}
-    return [] if told == found else [f"{SUMMARY} counts {told}, and the parts hold {found}"]
+    stated = {"rows": summary.get("rows"), "counts": summary.get("counts")}
+    counted = {"rows": len(swept), "counts": swept.counts}
+    if stated == counted:
+        return []
+    return [f"{SUMMARY} counts {stated}, and the parts hold {counted}"]

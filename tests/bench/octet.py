@@ -28,7 +28,7 @@ from reference.numbers.double_double import DoubleDouble
 from reference.scenes.scene import load_scene
 from reference.sweeps.estimate import MOVED, errors, judged
 from reference.sweeps.part import solve_part
-from reference.sweeps.request import request
+from reference.sweeps.request import Settings, request
 from reference.sweeps.row_constants import columns_of, row_constants
 
 SPAN = 12_000
@@ -169,7 +169,9 @@ def main(count: int = 181, pairs: int = 5) -> None:
             load_scene("paris", [f"run.t_end={SPAN}"]),
             [f"site.latitude=-90:90:{180 // (count - 1)}"],
         )
-        sweeps = [request(scene, over, engine=name) for name in ("heyoka", "octet")]
+        sweeps = [
+            request(scene, over, settings=Settings(engine=name)) for name in ("heyoka", "octet")
+        ]
         sides = [lambda sweep=sweep: solve_part(sweep, range(count)) for sweep in sweeps]
         show("sweep in one process, default rows: heyoka / octet", *sides, pairs, ">= 3")
     print(

@@ -14,8 +14,9 @@ from random_rows import KINDS, random_kinds
 
 from reference.engines.registry import batches
 from reference.scenes.scene import load_scene
+from reference.sweeps.request import Settings
 from reference.sweeps.store import Store
-from reference.sweeps.sweep import asked_for
+from reference.sweeps.sweep import checked_request
 
 
 # shorter runs of every kind in every run: tests/reference/sweeps/test_estimate.py
@@ -47,7 +48,7 @@ def begun(folder, values, engine, want):
     """Begin a sweep of many parts, whose fields have few values; the command goes on with it."""
     over = ["site.latitude=1:80:1", f"release.x=0.1:{0.1 + 0.0001 * (values - 1):.4f}:0.0001"]
     scene = load_scene("paris", ["run.t_end=2"])
-    asked = asked_for(scene, over, None, folder, audit=0, engine=engine, want=want)
+    asked = checked_request(scene, over, None, folder, Settings(audit=0, engine=engine, want=want))
     Store.begun(folder, replace(asked, rows_per_part=ROWS_PER_PART))
     return folder
 

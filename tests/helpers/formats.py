@@ -20,8 +20,9 @@ from places import ROOT
 
 import reference
 from reference.numbers.columns import GRID
+from reference.sweeps.request import Settings
 from reference.sweeps.store import Store
-from reference.sweeps.sweep import asked_for
+from reference.sweeps.sweep import checked_request
 from reference.system.workspace import workspace
 
 Foucault = Callable[..., tuple[int, str, str]]  # runs a command: exit status, stdout, stderr
@@ -161,7 +162,9 @@ def values_of(swept: reference.Swept) -> Any:
 def begin_sweep(folder: Path, latitudes: str, **options: Any) -> None:
     """Begin a sweep in small parts, with which the command goes on: by itself it would take one for so few rows."""
     scene = reference.load_scene("paris", ["run.t_end=20"])
-    asked = asked_for(scene, [f"site.latitude={latitudes}"], None, folder, audit=0, **options)
+    asked = checked_request(
+        scene, [f"site.latitude={latitudes}"], None, folder, Settings(audit=0, **options)
+    )
     Store.begun(folder, replace(asked, rows_per_part=ROWS_PER_PART))
 
 

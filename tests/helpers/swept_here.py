@@ -8,7 +8,7 @@ from typing import Any
 from reference.scenes.scene import Scene
 from reference.sweeps.part import Promote, solve_part
 from reference.sweeps.promote import Promoted, promoted
-from reference.sweeps.request import request
+from reference.sweeps.request import Settings, request
 from reference.sweeps.swept import Swept
 
 LEFT = "left to the solver"
@@ -29,8 +29,8 @@ def swept_here(
     over: list[str],
     promote: Promote = promoted,
     rows: Path | None = None,
-    **options: Any,
+    **settings: Any,
 ) -> Swept:
-    """Return a sweep in memory, all of its rows in one part; options as those of `request`."""
-    asked = request(scene, over, rows, **options)
+    """Return a sweep in memory, all of its rows in one part; settings as those of a sweep."""
+    asked = request(scene, over, rows, Settings(**settings))
     return Swept(asked, solved=solve_part(asked, range(asked.table.count), promote))

@@ -9,8 +9,8 @@ import pytest
 
 from reference import load_scene
 from reference.engines.octet.rows import SOURCES
-from reference.sweeps.request import request, worth_compiling
-from reference.sweeps.sweep import asked_for
+from reference.sweeps.request import Settings, request, worth_compiling
+from reference.sweeps.sweep import checked_request
 from reference.system.machine_code import folder_of
 
 pytest.importorskip("pyarrow")
@@ -50,7 +50,7 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     latitudes = ["site.latitude=-90:90:1"]
     paris = load_scene("paris", {"run.t_end": 12000})
-    cold = asked_for(paris, latitudes, None, None, audit=0)
+    cold = checked_request(paris, latitudes, None, None, Settings(audit=0))
     line = worth_compiling(cold)
     assert cold.engine == "heyoka"
     found = re.fullmatch(
@@ -59,34 +59,41 @@ def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling
     assert found
     rows = int(found[1].replace(",", ""))
     fewer, more = (
-        asked_for(paris, [f"pendulum.length=67:68:{step / rows}"], None, None, audit=0)
+        checked_request(
+            paris, [f"pendulum.length=67:68:{step / rows}"], None, None, Settings(audit=0)
+        )
         for step in (2, 0.5)
     )
     # where the line says, auto changes its mind
     assert [fewer.engine, more.engine] == ["heyoka", "octet"]
     # too few to tell
-    assert worth_compiling(asked_for(paris, ["site.latitude=0,90"], None, None, audit=0)) == ""
+    assert (
+        worth_compiling(
+            checked_request(paris, ["site.latitude=0,90"], None, None, Settings(audit=0))
+        )
+        == ""
+    )
     damped = load_scene("paris", {"run.t_end": 12000, "pendulum.drag": "0.001"})
     # octet knows no drag
-    assert worth_compiling(asked_for(damped, latitudes, None, None, audit=0)) == ""
+    assert worth_compiling(checked_request(damped, latitudes, None, None, Settings(audit=0))) == ""
     folder = folder_of(SOURCES)
     assert folder is not None
     folder.mkdir()
     (folder / "march.march-1.py311.1.nbc").touch()
-    kept = asked_for(paris, latitudes, None, None, audit=0)
+    kept = checked_request(paris, latitudes, None, None, Settings(audit=0))
     assert (kept.engine, worth_compiling(kept)) == ("octet", "")
     small = load_scene("paris", {"run.t_end": 12000, "run.sections": ["gate 30"]})
     few, many = (
-        asked_for(small, [f"site.latitude=-90:90:{step}"], None, None, audit=0)
+        checked_request(small, [f"site.latitude=-90:90:{step}"], None, None, Settings(audit=0))
         for step in (1, 0.25)
     )
     # what sections need is still to be compiled
     assert (few.engine, many.engine) == ("heyoka", "octet")
     assert "once, for about 8 s" in worth_compiling(few)
     (folder / "march.march-1.py311.2.nbc").touch()
-    kept = asked_for(small, ["site.latitude=-90:90:3"], None, None, audit=0)
+    kept = checked_request(small, ["site.latitude=-90:90:3"], None, None, Settings(audit=0))
     assert (kept.engine, worth_compiling(kept)) == ("octet", "")
-    assert asked_for(damped, latitudes, None, None, audit=0).engine == "heyoka"
+    assert checked_request(damped, latitudes, None, None, Settings(audit=0)).engine == "heyoka"
 
 
 def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compiled(
@@ -96,7 +103,9 @@ def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compil
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     paris, rows = load_scene("paris", {"run.t_end": 12000}), ["pendulum.length=60:70:0.0001"]
     plain, gate, high = (
-        request(paris.with_values({"run.sections": words}), rows, engine="octet").rows_per_part
+        request(
+            paris.with_values({"run.sections": words}), rows, settings=Settings(engine="octet")
+        ).rows_per_part
         for words in ([], ["gate 30"], ["highest"])
     )
     assert (plain // gate, plain // high) == (2, 8)  # 1 + 1.2, and 1 + 6, as powers of two
@@ -105,7 +114,7 @@ def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compil
         assert folder is not None
         folder.mkdir(exist_ok=True)
         (folder / f"march.march-1.py311.{number}.nbc").touch()
-        assert request(paris, rows, engine="octet").rows_per_part == plain
+        assert request(paris, rows, settings=Settings(engine="octet")).rows_per_part == plain
 
 
 def test_json_holds_every_row_and_the_costs(foucault):

@@ -57,3 +57,17 @@ def test_an_option_without_effect_is_refused_by_its_word_and_the_case():
         refuse_conflicts(Options("paris", None, 3.0), CONFLICTS)
     with pytest.raises(InputError, match=r"--no-audit"):
         refuse_conflicts(Options("paris", audit=False), CONFLICTS)
+
+
+@dataclass(frozen=True)
+class OfOneScene:
+    scene: Annotated[str, scene_argument()]
+
+
+def test_a_field_without_a_default_is_required():
+    app = typer.Typer()
+    app.command("try")(as_command(OfOneScene, run))
+    runner = CliRunner()
+    missing = runner.invoke(app, [])
+    assert missing.exit_code == 2 and "Missing argument" in missing.output
+    assert runner.invoke(app, ["paris"]).output.strip() == str(OfOneScene("paris"))

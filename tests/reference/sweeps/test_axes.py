@@ -14,7 +14,7 @@ from reference.sweeps.axes import MOST_VALUES, axis, grid, listed, varied_names
 
 
 def texts(word: str) -> list[str]:
-    return list(axis(word, "decimal")[-1])
+    return list(axis(word, "decimal").values)
 
 
 def test_steps_are_exact_decimals_with_both_ends_in():

@@ -14,7 +14,8 @@ import pytest
 from interruption import PATIENCE_S, gone_within, interrupted, members
 
 from reference import InputError, load_scene, load_sweep
-from reference.sweeps.sweep import asked_for, run
+from reference.sweeps.request import Settings
+from reference.sweeps.sweep import checked_request, run
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore"),
@@ -25,7 +26,9 @@ ROWS = 46
 
 def asked(out):
     scene = load_scene("paris", ["run.t_end=30"])
-    whole = asked_for(scene, ["site.latitude=-90:90:4"], None, out, audit=0, engine="heyoka")
+    whole = checked_request(
+        scene, ["site.latitude=-90:90:4"], None, out, Settings(audit=0, engine="heyoka")
+    )
     return replace(whole, rows_per_part=8)
 
 

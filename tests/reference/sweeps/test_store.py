@@ -16,8 +16,9 @@ from reference import InputError, load_scene, load_sweep, sweep
 from reference.status import Status
 from reference.sweeps import driver
 from reference.sweeps.part import Part
+from reference.sweeps.request import Settings
 from reference.sweeps.store import Store
-from reference.sweeps.sweep import asked_for, run
+from reference.sweeps.sweep import checked_request, run
 
 pytest.importorskip("pyarrow")
 OVER = ["site.latitude=-90:90:2"]
@@ -26,7 +27,9 @@ ROWS = 91
 
 def asked(out, **options):
     scene = load_scene("paris", ["run.t_end=30"])
-    whole = asked_for(scene, OVER, None, out, audit=0, **{"engine": "heyoka", **options})
+    whole = checked_request(
+        scene, OVER, None, out, Settings(audit=0, **{"engine": "heyoka", **options})
+    )
     return replace(whole, rows_per_part=16)
 
 
@@ -127,9 +130,12 @@ def test_the_same_fields_in_another_order_are_another_sweep(tmp_path):
         ["site.latitude=0:20:10", "release.x=0.1,0.2"],
     )
     folder = tmp_path / "ordered"
-    run(asked_for(scene, over, None, folder, audit=0, engine="heyoka"), folder)
+    run(checked_request(scene, over, None, folder, Settings(audit=0, engine="heyoka")), folder)
     with pytest.raises(InputError, match=r"differs in over\b"):
-        run(asked_for(scene, over[::-1], None, folder, audit=0, engine="heyoka"), folder)
+        run(
+            checked_request(scene, over[::-1], None, folder, Settings(audit=0, engine="heyoka")),
+            folder,
+        )
 
 
 def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
@@ -171,8 +177,8 @@ def test_the_times_of_transits_are_a_dataset_of_their_own(tmp_path):
 def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, monkeypatch):
     monkeypatch.setattr(driver, "compute", poisoned_sweep.compute_here)
     scene, folder, done = load_scene("paris", ["run.t_end=2"]), tmp_path / "poisoned", []
-    request = asked_for(
-        scene, ["site.latitude=0:38:1"], None, folder, audit=0, digits=16, want=("state",)
+    request = checked_request(
+        scene, ["site.latitude=0:38:1"], None, folder, Settings(audit=0, digits=16, want=("state",))
     )
     request = replace(request, rows_per_part=13)
     swept = run(request, folder, workers=1, report=done.append)
@@ -184,12 +190,12 @@ def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, mon
 
 
 def test_what_became_of_the_rows_is_counted_in_the_memory_of_one_part(tmp_path):
-    whole = asked_for(
+    whole = checked_request(
         load_scene("paris"),
         ["site.latitude=1:80:1", "release.x=0.1:0.6:0.001"],
         None,
         tmp_path,
-        audit=0,
+        Settings(audit=0),
     )
     request = replace(whole, rows_per_part=1024)
     store = Store.begun(tmp_path, request)

@@ -14,8 +14,8 @@ from reference import InputError, load_scene, solve, sweep
 from reference.sweeps import driver
 from reference.sweeps.part import solve_part
 from reference.sweeps.promote import Promoted, audited, promoted
-from reference.sweeps.request import request
-from reference.sweeps.sweep import asked_for
+from reference.sweeps.request import Settings, request
+from reference.sweeps.sweep import checked_request
 
 MILLION = ["site.altitude=1:1000:1", "release.x=0.0001:0.1:0.0001"]
 LATITUDES = "site.latitude=-90,-30,0,48.846111,90"
@@ -258,12 +258,12 @@ def test_wrong_options_are_refused_before_any_work(paris, over, options, field, 
         sweep(paris, over, **options)
     assert error.value.field == field
     if field == "--out":
-        assert asked_for(paris, over, None, tmp_path, audit=None).audit == 1000
+        assert checked_request(paris, over, None, tmp_path, Settings(audit=None)).audit == 1000
 
 
 def test_parts_depend_on_the_scene_and_not_on_a_clock(paris):
     short, long = (
-        request(paris.with_values([f"run.t_end={t}"]), MILLION, engine="heyoka")
+        request(paris.with_values([f"run.t_end={t}"]), MILLION, settings=Settings(engine="heyoka"))
         for t in (60, 86400)
     )
     assert short.rows_per_part > 8 * long.rows_per_part
@@ -289,8 +289,7 @@ def test_rows_that_another_process_solves_cost_what_they_cost_there(paris):
     asked = request(
         paris.with_values(["run.t_end=30"]),
         ["site.latitude=10,20"],
-        engine="heyoka",
-        tolerance=1e-30,
+        settings=Settings(engine="heyoka", tolerance=1e-30),
     )
     part = solve_part(asked, range(2), lambda *_, **__: Promoted({}, ([], []), cpu_s=100.0))
     assert 200.0 < part.tally.cpu_s < 300.0
