@@ -17,7 +17,7 @@ from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
 from .evidence import check_evidence
-from .making import OPTIONS
+from .making import options_in
 from .manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL, Content
 from .place import RANGES, ships
 from .render import check_proved, render
@@ -140,7 +140,7 @@ def write_texts(
         replace(target, new, work)
         if ships(target):
             manifest = json.loads(texts[MANIFEST])
-            keep_seal(target.name, manifest["seal"], next(OPTIONS.finditer(manifest["command"]))[0])
+            keep_seal(target.name, manifest["seal"], str(options_in(manifest["command"])))
 
 
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:

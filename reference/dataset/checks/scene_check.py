@@ -15,7 +15,7 @@ from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...plain_text import shortened
 from ...solver.solution import exact_decimals
 from ..files import Files
-from ..making import ENGINE, OPTIONS, Making, command
+from ..making import ENGINE, Making, command, options_in
 from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import bounds_of, completeness, following
@@ -202,14 +202,7 @@ def problems(files: Files) -> Iterator[str]:
         return
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    match = OPTIONS.search(manifest.command)
-    options = match and (match[0] if manifest.level == "enclosed" else f"{ENGINE} {match[1]}")
-    if (
-        not options
-        or (FUNCTION[0] in manifest.files) != Making.of(options).function
-        or manifest.alone == Making.of(options).tables
-        or command(scene, manifest.id, options) != manifest.command
-    ):
+    if not _command_follows(files):
         yield f"{MANIFEST}: command does not follow from the scene"
         return
     yield from _possible(files)
@@ -218,6 +211,22 @@ def problems(files: Files) -> Iterator[str]:
     yield from _evidence(manifest)
     if not manifest.alone:
         yield from _derived(files)
+
+
+def _command_follows(files: Files) -> bool:
+    """Return whether the command is that of the scene, and makes the files that there are."""
+    manifest = files.manifest
+    options = options_in(manifest.command)
+    if options is None:
+        return False
+    if manifest.level != "enclosed":
+        options = f"{ENGINE} {Making.of(options).engine}"
+    making = Making.of(options)
+    return (
+        making.function == (FUNCTION[0] in manifest.files)
+        and making.tables != manifest.alone
+        and command(files.scene, manifest.id, options) == manifest.command
+    )
 
 
 def _is_its_id(files: Files) -> bool:
