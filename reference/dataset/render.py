@@ -269,9 +269,8 @@ def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
     states = _state_vectors(manifest, tables)
     transits = _transit_vectors(manifest, tables)
     columns = dict.fromkeys((*NUMBERS["grid"], *NUMBERS["transits"]))
-    used = set()
-    for vector in (*states, *transits):
-        used.update(vector.flags)
+    used = {flag for state in states for flag in state.flags}
+    used |= {flag for transit in transits for flag in transit.flags}
     return Vectors(
         schema_version=FORMAT,
         **manifest.model_dump(include={"id", "level", "digits", "inputs", "frame", "scene"}),

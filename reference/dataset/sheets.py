@@ -62,7 +62,8 @@ def _decimals_in(text: str) -> int:
 def _scaled(text: str, decimals: int) -> int:
     """Return a decimal times a power of ten, which makes it an integer."""
     whole, _, fraction = text.partition(".")
-    return int(whole + fraction) * 10 ** (decimals - len(fraction))
+    unit: int = 10 ** (decimals - len(fraction))
+    return int(whole + fraction) * unit
 
 
 def grid_sheet(solution: Solution) -> Sheet:
