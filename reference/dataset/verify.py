@@ -144,9 +144,7 @@ def _seal_problems(files: Files) -> Iterator[str]:
     if seal in (None, manifest.seal):
         return
     if in_place or _is_copy(manifest, ships):
-        text = (
-            f"its seal {manifest.seal[:12]}… is not that of the dataset that ships, {seal[:12]}…"
-        )
+        text = f"its seal {manifest.seal[:12]}… is not that of the dataset that ships, {seal[:12]}…"
         yield f"{MANIFEST}: {text} (index.json)"
 
 
