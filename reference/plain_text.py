@@ -1,8 +1,8 @@
 r"""Text as terminals and JSON can take it: control characters written out, NaN and infinity as null.
 
-Titles, file names and what programs print come from strangers; an escape sequence among them could rewrite a verdict
-on the screen. So control characters are written out, as in \\x1b, and never obeyed: in messages, in documents, and in
-all that a command prints.
+Titles, file names and the output of programs come from strangers; an escape sequence among them could rewrite a
+verdict on the screen. So control characters are written out, as in \\x1b, and never obeyed: in messages, in documents,
+and in all that a command prints.
 """
 
 from __future__ import annotations
@@ -56,6 +56,7 @@ def finite(value: Any) -> Any:
 
 
 def _written_out(match: re.Match[str]) -> str:
+    """Return a control character as an escape sequence of Python."""
     code = ord(match[0])
     if 0xDC80 <= code <= 0xDCFF:  # how Python holds a byte that is not UTF-8
         return f"\\x{code - 0xDC00:02x}"
