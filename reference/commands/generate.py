@@ -86,7 +86,7 @@ _ALL = option("--all", "Make all that ship and are missing or not sealed.")
 
 
 @dataclass(frozen=True)
-class GenerateOptions:
+class _GenerateOptions:
     """The options of `foucault generate`, and the scene, folder and making that follow from them."""
 
     scene_word: Annotated[str | None, _SCENE] = None
@@ -200,7 +200,7 @@ _CONFLICTS = (
 )
 
 
-def _generate(options: GenerateOptions) -> None:
+def _generate(options: _GenerateOptions) -> None:
     """Solve a scene and write its golden dataset.
 
     Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
@@ -218,17 +218,17 @@ def _generate(options: GenerateOptions) -> None:
         _generate_dataset(options)
 
 
-command = as_command(GenerateOptions, _generate)
+command = as_command(_GenerateOptions, _generate)
 
 
-def _generate_all(options: GenerateOptions) -> None:
+def _generate_all(options: _GenerateOptions) -> None:
     """Make every dataset that ships and is missing or not sealed."""
     from .generate_all import generate_all
 
     generate_all(options.replaced, options.out, options.workers, options.cluster, options.as_json)
 
 
-def _generate_dataset(options: GenerateOptions) -> None:
+def _generate_dataset(options: _GenerateOptions) -> None:
     """Solve a scene, write its dataset, and print what was written.
 
     Raises:
@@ -246,7 +246,7 @@ def _generate_dataset(options: GenerateOptions) -> None:
     _print_dataset(solution, folder, options.as_json)
 
 
-def _solved(options: GenerateOptions, making: Making) -> Solution:
+def _solved(options: _GenerateOptions, making: Making) -> Solution:
     """Return the solution of a scene in the way in which its dataset is made.
 
     Raises:
@@ -305,7 +305,7 @@ def _cpu_times(solution: Solution) -> str:
     )
 
 
-def _generate_ranges(options: GenerateOptions, widths: dict[str, str]) -> None:
+def _generate_ranges(options: _GenerateOptions, widths: dict[str, str]) -> None:
     """Prove intervals for uncertain inputs, write them, and print what was written.
 
     Raises:

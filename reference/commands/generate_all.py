@@ -38,7 +38,7 @@ _BINARY64 = ".binary64"
 
 
 @dataclass(frozen=True)
-class Job:
+class _Job:
     """A dataset to be made: its scene, its id and its folder."""
 
     scene: Scene
@@ -56,7 +56,7 @@ class Job:
         }
 
 
-def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
+def jobs(replaced: Sequence[str], out: Path | None) -> list[_Job]:
     """Return all datasets that ship, those with the longest spans first: of each scene, and of sealed other readings.
 
     Args:
@@ -73,11 +73,11 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
     for scene in scenes:
         name = dataset_id(scene)
         folder = out / name if out else default_folder(scene, name)
-        every.append(Job(scene, name, folder))
+        every.append(_Job(scene, name, folder))
     return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
 
 
-def is_done(job: Job) -> bool:
+def is_done(job: _Job) -> bool:
     """Return whether the dataset is there, sealed, of the same inputs; where it ships, under the seal in the index."""
     try:
         files = read_files(job.folder)
@@ -89,7 +89,7 @@ def is_done(job: Job) -> bool:
     return is_sealed and same_inputs and same_reading and files.manifest.id == job.name
 
 
-def _made(job: Job) -> tuple[_Row, dict[str, Content]]:
+def _made(job: _Job) -> tuple[_Row, dict[str, Content]]:
     """Solve a scene; return the outcome, and the files of its dataset, none if it could not be made."""
     try:
         making = making_of(job.scene, job.name, job.folder)
@@ -106,13 +106,13 @@ def _made(job: Job) -> tuple[_Row, dict[str, Content]]:
         return job.row(Status.INVALID, str(error)), {}
 
 
-def _isolated(job: Job) -> tuple[_Row, dict[str, Content]]:
+def _isolated(job: _Job) -> tuple[_Row, dict[str, Content]]:
     """Make a dataset in a process that is started for it: the solver is not made for several threads."""
     with Pool(1) as pool:
         return cast("tuple[_Row, dict[str, Content]]", pool.submit(_made, job).result())
 
 
-def _check_installed(job: Job) -> None:
+def _check_installed(job: _Job) -> None:
     """Refuse a dataset for which a package is missing: others would fail by it too.
 
     Raises:
@@ -154,7 +154,7 @@ def generate_all(
     _print_counts(len(every), rows, as_json)
 
 
-def _undone(every: list[Job]) -> list[Job]:
+def _undone(every: list[_Job]) -> list[_Job]:
     """Return the datasets that are to be made, after clearing away what an interrupted command left.
 
     Raises:
@@ -200,7 +200,7 @@ def _print_counts(count: int, rows: list[_Row], as_json: bool) -> None:
 
 
 def _made_side_by_side(
-    undone: list[Job], workers: int | None, cluster: str | None
+    undone: list[_Job], workers: int | None, cluster: str | None
 ) -> Generator[_Row, None, None]:
     """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
     if not undone:

@@ -21,7 +21,7 @@ _ENOUGH = 0.02  # part of the work that is done before the rest is estimated
 _LATEST_S = 60.0  # time after which it is estimated from less
 
 
-class Move(Protocol):
+class _Move(Protocol):
     """Moves a piece of work on."""
 
     def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
@@ -31,7 +31,7 @@ class Move(Protocol):
 class Show(Protocol):
     """Begins a piece of work."""
 
-    def __call__(self, label: str, total: float = 0, unit: str = "s simulated") -> Move:
+    def __call__(self, label: str, total: float = 0, unit: str = "s simulated") -> _Move:
         """Return the function that moves the work on, which is counted in units up to a total."""
 
 
@@ -66,7 +66,7 @@ def progress() -> Iterator[Show]:
         yield partial(_bar, bars)
 
 
-def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> Move:
+def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> _Move:
     """Return the function that moves a bar, which appears at its first move and goes when it is full."""
     task = bars.add_task(label, total=total, unit=unit, visible=False, start=False)
 
@@ -81,7 +81,7 @@ def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> 
     return move
 
 
-def notice(label: str, total: float = 0, unit: str = "s simulated") -> Move:
+def notice(label: str, total: float = 0, unit: str = "s simulated") -> _Move:
     """Return the function that moves a piece of work on; it prints once how long all of it takes, if it is long.
 
     Args:

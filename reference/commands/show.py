@@ -48,7 +48,7 @@ _SENSITIVITY = option(
 
 
 @dataclass(frozen=True)
-class ShowOptions:
+class _ShowOptions:
     """The options of `foucault show`."""
 
     scene_word: Annotated[str | None, _SCENE] = None
@@ -75,7 +75,7 @@ _CONFLICTS = (
 )
 
 
-def _show(options: ShowOptions) -> None:
+def _show(options: _ShowOptions) -> None:
     """Show a scene: its inputs, period and precession.
 
     `foucault show --template > mine.toml` begins a scene of your own.
@@ -96,17 +96,17 @@ def _show(options: ShowOptions) -> None:
         typer.echo(line)
 
 
-command = as_command(ShowOptions, _show)
+command = as_command(_ShowOptions, _show)
 
 
-def _scene(options: ShowOptions) -> Scene | None:
+def _scene(options: _ShowOptions) -> Scene | None:
     """Return the scene to show, its fields replaced; None if none was named."""
     if options.scene_word is None:
         return None
     return load_scene(options.scene_word, options.set_ or ())
 
 
-def _document(scene: Scene, options: ShowOptions) -> dict[str, Any]:
+def _document(scene: Scene, options: _ShowOptions) -> dict[str, Any]:
     """Return all that is shown of a scene, as --json prints it."""
     document: dict[str, Any] = {
         **scene.model_dump(exclude_none=True),

@@ -107,14 +107,14 @@ def _check_form(record: FunctionRecord, text: str, data: bytes) -> None:
 
 
 @dataclass(frozen=True)
-class EvaluatedTable:
+class _EvaluatedTable:
     """A table in doubles, and the bounds of its columns, rounding to its decimals included."""
 
     sheet: Sheet
     bounds: dict[str, str]
 
 
-def evaluated_grid(function: GoldenFunction, scene: Scene) -> EvaluatedTable:
+def evaluated_grid(function: GoldenFunction, scene: Scene) -> _EvaluatedTable:
     """Return the grid of a dataset without tables, in doubles.
 
     Its times are the doubles nearest to the scene's, in all their digits: the states are those at just these.
@@ -123,12 +123,12 @@ def evaluated_grid(function: GoldenFunction, scene: Scene) -> EvaluatedTable:
     states = _states(function, times)
     exact_times = [f"{decimal.Decimal(t):f}" for t in times.tolist()]
     rows = _rows([exact_times, *map(_texts, states)])
-    return EvaluatedTable(Sheet(GRID_HEADER, rows, {}), _bounds(function, states))
+    return _EvaluatedTable(Sheet(GRID_HEADER, rows, {}), _bounds(function, states))
 
 
 def evaluated_transits(
     function: GoldenFunction, scene: Scene, manifest: Manifest
-) -> EvaluatedTable:
+) -> _EvaluatedTable:
     """Return the transits of a dataset without tables, in doubles.
 
     The manifest counts the transits that the proof found: as many changes of sign of xdot, beyond its bound, are all.
@@ -158,7 +158,7 @@ def evaluated_transits(
     directions = [f"{sign:+d}" for sign in signs.tolist()]
     columns = [_texts(column) for column in (x, y, z, vy, ax, time_errors)]
     rows = _rows([numbers, _texts(times), directions, *columns])
-    return EvaluatedTable(Sheet(TRANSITS_HEADER, rows, {}), _bounds(function, states, errors))
+    return _EvaluatedTable(Sheet(TRANSITS_HEADER, rows, {}), _bounds(function, states, errors))
 
 
 def _bounds(
