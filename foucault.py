@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     import typer
 
 # a fault of this program, EX_SOFTWARE of sysexits.h; 1 would be a verdict, 2 the user's mistake
-_UNFORESEEN = 70
+UNFORESEEN = 70
 _INTERRUPTED = 130
 _STOPPED = "stopped"  # of a command that does not say what became of its work
-_UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
+UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
 GROUPS = {
     "Solve and judge": ("scenes", "show", "generate", "verify", "score", "plot", "atlas"),
     "Compare many": ("methods", "study", "stability", "sweep"),
     "The source papers": ("paper", "pend"),
 }
 # objects made between two searches for garbage: imports make many, and leave none
-_SELDOM = 100_000
+SELDOM = 100_000
 
 
 def commands() -> typer.Typer:
@@ -113,7 +113,7 @@ def main() -> None:
 
     So does an unforeseen error.
     """
-    gc.set_threshold(_SELDOM)
+    gc.set_threshold(SELDOM)
     _open_closed_streams()
     # numpy's matrices are small here: more threads only wait
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -122,7 +122,7 @@ def main() -> None:
     except KeyboardInterrupt:
         end = _End(_INTERRUPTED, _STOPPED, interrupted=True)
     except Exception as error:
-        end = _End(_UNFORESEEN, _report(error))
+        end = _End(UNFORESEEN, _report(error))
     # here no exception is left, which would keep what a signal has interrupted from being cleared away
     if end:
         _exit(end)
@@ -159,7 +159,7 @@ def _run() -> _End | None:
     except SystemExit as end:
         status = end.code
         if isinstance(end.__context__, BrokenPipeError):
-            status = _UNREAD
+            status = UNREAD
         stopped = signals or status == _INTERRUPTED
         return _End(status, _STOPPED if stopped else "", interrupted=bool(signals))
     except Stopped as stopped:
@@ -182,7 +182,7 @@ def _end_of(error: Exception) -> _End:
         raise error
     _flush_output()
     if isinstance(error, BrokenPipeError):
-        return _End(_UNREAD)
+        return _End(UNREAD)
     place = error.filename or "output"
     return _End(2, plain_lines(f"{place}: {error.strerror or error}"))
 
