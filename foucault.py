@@ -1,4 +1,4 @@
-"""The command `foucault`: the commands of `reference` (compute datasets) and `compare` (judge results) in one."""
+"""The command `foucault`: those of `reference` (compute) and `compare` (judge) in one."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SELDOM = 100_000
 
 
 def commands() -> typer.Typer:
-    """Return the command line; all imports are here, so that an interruption finds `main` at work."""
+    """Return the command line; all imports are here, so that Ctrl-C finds `main` at work."""
     import typer
     from typer.core import TyperGroup
 
@@ -109,10 +109,7 @@ def _version(wanted: bool) -> None:
 
 
 def main() -> None:
-    """Run the command line; a mistake, a full disk or an interruption ends with a message and its exit status.
-
-    So does an unforeseen error.
-    """
+    """Run the command line; every error ends with a message and its exit status."""
     gc.set_threshold(SELDOM)
     _open_closed_streams()
     # numpy's matrices are small here: more threads only wait
@@ -123,7 +120,7 @@ def main() -> None:
         end = _End(_INTERRUPTED, _STOPPED, interrupted=True)
     except Exception as error:
         end = _End(UNFORESEEN, _report(error))
-    # here no exception is left, which would keep what a signal has interrupted from being cleared away
+    # here no exception is left: it would keep alive what a signal has interrupted
     if end:
         _exit(end)
 
@@ -137,7 +134,10 @@ class _End(NamedTuple):
 
 
 def _open_closed_streams() -> None:
-    """Have what is written to a stream that a shell has closed, as by 2>&-, go nowhere; Python leaves it None."""
+    """Discard what is written to a stream that a shell has closed, as by 2>&-.
+
+    Python leaves such a stream None.
+    """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
@@ -188,7 +188,7 @@ def _end_of(error: Exception) -> _End:
 
 
 def _report(error: Exception) -> str:
-    """Return what a user should do about an unforeseen error, and its traceback, which a maintainer needs."""
+    """Return what a user should do about an unforeseen error, and its traceback."""
     import traceback
 
     from reference.plain_text import plain_lines
@@ -199,7 +199,7 @@ def _report(error: Exception) -> str:
 
 
 def _exit(end: _End) -> NoReturn:
-    """End with a message and an exit status; an interrupted run waits for no thread that is still at work."""
+    """End with a message and an exit status; an interrupted run waits for no thread."""
     # from here on Ctrl-C would only show the innards of Python's own end
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if end.message:
@@ -213,7 +213,7 @@ def _exit(end: _End) -> NoReturn:
 
 
 def _flush_output() -> None:
-    """Write out what waits for stdout; drop what cannot be written, which Python would try again when it ends."""
+    """Flush stdout; drop what cannot be written, which Python would try again at its end."""
     try:
         sys.stdout.flush()
     except OSError:

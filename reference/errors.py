@@ -1,4 +1,4 @@
-"""Messages to users: the exceptions of this project, each with an exit status, and names near a wrong one."""
+"""Messages to users: exceptions, each with an exit status, and the names near a wrong one."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class InputError(FoucaultError):
 
 
 class NotInstalledError(InputError):
-    """A package is missing: the field that asks for it, what needs it, and the extra that installs it."""
+    """A package is missing: the field that needs it, its purpose, the extra that installs it."""
 
     def __init__(
         self, field: str, purpose: str, package: str, extra: str, instead: str = ""
@@ -67,7 +67,7 @@ def usable(
 
 
 def checked_path(field: str, path: object, expected: str, advice: str = "") -> Path:
-    """Return a path that a caller gave; raise InputError with these arguments for anything but text or a path."""
+    """Return a path that a caller gave; anything but text or a path is an InputError."""
     if not isinstance(path, str | PathLike):
         raise InputError(field, path, expected, advice)
     return Path(path)
@@ -76,20 +76,20 @@ def checked_path(field: str, path: object, expected: str, advice: str = "") -> P
 def check_whole(
     field: str, number: object, least: int = 1, words: str = "a whole number from 1"
 ) -> None:
-    """Raise InputError unless a number is whole and at least `least`; `words` say what was expected."""
+    """Raise InputError unless a number is whole and at least `least`, as `words` say."""
     if not _is_whole(number, least):
         raise InputError(field, number, words)
 
 
 def _is_whole(number: object, least: int) -> bool:
-    """Return whether a number is whole, at least `least`, and of a size that libraries in C take."""
+    """Return whether a number is whole, at least `least`, and small enough for libraries in C."""
     if not isinstance(number, Integral) or isinstance(number, bool):
         return False
     return least <= int(number) <= _MOST_WHOLE
 
 
 def all_of(mistakes: Sequence[InputError]) -> InputError:
-    """Return the first of some mistakes; if there are several, its text lists all of them, one a line."""
+    """Return the first of some mistakes; its text lists all of them, one a line."""
     first = mistakes[0]
     if len(mistakes) > 1:
         lines = [f"{len(mistakes)} mistakes:", *map(str, mistakes)]
@@ -123,7 +123,7 @@ class IntegrationError(UnreachableError):
 
 
 class BeyondDoublesError(UnreachableError):
-    """A number of a scene is too large for what is computed in binary64, such as steps and sizes."""
+    """A number of a scene is too large for computations in binary64, such as steps and sizes."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -150,7 +150,11 @@ class Stopped(FoucaultError):
 
 
 def nearest(word: object, known: Iterable[str]) -> list[str]:
-    """Return at most five names: a word's own or what it shortens (site.g), very like it, containing it, or like it."""
+    """Return at most five names like a word.
+
+    The first kind that exists: the word itself, names that it shortens (site.g), very similar
+    names, names that contain it, similar names.
+    """
     names = {name.lower(): name for name in known}
     typed = str(word).lower()  # callers in Python give anything
     if typed in names:
@@ -165,7 +169,7 @@ def nearest(word: object, known: Iterable[str]) -> list[str]:
 
 
 def _shortened_by(typed: str, names: Iterable[str]) -> list[str]:
-    """Return the names with the section of a word, and a key that begins with the word's, as in site.g."""
+    """Return the names in the section of a word whose key begins with the word's, as in site.g."""
     section, _, key = typed.rpartition(".")
     if not key:
         return []
@@ -180,7 +184,7 @@ def _containing(typed: str, names: Iterable[str]) -> list[str]:
 
 
 def did_you_mean(word: object, known: Iterable[str], otherwise: str) -> str:
-    """Return the question whether one of the nearest names was meant; `otherwise` if no name is near."""
+    """Return the question if one of the nearest names was meant; `otherwise` if none is near."""
     names = nearest(word, known)
     return f"Did you mean {in_words(names)}?" if names else otherwise
 
@@ -212,7 +216,7 @@ def unknown(
 
 
 def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
-    """Return the error for an unknown attribute, which says what there is, the nearest names first."""
+    """Return the error for an unknown attribute; it lists the names, the nearest first."""
     text = f"{owner} has no attribute {name!r}"
     if name.startswith("_"):  # Python itself asks for such names, and wants no advice
         return AttributeError(text)

@@ -1,4 +1,4 @@
-"""`foucault generate`: solve a scene and write its golden dataset, or make every dataset that ships."""
+"""`foucault generate`: solve a scene and write its dataset, or make every one that ships."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ _ALL = option("--all", "Make all that ship and are missing or not sealed.")
 
 @dataclass(frozen=True)
 class _GenerateOptions:
-    """The options of `foucault generate`, and the scene, folder and making that follow from them."""
+    """The options of `foucault generate`, and scene, folder and making that follow from them."""
 
     scene_word: Annotated[str | None, _SCENE] = None
     out: Annotated[Path | None, _OUT] = None
@@ -155,7 +155,7 @@ class _GenerateOptions:
 
     @property
     def making(self) -> Making:
-        """How the dataset is made: as it usually is (`making_of`), but for what an option chooses."""
+        """How the dataset is made: by default (`making_of`), but for what an option chooses."""
         from ..dataset.making import making_of
 
         if self.confirm is not None:
@@ -333,7 +333,7 @@ def _generate_ranges(options: _GenerateOptions, widths: dict[str, str]) -> None:
 
 
 def _print_ranges(ranges: Ranges, folder: Path, as_json: bool) -> None:
-    """Print what was written: rows, the box of the inputs, undecided intervals, passages, period and CPU time."""
+    """Print what was written: rows, the box, undecided intervals, passages, period and CPU time."""
     from ..dataset.ranges import period_texts, ranges_id
 
     counts = {

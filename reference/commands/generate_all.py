@@ -1,4 +1,4 @@
-"""`foucault generate --all`: the datasets that ship, which of them are missing or not sealed, made side by side."""
+"""`foucault generate --all`: make the shipped datasets that are missing or not sealed."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class _Job:
 
 
 def jobs(replaced: Sequence[str], out: Path | None) -> list[_Job]:
-    """Return all datasets that ship, those with the longest spans first: of each scene, and of sealed other readings.
+    """Return all datasets that ship, of each scene and of sealed other readings, the longest first.
 
     Args:
         replaced: fields of every scene, each as section.key=value.
@@ -78,7 +78,10 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[_Job]:
 
 
 def is_done(job: _Job) -> bool:
-    """Return whether the dataset is there, sealed, of the same inputs; where it ships, under the seal in the index."""
+    """Return whether the dataset is there and sealed, with the same inputs.
+
+    Where it ships, its seal must be that in the index.
+    """
     try:
         files = read_files(job.folder)
     except FoucaultError:
@@ -90,7 +93,7 @@ def is_done(job: _Job) -> bool:
 
 
 def _made(job: _Job) -> tuple[_Row, dict[str, Content]]:
-    """Solve a scene; return the outcome, and the files of its dataset, none if it could not be made."""
+    """Solve a scene; return the outcome and the files of its dataset, none if it failed."""
     try:
         making = making_of(job.scene, job.name, job.folder)
         solution = solve(job.scene, **making.solve_options(job.scene))
@@ -107,7 +110,7 @@ def _made(job: _Job) -> tuple[_Row, dict[str, Content]]:
 
 
 def _isolated(job: _Job) -> tuple[_Row, dict[str, Content]]:
-    """Make a dataset in a process that is started for it: the solver is not made for several threads."""
+    """Make a dataset in a process of its own: the solver is not made for several threads."""
     with Pool(1) as pool:
         return cast("tuple[_Row, dict[str, Content]]", pool.submit(_made, job).result())
 
@@ -130,11 +133,14 @@ def generate_all(
     cluster: str | None,
     as_json: bool,
 ) -> None:
-    """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
+    """Make what is missing or not sealed, each in a process of its own.
+
+    The failure of a scene does not affect the others.
 
     Raises:
         InputError: a wrong option, or a folder that cannot be written.
-        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
+        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were
+        out of reach.
     """
     check_workers(workers, cluster)
     if cluster is not None:
@@ -155,7 +161,7 @@ def generate_all(
 
 
 def _undone(every: list[_Job]) -> list[_Job]:
-    """Return the datasets that are to be made, after clearing away what an interrupted command left.
+    """Return the datasets to be made, after clearing away what an interrupted command left.
 
     Raises:
         InputError: a package is missing, or a folder cannot be written.
@@ -202,7 +208,10 @@ def _print_counts(count: int, rows: list[_Row], as_json: bool) -> None:
 def _made_side_by_side(
     undone: list[_Job], workers: int | None, cluster: str | None
 ) -> Generator[_Row, None, None]:
-    """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
+    """Make datasets side by side, and write each as it comes.
+
+    This process alone writes, since it keeps the index of seals.
+    """
     if not undone:
         return
     with ExitStack() as stack:

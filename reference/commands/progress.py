@@ -1,4 +1,4 @@
-"""How far long work has come, on stderr: bars on a terminal; elsewhere one line about work that takes long."""
+"""Progress of long work, on stderr: bars on a terminal; elsewhere one line if it takes long."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Move(Protocol):
     """Moves a piece of work on."""
 
     def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
-        """Report the part that is done, the whole if it was not known before, and what is done now."""
+        """Report the part done, the whole if it was not known before, and what is done now."""
 
 
 class Show(Protocol):
@@ -37,7 +37,7 @@ class Show(Protocol):
 
 @contextmanager
 def progress() -> Iterator[Show]:
-    """Yield the function that begins a piece of work; it is shown on stderr from its first move on."""
+    """Yield the function that begins a piece of work, shown on stderr from its first move on."""
     if not sys.stderr.isatty():
         with announced_to(partial(typer.echo, err=True)):
             yield notice
@@ -67,7 +67,7 @@ def progress() -> Iterator[Show]:
 
 
 def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> _Move:
-    """Return the function that moves a bar, which appears at its first move and goes when it is full."""
+    """Return the function that moves a bar; it appears at its first move and goes when full."""
     task = bars.add_task(label, total=total, unit=unit, visible=False, start=False)
 
     def move(completed: float, total: float | None = None, item: str = "") -> None:
@@ -82,7 +82,9 @@ def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> 
 
 
 def notice(label: str, total: float = 0, unit: str = "s simulated") -> _Move:
-    """Return the function that moves a piece of work on; it prints once how long all of it takes, if it is long.
+    """Return the function that moves a piece of work on.
+
+    If the work takes long, it prints once how long it will take.
 
     Args:
         label: what is done.

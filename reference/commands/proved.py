@@ -1,4 +1,4 @@
-"""Proofs that `foucault show` prints: intervals of a scene's swing, and of what uncertain inputs leave."""
+"""Proofs that `foucault show` prints: intervals of a scene's swing, also by uncertain inputs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ _CLOSER = 6
 
 
 def proved_swing(scene: Scene) -> dict[str, Any]:
-    """Return proven intervals of frequency, period, precession and full turn over the run, from its highest points.
+    """Return proven intervals of frequency, period, precession and full turn over the run.
+
+    They follow from the highest points.
 
     Raises:
         UnreachableError: the level enclosed is out of reach.
@@ -73,7 +75,9 @@ def swing_line(proved: dict[str, Any]) -> str:
 
 
 def proved_ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
-    """Return proven intervals of period, precession, full turn, the first transits and passages, for uncertain inputs.
+    """Return what is proved for uncertain inputs.
+
+    These are intervals of period, precession, full turn, first transits and passages.
 
     Raises:
         InputError: an input, or a width.
@@ -105,7 +109,9 @@ def _first_times(table: Intervals) -> list[list[str]]:
 
 
 def _send_limits(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
-    """Send how far each input moves the period, to first order: by derivatives close to the scene's own inputs.
+    """Send how far each input moves the period, to first order.
+
+    The derivatives are those close to the scene's own inputs.
 
     The derivatives of period and precession with respect to the input, as intervals, are sent too.
     """

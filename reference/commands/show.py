@@ -1,4 +1,4 @@
-"""`foucault show`: a scene's inputs, what follows from them, its motion, and the equations compiled for it."""
+"""`foucault show`: a scene's inputs, what follows from them, its motion and its equations."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def _document_lines(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
 
 
 def _table_lines(scene: Scene, derived: dict[str, str]) -> Iterator[str]:
-    """Yield a line for each table: the inputs, section by section, their widths, and what is derived from them."""
+    """Yield a line for each table: inputs by section, their widths, derived quantities."""
     from ..dataset.sheets import scene_inputs
 
     tables = scene_inputs(scene)
@@ -234,7 +234,7 @@ def _compiled(scene: Scene) -> dict[str, Any]:
 
 
 def _derived(scene: Scene) -> dict[str, str]:
-    """Return distance from the axis, apparent gravity at the pivot, small-swing period and rest position.
+    """Return axis distance, apparent gravity at the pivot, small-swing period and rest position.
 
     Each has 15 digits. What the scene does not have is left out.
     """
@@ -259,7 +259,7 @@ def _derived(scene: Scene) -> dict[str, str]:
 
 
 def _motion(scene: Scene) -> dict[str, Any]:
-    """Return period, precession and time of a full turn over the run, each with an estimate of its error.
+    """Return period, precession and full turn over the run, each with an estimate of its error.
 
     Where the period cannot be computed, return the reason.
     """

@@ -23,7 +23,10 @@ _TEMPLATE = {
 
 
 def scene_file(scene: Scene | None) -> str:
-    """Return a scene as a TOML file with comments; without one, the defaults with a measured g and a release."""
+    """Return a scene as a TOML file with comments.
+
+    Without a scene, it has the defaults, a measured g and a release.
+    """
     if scene is None:
         scene = parse_scene(_TEMPLATE)
     lines = [_BEGIN, *_lines(scene)]
@@ -55,5 +58,5 @@ def _lines(table: SceneTable) -> Iterator[str]:
 
 
 def _toml(value: Any) -> str:
-    """Return a value as TOML; it writes texts, lists, whole numbers and truth values as JSON does."""
+    """Return a value as TOML; texts, lists, whole numbers and truth values are as in JSON."""
     return json.dumps(value, ensure_ascii=False)

@@ -1,4 +1,4 @@
-"""What all commands share: arguments, options and their completion, refusals, JSON documents on stdout."""
+"""Parts shared by all commands: arguments, options, completion, refusals, JSON on stdout."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def option(
     names: Callable[[str], list[str]] | None = None,
     **more: Any,
 ) -> Any:
-    """Return an option: its word, what the help says of it, the word for its value, and what a shell may complete.
+    """Return an option: its word, its help, the word for its value, and its completion.
 
     More arguments are those of `typer.Option`.
     """
@@ -36,7 +36,7 @@ def option(
 def scene_argument(
     text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE"
 ) -> Any:
-    """Return the argument that is a scene: what the help says of it, and the word for it; a shell completes the ids."""
+    """Return the argument that is a scene, by its help and its word; a shell completes the ids."""
     return typer.Argument(metavar=value, help=text, autocompletion=completion(scene_ids))
 
 
@@ -121,10 +121,12 @@ def replacements(
         assignments: those of `--set`.
         options: the field that each option replaces, and its value; None if it was not given.
         unused: fields, or fields with a value, that make no difference to the command, and why.
-        note: called with a sentence for each of these that is replaced; without it they are refused.
+        note: called with a sentence for each of these that is replaced; without it they are
+            refused.
 
     Raises:
-        InputError: a replacement would have no effect: the field is replaced by two values, or it is an unused one.
+        InputError: a replacement would have no effect: the field is replaced by two values, or it
+            is an unused one.
     """
     values = _assigned(assignments or (), unused or {}, note)
     for option, (field, text) in options.items():
@@ -142,7 +144,7 @@ def replacements(
 def _assigned(
     assignments: Iterable[str], unused: Mapping[str, str], note: Callable[[str], None] | None
 ) -> dict[str, str]:
-    """Return the replacements by `--set`, by the field that each replaces; for the arguments see `replacements`.
+    """Return the replacements by `--set`, by field; for the arguments see `replacements`.
 
     Raises:
         InputError: a field is replaced twice, or is an unused one.
@@ -164,7 +166,7 @@ def _assigned(
 
 
 def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] | None:
-    """Return the widths that `--uncertain` gives, by name, and those of the scene; None if all inputs are exact.
+    """Return the widths by `--uncertain` and those of the scene, by name; None if all are exact.
 
     Raises:
         InputError: a word is not KEY=±WIDTH, or one key has two widths.

@@ -1,4 +1,4 @@
-"""`foucault verify`: check golden datasets, or solve them again and compare every byte; check sweeps and reports."""
+"""`foucault verify`: check golden datasets, or solve them again; check sweeps and reports."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def _row(folder: Path, check: _Check) -> dict[str, Any]:
 
 
 def _written_results(folder: Path) -> tuple[list[str], list[str]] | None:
-    """Return what is wrong with a sweep or a report, and what cannot be decided; None if the folder is neither."""
+    """Return problems and undecided points of a sweep or a report; None if it is neither."""
     from ..dataset.manifest import MANIFEST
     from ..sweeps.store import PLAN
     from ..sweeps.verify_sweep import verify_sweep

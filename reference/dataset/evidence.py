@@ -1,4 +1,4 @@
-"""Compare what a manifest says of its runs, its proof and its scene with the solution that it was made from.
+"""Compare a manifest's runs, proof and scene with the solution that it was made from.
 
 No number of a table depends on these, and no check of the files alone could find them wrong.
 """
@@ -51,7 +51,7 @@ class _Field:
 
 
 def check_evidence(contents: Mapping[str, Content], solution: Solution) -> None:
-    """Compare a manifest with the solution: title, versions, runs, how far they are apart, radii of the proof.
+    """Compare a manifest with the solution: title, versions, runs and their distances, radii.
 
     Raises:
         DatasetError: a field has another value.

@@ -1,4 +1,4 @@
-"""The files of a golden dataset, read once: every byte hashed, nothing used but what was hashed, tables well formed."""
+"""The files of a golden dataset, read once: every byte hashed, every table well formed."""
 
 from __future__ import annotations
 
@@ -68,7 +68,8 @@ def read_files(folder: Path) -> Files:
 
     Raises:
         InputError: there is no dataset, or it cannot be read.
-        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
+        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or
+            its seal.
     """
     manifest = read_manifest(folder)
     scene = _scene(folder, manifest)
@@ -238,7 +239,7 @@ def _with_lf(data: bytes) -> bytes:
 
 
 def _no_dataset(folder: Path) -> InputError:
-    """Return the error for a folder that is no dataset: its advice depends on what it is instead."""
+    """Return the error for a folder that is no dataset; its advice depends on what is there."""
     if (folder / RANGES).is_file():
         advice = "These are ranges: reference.load_ranges reads them."
         return InputError("PATH", str(folder), "a golden dataset", advice)

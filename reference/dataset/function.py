@@ -1,4 +1,4 @@
-"""`function.json` and `function.f64`, the golden function of a dataset: written, read, and as tables in doubles."""
+"""The golden function of a dataset: its two files, and tables in doubles evaluated from it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ from ..scenes.scene import Reading, Scene
 from .manifest import Decimal, Manifest, ManifestPart, Name, Possible, Text
 from .sheets import GRID_HEADER, TRANSITS_HEADER, Sheet
 
-# times in a piece at which the sign of xdot is evaluated, for the transits between them; close pairs need more
+# times in a piece at which the sign of xdot is evaluated, for the transits between them; close
+# pairs need more
 _SIGNS_IN_A_PIECE = (32, 256, 2048)
 _HALVINGS = 64  # of the time between two signs
 
@@ -117,7 +118,8 @@ class _EvaluatedTable:
 def evaluated_grid(function: GoldenFunction, scene: Scene) -> _EvaluatedTable:
     """Return the grid of a dataset without tables, in doubles.
 
-    Its times are the doubles nearest to the scene's, in all their digits: the states are those at just these.
+    Its times are the doubles nearest to the scene's, in all their digits: the states are those at
+    just these.
     """
     times = np.minimum([float(t) for t in scene.exact.grid], function.times[-1])
     states = _states(function, times)
@@ -131,7 +133,8 @@ def evaluated_transits(
 ) -> _EvaluatedTable:
     """Return the transits of a dataset without tables, in doubles.
 
-    The manifest counts the transits that the proof found: as many changes of sign of xdot, beyond its bound, are all.
+    The manifest counts the transits that the proof found: as many changes of sign of xdot, beyond
+    its bound, are all.
 
     Raises:
         ValueError: the function has others.
@@ -149,7 +152,8 @@ def evaluated_transits(
     states = _states(function, times)
     derivatives = rates(states, constants_in_double(scene.exact))
     ax = derivatives[3]
-    # to first order; a time is one of the two doubles about the zero, and its decimals are half an ulp from it
+    # to first order; a time is one of the two doubles about the zero, and its decimals are half an
+    # ulp from it
     time_errors = function.bound["vx"] / np.abs(ax) + 2 * np.spacing(times)
     errors = [np.max(np.abs(rate) * time_errors, initial=0.0) for rate in derivatives]
 
@@ -164,7 +168,7 @@ def evaluated_transits(
 def _bounds(
     function: GoldenFunction, columns: Iterable[Array], errors: Iterable[float] = (0.0,) * 6
 ) -> dict[str, str]:
-    """Return the function's bounds with the rounding of the columns to decimals, and a further error of each."""
+    """Return the function's bounds, with the rounding to decimals and a further error of each."""
     bounds = {}
     for name, column, error in zip(STATE, columns, errors, strict=True):
         rounding = np.spacing(np.abs(column).max(initial=0.0))

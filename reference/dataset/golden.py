@@ -1,4 +1,4 @@
-"""A golden dataset as read: its columns as doubles, texts or fractions; between its rows the scene is solved again."""
+"""A golden dataset as read: its columns as doubles, texts or fractions, and states between."""
 
 from __future__ import annotations
 
@@ -63,7 +63,10 @@ class PrintedTable(Framed):
         return [Fraction(Decimal(text)) for text in self.decimals(name)]
 
     def bound(self, name: str) -> list[Fraction]:
-        """Return bounds on the errors of a column's printed values: a transit time's own, else the column's largest."""
+        """Return bounds on the errors of a column's printed values.
+
+        A transit time has a bound of its own; for other columns it is the largest of all rows.
+        """
         if name == "t":
             return self.exact("bound") if "bound" in self.columns else [Fraction(0)] * len(self)
         # a table without rows has no bounds
@@ -82,18 +85,20 @@ class PrintedTable(Framed):
 class Golden(GridColumns):
     """A golden dataset, as read from disk: the same columns as a `Solution`, as printed.
 
-    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have `table["x"]`, the same,
-    `table.exact("x")` as fractions, `table.bound("x")`, and `table.decimals("x")`, the printed texts.
+    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have
+    `table["x"]`, the same, `table.exact("x")` as fractions, `table.bound("x")`, and
+    `table.decimals("x")`, the printed texts.
 
     Attributes:
         path: the folder.
         manifest: its manifest.json.
         scene: the scene that it solves.
         grid: `grid.csv`.
-        transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically zero.
+        transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically
+            zero.
         function: the golden function, None if it has none; `at` serves all the same.
-        sections: the rows of `sections.csv` of each section that the scene asks for, by its word; none where the
-            dataset is a function alone.
+        sections: the rows of `sections.csv` of each section that the scene asks for, by its word;
+            none where the dataset is a function alone.
     """
 
     path: Path
@@ -107,8 +112,8 @@ class Golden(GridColumns):
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, with their bounds.
 
-        They come from the golden function, or the scene is solved again (needs heyoka, takes longer) and its numbers
-        are rounded to doubles.
+        They come from the golden function, or the scene is solved again (needs heyoka, takes
+        longer) and its numbers are rounded to doubles.
 
         Raises:
             InputError: a time is not finite, or outside of the dataset's span.
@@ -156,11 +161,12 @@ class Golden(GridColumns):
 
 
 def load(name: str | Path) -> Golden:
-    """Read a golden dataset by id or path, after checking its seal, its hashes and the form of every file.
+    """Read a golden dataset by id or path; check its seal, its hashes and the form of every file.
 
     Raises:
         InputError: there is no such dataset.
-        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
+        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or
+            its seal.
     """
     files = read_files(golden_folder(name))
     function = files.function[1] if files.function else None
@@ -274,10 +280,12 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     Args:
         golden: the dataset: its rows are taken where all times are those of its grid.
         times: in s, in any order; repeated ones are merged.
-        within: error aimed at, relative to the cord length; the bound that was reached is `bound_m`.
+        within: error aimed at, relative to the cord length; the bound that was reached is
+            `bound_m`.
 
     Raises:
-        InputError: there is no time, or one is not finite, negative, or more than a grid step beyond the dataset's end.
+        InputError: there is no time, or one is not finite, negative, or more than a grid step
+            beyond the dataset's end.
         UnreachableError: the scene cannot be solved so closely.
     """
     grid = golden.times

@@ -18,8 +18,9 @@ AUDIT = "--audit"
 CONFIRM = "--confirm"
 _WITH_FUNCTION = "--function"
 _WITHOUT_TABLES = "--no-tables"
-# The options in a dataset's command that say how it is made. Two older forms are in manifests that ship:
-# `--no-confirm`, and nothing at all for a whole confirmation. A command without an audit says nothing of it.
+# The options in a dataset's command that say how it is made. Two older forms are in manifests that
+# ship: `--no-confirm`, and nothing at all for a whole confirmation. A command without an audit says
+# nothing of it.
 _OPTIONS = re.compile(
     rf"{ENGINE} (?P<engine>{'|'.join(engine_names())})"
     rf"(?P<audit> {AUDIT}| --no-audit|)"
@@ -39,7 +40,7 @@ def options_in(command: str) -> str | None:
 
 @dataclass(frozen=True)
 class Making:
-    """How a dataset is made: by which engine, whether audited, what is confirmed, with a function, with its tables."""
+    """How a dataset is made: engine, audit, confirmation, with or without function and tables."""
 
     engine: str = "limbs"
     audit: bool = True
@@ -79,14 +80,14 @@ class Making:
         return " ".join(words)
 
     def options_for(self, scene: Scene, name: str) -> str:
-        """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
+        """Return the options of a dataset's command, as the index has them if it says the same."""
         listed = index().get(name, {}).get("options")
         if listed and is_of_shipped_scene(scene, name) and Making.of(listed) == self:
             return listed
         return self.options
 
     def solve_options(self, scene: Scene) -> dict[str, Any]:
-        """Return the options with which `solve` makes a scene's dataset in this way, or refuses it."""
+        """Return the options with which `solve` makes a scene's dataset in this way."""
         options: dict[str, Any] = {"engine": self.engine}
         if scene.run.level == "enclosed":
             options["audit"] = self.audit
@@ -96,9 +97,12 @@ class Making:
 
 
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
-    """Return how a dataset is made if nothing else is asked for: what ships as the index says, wherever it is written.
+    """Return how a dataset is made if nothing else is asked for.
 
-    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two codes.
+    What ships is made as the index says, wherever it is written.
+
+    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two
+    codes.
     """
     if ships(folder) or is_of_shipped_scene(scene, name):
         entry = index().get(name)
@@ -107,7 +111,7 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
 
 
 def command(scene: Scene, name: str, options: str) -> str:
-    """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
+    """Return the command that makes a dataset of a shipped scene, or of a user's own file.
 
     `name` is the dataset's id, which names the changes; `options` say how it is made.
     """

@@ -1,4 +1,4 @@
-"""`manifest.json` of a golden dataset: its fields and their types, which refuse extra keys, its text and its seal."""
+"""`manifest.json` of a golden dataset: its fields, their types and rules, its text and its seal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A dataset of ranges: proven intervals for uncertain inputs, in tables whose ends are rounded outward."""
+"""A dataset of ranges: proven intervals for uncertain inputs, their ends rounded outward."""
 
 from __future__ import annotations
 
@@ -35,13 +35,16 @@ _WIDER = ("possible", "sections")  # intervals that may be wider than those that
 
 
 def ranges_id(ranges: Ranges) -> str:
-    """Return the id: that of the scene's dataset, with the half-widths, such as paris+-pendulum.length=0.001."""
+    """Return the id: that of the scene's dataset, with the half-widths.
+
+    Example: paris+-pendulum.length=0.001.
+    """
     box = ",".join(f"{key}={width}" for key, width in ranges.uncertain.items())
     return id_with(dataset_id(ranges.scene), "+-", box)
 
 
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
-    """Write ranges: `ranges.json`, which says the scene, the box and the proof, and the tables; whole or not at all.
+    """Write ranges: `ranges.json`, with scene, box and proof, and the tables; whole or not at all.
 
     Args:
         ranges: what `prove_ranges` returned.
@@ -66,7 +69,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
 
 
 def load_ranges(name: str | Path) -> Ranges:
-    """Read ranges by id or path, after checking their seal and hashes: the intervals as printed, `proof` None.
+    """Read ranges by id or path, with intervals as printed and no proof; check seal and hashes.
 
     Raises:
         InputError: there are none.
@@ -88,7 +91,8 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
         A sentence for each problem; none if every printed interval holds what is proved.
 
     Raises:
-        InputError: there are none at `folder`, or the engine that they were made with is not installed.
+        InputError: there are none at `folder`, or the engine that they were made with is not
+            installed.
         UnreachableError: the proof fails here.
     """
     try:
@@ -195,7 +199,7 @@ def _text(path: Path) -> str:
 
 
 def _hint(text: str, digest: str) -> str:
-    """Return the explanation of a text that does not fit its hash: a copy changed its line ends; else nothing."""
+    """Return why a text does not fit its hash, if a copy changed its line ends; else nothing."""
     lines = text.replace("\r\n", "\n")
     return f": {LINE_ENDS}" if lines != text and _hash(lines) == digest else ""
 
@@ -203,7 +207,7 @@ def _hint(text: str, digest: str) -> str:
 def _zeros(
     rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]
 ) -> Zeros[Intervals]:
-    """Return zeros from their rows (number, direction, ends) and the intervals that may hold more."""
+    """Return zeros from their rows (number, direction, ends) and intervals that may hold more."""
     return Zeros(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
@@ -220,7 +224,7 @@ def _intervals(cells: Sequence[str]) -> tuple[Ends, ...]:
 
 
 def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
-    """Return a sentence on what does not contain what was proved, found by trusted code; none if all does."""
+    """Return a sentence if a table does not contain what was proved; trusted code decides that."""
     from ..enclosure.trusted.printed_box import check_ranges
 
     try:
@@ -231,7 +235,7 @@ def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
 
 
 def _other_facts(texts: dict[str, str], again: Ranges) -> Iterator[str]:
-    """Yield each field of `ranges.json` on the box or its proof that proving it again does not give."""
+    """Yield each field of `ranges.json` on box or proof that proving it again does not give."""
     printed = json.loads(texts[RANGES])
     tables = {name: text for name, text in texts.items() if name != RANGES}
     expected = _manifest(again, tables) | {"seal": printed["seal"]}
@@ -244,13 +248,16 @@ def _other_facts(texts: dict[str, str], again: Ranges) -> Iterator[str]:
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
-    """Return the ends of the period's interval as text, as they follow from transits.csv; None if it is open."""
+    """Return the ends of the period's interval as text, by transits.csv; None if it is open."""
     period = with_fields(ranges, proof=None).period
     return period and list(ends(*period))
 
 
 def ends(low: Fraction, high: Fraction, places: int | None = None) -> tuple[str, str]:
-    """Return the ends of an interval as text, rounded outward to `places`, or to the digits that its width supports."""
+    """Return the ends of an interval as text, rounded outward.
+
+    They have `places` digits after the point, or as many as the width supports.
+    """
     if places is None:
         places = _places_of(low, high)
     return outward(low, -1, places), outward(high, 1, places)
@@ -275,7 +282,8 @@ def _grid_rows(ranges: Ranges) -> list[list[str]]:
     """Return the rows of grid.csv: the time, exactly, and the ends of the state's intervals."""
     decimals = exact_decimals(ranges.times)
     release, *later = ranges.grid.rows
-    # the release may be known exactly, up to the rounding of the proof: it has the digits of the next row
+    # the release may be known exactly, up to the rounding of the proof: it has the digits of the
+    # next row
     release_cells: list[str] = []
     for interval, after in zip(release, later[0], strict=True):
         release_cells += ends(interval.low, interval.high, _places_of(after.low, after.high))
@@ -356,7 +364,7 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
 
 
 def _inputs(ranges: Ranges) -> dict[str, dict[str, str]]:
-    """Return the inputs of the scene but for `digits`: the tables have as many as the widths support."""
+    """Return the inputs of the scene without `digits`, which the widths decide."""
     inputs = scene_inputs(ranges.scene)
     inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}
     return inputs

@@ -1,4 +1,4 @@
-"""The manifest of a dataset, still without its files: what was solved, how, to which bounds, what agrees."""
+"""The manifest of a solution, still without files: scene, run, bounds, checks and proof."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _options(solution: Solution, name: str, tables: bool) -> str:
 
 
 def _possible(intervals: Iterable[tuple[Fraction, Fraction, str]], end: str) -> list[Possible]:
-    """Return intervals rounded outwards, but not beyond the end of the run, which the last row prints exactly."""
+    """Return intervals rounded outwards, but not beyond the end of the run, `end`."""
     records = []
     for interval in open_intervals(intervals):
         to_s = min(interval["to_s"], end, key=Fraction)
@@ -133,7 +133,7 @@ def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
 
 
 def following(scene: Scene, formulation: str, number: str, grid: Sheet | None) -> dict[str, Any]:
-    """Return the fields of a manifest that follow from its scene, its run's formulation and number, and its grid."""
+    """Return the fields of a manifest that follow from scene, formulation, number and grid."""
     lines, left_out = lines_and_left_out(scene, formulation, number)
     up = _UP[scene.site.gravity_is]
     fields: dict[str, Any] = {
@@ -149,7 +149,7 @@ def following(scene: Scene, formulation: str, number: str, grid: Sheet | None) -
 
 
 def generator() -> dict[str, str]:
-    """Return the version of the data, and those of the installed libraries that the bytes depend on.
+    """Return the versions of the data and of the libraries that the bytes depend on.
 
     The version of the code is not among them: a release that changes no digit changes no dataset.
     """
@@ -200,7 +200,7 @@ def _enclosure(proof: Proof) -> EnclosureRecord:
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:
-    """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
+    """Return h of the first row in m²/s², and its largest change over the rows, rounded up."""
     bits = bits_of(scene.run.digits) + INVARIANT_BITS
     k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
     states, unit = grid.integers(STATE)

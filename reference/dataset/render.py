@@ -1,4 +1,4 @@
-"""Every file of a dataset: manifest, CSV tables, vectors, page, function; the same solution gives the same bytes."""
+"""Every file of a dataset; the same solution gives the same bytes."""
 
 from __future__ import annotations
 
@@ -50,7 +50,9 @@ MOST = 16  # states, and as many transits
 def render(
     solution: Solution, name: str | None = None, *, tables: bool = True
 ) -> dict[str, Content]:
-    """Return the content of every file of a dataset, by file name; `name` is its id, by default the scene's own.
+    """Return the content of every file of a dataset, by file name.
+
+    `name` is the id of the dataset, by default the scene's own.
 
     Without `tables` they are manifest and golden function alone.
     """
@@ -87,7 +89,9 @@ def _sheets(solution: Solution) -> dict[str, Sheet]:
 
 
 def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
-    """Have trusted code compare the files of a dataset that is proved, or that says so, with what was proved.
+    """Have trusted code compare the files of a dataset with what was proved.
+
+    Without a proof, or a manifest that claims one, nothing is compared.
 
     Where tables are left out, its manifest is compared with those that it describes.
 
@@ -115,7 +119,7 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
 
 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:
-    """Return the files that follow from the manifest and the tables: the page for people, and the vectors."""
+    """Return the files that follow from manifest and tables: page for people, and vectors."""
     texts = {"certified.txt": _page(manifest, tables["grid.csv"], tables.get("transits.csv"))}
     if "grid.binary64.csv" in tables:
         texts["vectors.json"] = vectors(manifest, tables).text()
@@ -123,7 +127,7 @@ def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str
 
 
 def _page(manifest: Manifest, grid: Sheet, transits: Sheet | None) -> str:
-    """Return the page that belongs to a manifest and its tables; values are called certified if they are proven."""
+    """Return the page for people; values are called certified if they are proven."""
     lines = [
         *_head(manifest),
         *_inputs(manifest),
@@ -196,7 +200,7 @@ def _accuracy(manifest: Manifest) -> Iterator[str]:
 
 
 def _transits(manifest: Manifest, transits: Sheet | None) -> Iterator[str]:
-    """Yield the number of transits, the first and the last, and the intervals that may hold more."""
+    """Yield the number of transits, the first, the last, and intervals that may hold more."""
     count = manifest.counts.transits
     yield f"Transits (xdot = 0, t > 0): {count} ({manifest.transits})"
     if transits is not None and transits.rows:
@@ -265,7 +269,7 @@ class Vectors(ManifestPart):
 
 
 def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
-    """Return the vectors of a dataset, for tests in other languages, evenly spread over the rows of its tables."""
+    """Return the vectors of a dataset, evenly spread over the rows of its tables."""
     states = _state_vectors(manifest, tables)
     transits = _transit_vectors(manifest, tables)
     columns = dict.fromkeys((*NUMBERS["grid"], *NUMBERS["transits"]))
@@ -309,7 +313,7 @@ def _transit_vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> list[Tr
 
 
 def _spread(count: int, most: int) -> list[int]:
-    """Return the numbers of at most `most` rows out of `count`, evenly spread, with the first and the last."""
+    """Return at most `most` row numbers out of `count`, evenly spread, with first and last."""
     if count <= most:
         return list(range(count))
     return [i * (count - 1) // (most - 1) for i in range(most)]
@@ -321,7 +325,7 @@ def _flags(flagged: Mapping[str, list[int]], i: int) -> list[str]:
 
 
 def _closest_pair(transits: Sheet) -> list[int]:
-    """Return the numbers of the two neighbours that are closest in time; none of fewer than three transits."""
+    """Return the row numbers of the two closest neighbours; none of fewer than three transits."""
     if len(transits.rows) < 3:
         return []
     times = [t for (t,) in transits.numbers(("t",))]
@@ -330,7 +334,10 @@ def _closest_pair(transits: Sheet) -> list[int]:
 
 
 def _values(manifest: Manifest, tables: Mapping[str, Sheet], kind: Any, i: int) -> dict[str, Value]:
-    """Return the numbers of a row; the bound on a transit's time is its own, the others are those of their columns."""
+    """Return the numbers of a row, with their bounds.
+
+    The bound on a transit's time is its own; the others are those of their columns.
+    """
     plain = tables[f"{kind}.csv"]
     row = dict(zip(plain.header, plain.rows[i], strict=True))
     doubles = tables.get(f"{kind}.binary64.csv")

@@ -38,7 +38,7 @@ class Sheet:
             yield [Fraction(Decimal(row[i])) for i in places]
 
     def integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
-        """Return some columns of decimals as integers over a common unit, and the unit, a power of ten."""
+        """Return some columns as integers over a common unit, and the unit, a power of ten."""
         texts = []
         decimals = 0
         for name in columns:
@@ -67,7 +67,10 @@ def _scaled(text: str, decimals: int) -> int:
 
 
 def grid_sheet(solution: Solution) -> Sheet:
-    """Return `grid.csv`: exact times, and the state at each; of the release what the scene gives, as it is."""
+    """Return `grid.csv`: exact times, and the state at each.
+
+    The release has the numbers of the scene as they are.
+    """
     decimals = {"t": exact_decimals(solution.times), **grid_decimals(solution)}
     first, *later = solution.grid.printed(decimals)
     release = dict(zip(GRID, first, strict=True))
@@ -83,7 +86,7 @@ def grid_sheet(solution: Solution) -> Sheet:
 
 
 def transits_sheet(solution: Solution) -> Sheet:
-    """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
+    """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t."""
     decimals = decimals_of_zeros(solution, XDOT)
     rows = _zeros(solution.zeros[XDOT], decimals) if XDOT in solution.zeros else []
     return Sheet(TRANSITS_HEADER, rows, decimals)
@@ -99,7 +102,7 @@ def sections_sheet(solution: Solution) -> Sheet:
 
 
 def _zeros(zeros: Zeros[Table], decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
-    """Return the rows of zeros: number, time, direction, the other columns, and the bound on the time."""
+    """Return the rows of zeros: number, time, direction, other columns, bound on the time."""
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
     rows = zip(zeros.table.printed(decimals), zeros.table.bound("t"), zeros.directions, strict=True)
     return [
@@ -109,7 +112,10 @@ def _zeros(zeros: Zeros[Table], decimals: Mapping[str, int]) -> list[tuple[str, 
 
 
 def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Sheet:
-    """Return a sheet with doubles for its numbers, by column: 17 significant digits, then all again as hexfloats."""
+    """Return a sheet with doubles for its numbers, by column.
+
+    They have 17 significant digits; behind them they are repeated as hexfloats.
+    """
     columns = [doubles.get(name) for name in sheet.header]
     rows = []
     for i, row in enumerate(sheet.rows):
@@ -128,9 +134,12 @@ def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Shee
 
 
 def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
-    """Return the doubles nearest to the numbers of a table, which are known to more digits than its sheet prints.
+    """Return the doubles nearest to the numbers of a table, by column.
 
-    A number smaller than its error bound is noise about zero, and gets the double of the printed decimal.
+    They are known to more digits than the sheet prints.
+
+    A number smaller than its error bound is noise about zero, and gets the double of the printed
+    decimal.
     """
     unit = 1 << table.bits
     doubles = {}
@@ -155,7 +164,7 @@ def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
 
 
 def open_intervals(intervals: Iterable[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
-    """Return intervals that may hold other zeros as text, rounded outwards, each with the parity of their number."""
+    """Return intervals that may hold other zeros as text, rounded outwards, with their parity."""
     return [
         {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
         for low, high, parity in intervals

@@ -1,4 +1,4 @@
-"""Verify a golden dataset: files, what follows from its scene, each row, the motion, the seal; or solve it again."""
+"""Verify a golden dataset: files, scene, each row, the motion, the seal; or solve it again."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
 
 
 def _foreign(files: Files) -> list[str]:
-    """Return a note on each file that does not belong to a dataset; of many, how many more there are."""
+    """Return a note on each file that does not belong to a dataset, at most 20 and a count."""
     notes = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:_MAX_PROBLEMS]]
     more = len(files.foreign) - _MAX_PROBLEMS
     if more > 0:
@@ -86,7 +86,7 @@ def _foreign(files: Files) -> list[str]:
 
 
 def _unconfirmed(manifest: Manifest) -> list[str]:
-    """Return the evidence in a manifest, proof and cross-checks, for which only the seal in the index can vouch."""
+    """Return the evidence, proof and cross-checks, that no seal in the index vouches for."""
     if seals().get(manifest.id) == manifest.seal:
         return []
     evidence = []
@@ -112,7 +112,10 @@ def problems_of(folder: Path) -> list[str]:
 
 
 def _row_by_row(files: Files) -> list[str]:
-    """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
+    """Return what is wrong with the record and with each row by itself.
+
+    The first check that finds a problem ends this: later ones rely on it.
+    """
     if files.manifest.alone:
         checks = [scene_check.problems, function.problems]
     else:
@@ -149,7 +152,10 @@ def _seal_problems(files: Files) -> Iterator[str]:
 
 
 def _is_copy(manifest: Manifest, ships: Path) -> bool:
-    """Return whether a dataset must be the one that ships: made by the same command, not here with other versions."""
+    """Return whether a dataset must be the one that ships.
+
+    It was made by the same command, and not here with other versions.
+    """
     try:
         shipped = read_manifest(ships)
     except FoucaultError:
@@ -164,8 +170,8 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     """Solve the scene of a dataset again, and compare.
 
     Returns:
-        A sentence for each field and file that differs, and a note where only figures differ that are measured: those
-        of runs in double or long double, or of other versions of the libraries.
+        A sentence for each field and file that differs, and a note where only figures differ that
+        are measured: those of runs in double or long double, or of other versions of the libraries.
 
     Raises:
         InputError, DatasetError: as `read_files`.
@@ -212,7 +218,7 @@ def _without_following(manifest: Manifest) -> dict[str, Any]:
 
 
 def _may_be_measured_otherwise(manifest: Manifest, again: Manifest) -> bool:
-    """Return whether libraries have other versions, or a run was in the numbers of the processor."""
+    """Return whether libraries differ in version, or a run was in the numbers of the processor."""
     runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
     in_hardware = any(run.number in _HARDWARE for run in runs)
     return in_hardware or manifest.generator != again.generator

@@ -1,4 +1,4 @@
-"""Write a dataset: its files are checked in a temporary folder and put in place together, or not at all."""
+"""Write a dataset: its files are checked elsewhere and put in place together, or not at all."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OLDER = {MANIFEST: "an older dataset", RANGES: "older ranges"}
 
 
 def check_target(folder: Path, mark: str = MANIFEST) -> None:
-    """Refuse a target that cannot be written, or that holds something other than what has the file `mark`.
+    """Refuse a target that cannot be written, or that holds anything else than `mark` names.
 
     Raises:
         InputError: the target cannot be written, or something else is in its place.
@@ -69,7 +69,7 @@ def writable_place(folder: Path) -> Iterator[tuple[Path, Path]]:
 def write(
     solution: Solution, folder: str | Path, name: str | None = None, *, tables: bool = True
 ) -> Path:
-    """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in its place.
+    """Write a solution as a golden dataset, checked beside `folder` and then put in its place.
 
     Args:
         solution: what to write.
@@ -78,8 +78,10 @@ def write(
         tables: whether to write more than the golden function and its manifest.
 
     Raises:
-        InputError: the folder cannot be written, it ships and the proof is not audited, or nothing would be written.
-        DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
+        InputError: the folder cannot be written, it ships and the proof is not audited, or nothing
+            would be written.
+        DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as
+            it is.
     """
     if not isinstance(solution, Solution):
         advice = "Solve the scene first. Ranges are written by write_ranges."
@@ -117,7 +119,7 @@ def replace(target: Path, new: Path, work: Path) -> None:
 def write_texts(
     texts: Mapping[str, Content], folder: Path, solution: Solution | None = None
 ) -> None:
-    """Write the files of a dataset that was rendered, as `write` does; without its solution, they were checked."""
+    """Write the rendered files of a dataset; without a solution, they were compared with it."""
     check_target(folder)
     with writable_place(folder) as (work, target):
         new = filled(work, texts)
@@ -141,7 +143,7 @@ def _content(path: Path) -> Content:
 
 
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
-    """Return what `generate --json` prints on a dataset, including what was measured and is in no file."""
+    """Return what `generate --json` prints on a dataset, with measurements that are in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=Fraction)
     return {

@@ -1,4 +1,4 @@
-"""Check the golden function: what follows from the manifest, the rows of the grid, and the motion between them."""
+"""Check the golden function against the manifest, the rows of the grid, and the motion."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _RANDOM_TIMES = 2
 
 
 def problems(files: Files) -> Iterator[str]:
-    """Yield what does not follow from manifest and scene, and where the function contradicts a row of the grid."""
+    """Yield what does not follow from manifest and scene, or contradicts a row of the grid."""
     if files.function is None:
         return
     record, function = files.function
@@ -54,7 +54,10 @@ def _far_from_grid(files: Files, function: GoldenFunction) -> Iterator[str]:
 
 
 def moments(files: Files) -> list[float]:
-    """Return times at which the function is compared with the motion: in every piece both ends and random ones."""
+    """Return times at which the function is compared with the motion.
+
+    In every piece these are both ends and random ones.
+    """
     if files.function is None:
         return []
     _, function = files.function

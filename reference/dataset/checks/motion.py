@@ -1,8 +1,9 @@
-"""Check the rows together: integrate the scene again in limbs, and compare every printed number with the result.
+"""Check the rows together: integrate the scene again in limbs, and compare every number.
 
-Two runs from the exact release, at two precisions, show by their disagreement how far the finer one can be trusted.
-On a chaotic scene even the most bits that limbs have may not decide; that is reported, and is no problem.
-Each zero of xdot is a row of `transits.csv`, or lies in a possible interval, where xdot only grazes zero.
+Two runs from the exact release, at two precisions, show by their disagreement how far the finer one
+can be trusted. On a chaotic scene even the most bits that limbs have may not decide; that is
+reported, and is no problem. Each zero of xdot is a row of `transits.csv`, or lies in a possible
+interval, where xdot only grazes zero.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ _PATIENCE = 4  # times that, for all attempts together, where the first does not
 _GRAZES = (
     8  # of the bounds on vx, and of xdot where a proof may not have decided whether it is zero
 )
-# times the time that the radius of a velocity is worth: a ball about a zero, which also holds the end
+# times the time that the radius of a velocity is worth: a ball about a zero, which also holds the
+# end
 _UNSURE = 4
 _OUTWARD = Fraction(2, 10**20)  # s, by which the ends of a possible interval are rounded outward
 _FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
@@ -62,7 +64,7 @@ class _Comparison:
 
 
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
-    """Return a sentence for every number that the motion contradicts, and what was not decided, with the reason."""
+    """Return a sentence for every number that the motion contradicts, and what was not decided."""
     if not engines()["limbs"].installed:
         return [], _undecided(
             "integrating it again needs numba: pip install 'foucault-reference[fast]'"
@@ -97,7 +99,7 @@ def _undecided(reason: str) -> list[str]:
 
 
 def _first_prec(manifest: Manifest) -> int:
-    """Return the bits of the published run where limbs have as many, and at least those of the digits."""
+    """Return the bits of the first attempt: as in the published run, or more for the digits."""
     published = re.search(r"\((\d{1,4})\)", manifest.run.number)
     published_bits = int(published[1]) if published else DOUBLE_BITS
     digits_bits = bits_of(manifest.digits) + GUARD_BITS // 2
@@ -106,7 +108,7 @@ def _first_prec(manifest: Manifest) -> int:
 
 
 def _steps(files: Files) -> int:
-    """Return about how many steps a run takes: the fastest rate in the scene, over the whole span."""
+    """Estimate the steps of a run: the fastest rate in the scene, times the span."""
     start = Start.of(files.scene.exact, GUARD_BITS)
     k = start.k
     rate = float(start.ctx.sqrt(start.ctx.norm(k.pull)) + abs(k.rate) + k.drag)
@@ -116,7 +118,7 @@ def _steps(files: Files) -> int:
 
 
 def _largest_speed(files: Files) -> Fraction:
-    """Return |vx| + |vy| + |vz| where it is largest: in the grid, or of a function alone at the moments compared."""
+    """Return |vx| + |vy| + |vz| where it is largest, in the grid or at moments of the function."""
     if files.manifest.alone:
         _, golden_function = files.function  # type: ignore[misc]
         states = golden_function.at(function.moments(files))
@@ -127,7 +129,7 @@ def _largest_speed(files: Files) -> Fraction:
 
 
 def _run(files: Files, prec: int, report: Progress | None) -> Run:
-    """Return a run of the dataset's scene through its grid, and the moments at which its function is compared."""
+    """Return a run through the grid and the moments at which the function is compared."""
     inputs = files.scene.exact
     times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
     plan = engines()["limbs"].plan(inputs, prec, tuple(times), _decided_words(files))
@@ -137,14 +139,14 @@ def _run(files: Files, prec: int, report: Progress | None) -> Run:
 
 
 def _decided_words(files: Files) -> tuple[str, ...]:
-    """Return the zeros that are looked for: all but the sections with intervals that the proof left open."""
+    """Return the zeros to look for: all but sections with intervals that the proof left open."""
     sections = files.manifest.sections
     possible = sections.possible if sections else {}
     return tuple(word for word in files.scene.run.zeros if not possible.get(word))
 
 
 def _differing(files: Files, coarse: Run, fine: Run) -> list[str] | None:
-    """Return a sentence for each number that is off; None where the two runs are too far apart to decide."""
+    """Return a sentence for each number that is off; None if the two runs cannot decide."""
     if any(coarse.zeros[word].directions != zeros.directions for word, zeros in fine.zeros.items()):
         return None
     grid_times = files.scene.exact.grid
@@ -176,7 +178,7 @@ def _differing(files: Files, coarse: Run, fine: Run) -> list[str] | None:
 
 
 def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Comparison | None]:
-    """Return what is wrong with possible intervals and the number of transits, and the transits to be compared."""
+    """Check possible intervals and the number of transits; return problems, and what to compare."""
     if coarse.transits is None or fine.transits is None:
         return [], None
     outside, sentences = _outside_intervals(files, fine.plan, fine.transits)
@@ -198,7 +200,7 @@ def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Compari
 
 
 def _sections(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Comparison | None]:
-    """Return what is wrong with the number of passages, and the passages to be compared, of the decided sections."""
+    """Check the number of passages in decided sections; return problems, and what to compare."""
     sheet = files.tables.get("sections.csv")
     if sheet is None:
         return [], None
@@ -238,9 +240,10 @@ def _at(times: Iterable[Fraction], run: Run) -> Table:
 
 
 def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int], list[str]]:
-    """Return which zeros of xdot lie in no possible interval, and a sentence for each interval that is refuted.
+    """Return which zeros of xdot lie in no possible interval, and a sentence for each refuted one.
 
-    By Taylor's theorem xdot at a zero, or in the middle of an interval, bounds it elsewhere in the interval.
+    By Taylor's theorem xdot at a zero, or in the middle of an interval, bounds it elsewhere in the
+    interval.
 
     Args:
         files: the dataset, with its intervals.
@@ -263,12 +266,14 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
         outside.difference_update(inside)
         slopes_inside = [slopes[k] for k in inside]
 
-        # a zero that is crossed so fast that no enclosure misses it, or a number of zeros against the parity
+        # a zero that is crossed so fast that no enclosure misses it, or a number of zeros against
+        # the parity
         crossed = any(slope**2 > near * jerk for slope in slopes_inside)
         parity_refuted = interval.parity == ("even" if len(inside) % 2 else "odd")
         decided = (crossed or parity_refuted) and not _ends_the_run(files, low, high, slopes_inside)
 
-        # |xdot| over the interval is at least its middle's, less what slope and jerk change in half of it
+        # |xdot| over the interval is at least its middle's, less what slope and jerk change in half
+        # of it
         half = (high - low) / 2
         without_zero = abs(vx) > near + half * (abs(ax) + jerk * half / 2)
         if decided or without_zero:
@@ -280,14 +285,16 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
 
 
 def _middles(plan: Plan, intervals: Iterable[Possible]) -> Table:
-    """Return the states in the middle of each interval, behind that of the release, at which every run begins."""
+    """Return the state at the release, where a run begins, and in the middle of each interval."""
     middles = [(Fraction(part.from_s) + Fraction(part.to_s)) / 2 for part in intervals]
     times = (Fraction(0), *middles)
     return engines()["limbs"].run(replace(plan, times=times, zeros=())).grid
 
 
 def _ends_the_run(files: Files, low: Fraction, high: Fraction, slopes: list[Fraction]) -> bool:
-    """Return whether an interval ends with the run, and is too short for a proof to decide if a zero lies before it.
+    """Return whether an interval ends with the run and is so short that a proof cannot decide.
+
+    The proof then cannot tell if a zero lies before or after the end.
 
     Args:
         files: the dataset.
@@ -305,7 +312,9 @@ def _ends_the_run(files: Files, low: Fraction, high: Fraction, slopes: list[Frac
 def _off(
     manifest: Manifest, kind: Kind, sheet: Sheet, table: Table, distance: Mapping[str, Fraction]
 ) -> list[str]:
-    """Return a sentence for every printed number that is further from a run than bound and distance of the runs.
+    """Return a sentence for every printed number that is too far from a run.
+
+    The limit is its bound plus the distance of the two runs.
 
     Args:
         manifest: with the bounds of the columns.

@@ -1,6 +1,7 @@
-"""Check each row by itself: on the sphere, velocity along it, the invariant h, and the acceleration at a transit.
+"""Check each row by itself: sphere, velocity along it, invariant, acceleration at a transit.
 
-How far a checked quantity may be off follows from the bounds of the columns, by differences of the quantity itself.
+How far a checked quantity may be off follows from the bounds of the columns, by differences of the
+quantity itself.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ from ..sheets import Sheet
 
 # where |z| is below l/4, z does not follow well enough from x and y
 _STEEP = 4
-# a nudge of z is at most its size over this; where the bound of z is more, what is divided by z means little
+# a nudge of z is at most its size over this; where the bound of z is more, what is divided by z
+# means little
 _NEAR = 64
 _NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 _SLACK = Fraction(21, 20)
@@ -182,7 +184,7 @@ class _Moments:
 
     @np.errstate(all="ignore")
     def allowed(self, quantity: _Quantity) -> list[Fraction]:
-        """Return how far a quantity of each state may be off by the bounds on the state: to first order.
+        """Return how far a quantity of each state may be off by its bounds, to first order.
 
         Raises:
             OverflowError: no double is as large.
@@ -216,7 +218,7 @@ class _Moments:
         return [Fraction(part) * largest * _SLACK for part in total]
 
     def _in_doubles(self, quantity: _Quantity, columns: list[Array], k: Constants) -> Array:
-        """Return a quantity of states whose columns are doubles; z and vz are taken as they follow, where they do."""
+        """Return a quantity of states in doubles; z and vz are as they follow, where they do."""
         x, y, z, vx, vy, vz = columns
         depth = _depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0)))
         z = np.where(self._deep, depth, z)
@@ -232,9 +234,10 @@ class _Moments:
 
     @property
     def _known(self) -> Array:
-        """Whether all of each state is known: at a transit with a nearly level cord vz = -y vy/z is not.
+        """Whether all of each state is known: at a transit with a nearly level cord, vz is not.
 
-        There the rounding of y, vy and z multiplies, and differences of one at a time do not bound what it does.
+        There the rounding of y, vy and z multiplies, and differences of one at a time do not bound
+        what it does.
         """
         if self.transits is None:
             return np.ones(len(self.names), dtype=bool)

@@ -1,6 +1,7 @@
 """Read vectors and page back, and compare what they say with tables and manifest.
 
-Nothing here is used to write a dataset: a mistake of what writes these files does not hide in what checks them.
+Nothing here is used to write a dataset: a mistake of what writes these files does not hide in what
+checks them.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ def _transits(files: Files) -> Iterator[dict[str, Any]]:
 
 
 def _closest_pair(times: list[Fraction]) -> list[int]:
-    """Return the numbers, from 1, of the two neighbours that are closest; none of fewer than three times."""
+    """Return the numbers, from 1, of the two closest neighbours; none of fewer than three times."""
     if len(times) < 3:
         return []
     gaps = [after - before for before, after in pairwise(times)]
@@ -111,7 +112,7 @@ def _closest_pair(times: list[Fraction]) -> list[int]:
 
 
 def _evenly(count: int, most: int) -> list[int]:
-    """Return the numbers of rows, from 1: all, or `most` with the first and the last and even steps between."""
+    """Return row numbers from 1: all, or `most` in even steps from the first to the last."""
     if count <= most:
         return list(range(1, count + 1))
     return [1 + k * (count - 1) // (most - 1) for k in range(most)]
@@ -136,7 +137,10 @@ def _values(
 
 
 def _page(files: Files, lines: list[str]) -> Iterator[str]:
-    """Check the page's sentences on level, reading, confirmation and passages; its numbers are compared elsewhere."""
+    """Check the page's sentences on level, reading, confirmation and passages.
+
+    Its numbers are compared elsewhere.
+    """
     manifest = files.manifest
     if _INPUTS not in lines:
         yield f"{_PAGE}: it has no inputs"
@@ -155,7 +159,7 @@ def _page(files: Files, lines: list[str]) -> Iterator[str]:
 
 
 def _head(manifest: Manifest) -> Iterator[str]:
-    """Yield the sentences on level, audit, confirmation and reading that the head of the page should have."""
+    """Yield the sentences on level, audit, confirmation and reading for the head of the page."""
     yield f"Level: {manifest.level}. {MEANING[manifest.level]}"
     words = manifest.command.split()
     if "--confirm" in words:

@@ -1,4 +1,4 @@
-"""Check manifest and tables against the scene, from which all of one follows, and times and first row of the other."""
+"""Check manifest and tables against the scene, and each with itself."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _HALF = Fraction(1, 2)
 
 
 def table_problems(files: Files) -> Iterator[str]:
-    """Yield what is wrong with the rows of the tables, taken by themselves and against the scene's inputs."""
+    """Yield what is wrong with the rows of the tables, by themselves and against the scene."""
     yield from _times(files)
     yield from _release(files)
     yield from _digits(files)
@@ -74,7 +74,7 @@ def _digits(files: Files) -> Iterator[str]:
 
 
 def _doubles(files: Files, kind: Kind) -> Iterator[str]:
-    """Check that each double is the nearest to some number that the bound on the printed decimal allows."""
+    """Check that each double is the nearest to some number within the bound of the decimal."""
     plain = files.tables.get(f"{kind}.csv")
     doubles = files.tables.get(f"{kind}.binary64.csv")
     if plain is None or doubles is None or not plain.rows:
@@ -100,7 +100,10 @@ def _doubles(files: Files, kind: Kind) -> Iterator[str]:
 
 
 def _bounds_by_row(files: Files, kind: Kind, name: str, sheet: Sheet) -> list[Fraction]:
-    """Return the bound on a column's number in each row: times of the grid are exact, a transit has its own."""
+    """Return the bound on a column's number in each row.
+
+    Times of the grid are exact; the time of a transit has a bound of its own.
+    """
     if name == "t" and kind == "transits":
         return [Fraction(row[-1]) for row in sheet.rows]
     bound = Fraction(0) if name == "t" else files.manifest.bound(kind, name)
@@ -113,7 +116,10 @@ def _may_be_nearest(double: float, value: Fraction, bound: Fraction) -> bool:
 
 
 def _order(files: Files, transits: Sheet) -> Iterator[str]:
-    """Check that transits count from 1, lie in (0, t_end] in order, alternate, and that the signs on the grid agree."""
+    """Check that transits count from 1, lie in (0, t_end] in order, and alternate.
+
+    The signs of vx on the grid must agree.
+    """
     times, bounds, directions = zip(*transits.numbers(("t", "bound", "direction")), strict=True)
     if [row[0] for row in transits.rows] != [str(k) for k in range(1, len(times) + 1)]:
         yield "transits.csv: k does not count from 1"
@@ -136,7 +142,7 @@ def _signs_on_grid(
     bounds: Sequence[Fraction],
     directions: Sequence[Fraction],
 ) -> Iterator[str]:
-    """Check the sign of vx between transits, in every grid row where the bounds leave it certain."""
+    """Check the sign of vx between transits, in grid rows where the bounds leave it certain."""
     vx_bound = files.manifest.bound("grid", "vx")
     passed = 0
     _, *rows = files.tables["grid.csv"].numbers(("t", "vx"))
@@ -152,7 +158,7 @@ def _signs_on_grid(
 
 
 def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
-    """Check each bound on a time: at least its rounding, at most what the runs or the proof leave open."""
+    """Check each bound on a time: at least its rounding, at most what runs or proof leave open."""
     manifest = files.manifest
     half_unit = Fraction(1, 2 * 10 ** manifest.decimals["transits"]["t"])
     gaps = [check.transit_s for check in manifest.cross_checks]
@@ -172,10 +178,10 @@ def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
 
 
 def largest_jerk(files: Files) -> Fraction:
-    """Return a bound on the rate of xddot, in m/s³: where ax is small against it, a zero of xdot may graze.
+    """Return a bound on the rate of xddot, in m/s³; where ax is small against it, a zero may graze.
 
-    With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at the release and drag
-    can only lower, it is 8 l (p + v² + w²) (v + w).
+    With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at
+    the release and drag can only lower, it is 8 l (p + v² + w²) (v + w).
     """
     start = Start.of(files.scene.exact, GUARD_BITS)
     ctx = start.ctx
@@ -187,7 +193,7 @@ def largest_jerk(files: Files) -> Fraction:
 
 
 def problems(files: Files) -> Iterator[str]:
-    """Yield what of a manifest, of the page and of the vectors does not follow from the scene and the tables."""
+    """Yield what in manifest, page and vectors does not follow from the scene and the tables."""
     manifest = files.manifest
     formulation = manifest.run.formulation
     if formulation not in FORMULATIONS:
@@ -257,7 +263,10 @@ def _command_follows(files: Files) -> bool:
 
 
 def _is_its_id(files: Files) -> bool:
-    """Return whether an id names the scene's changes: all against a shipped scene, else some that the scene has."""
+    """Return whether an id names the scene's changes.
+
+    Against a shipped scene it names all; for a user's own scene, some fields that it has.
+    """
     name, scene, full_id = files.manifest.id, files.scene, dataset_id(files.scene)
     if name == full_id or shipped_scene(scene) is not scene:
         return name == full_id
@@ -278,7 +287,10 @@ def _possible(files: Files) -> Iterator[str]:
 
 
 def _sections(files: Files) -> Iterator[str]:
-    """Check that `sections.csv` has the scene's sections in order, their rows counted, with bounds of their digits."""
+    """Check that `sections.csv` has the scene's sections in order, their rows counted.
+
+    A bound is at least half a unit of the last digit.
+    """
     record = files.manifest.sections
     if record is None:
         return
@@ -298,7 +310,10 @@ def _sections(files: Files) -> Iterator[str]:
 
 
 def _bounds(manifest: Manifest) -> Iterator[str]:
-    """Check that each bound covers the rounding to the printed digits, and leaves only the last of them open."""
+    """Check that each bound covers the rounding to the printed digits.
+
+    On the grid, and with a proof everywhere, it is at most a unit of the last digit.
+    """
     yield from _bounds_in_units(manifest, "grid", manifest.bounds.grid, limited=True)
     is_proved = manifest.enclosure is not None
     yield from _bounds_in_units(manifest, "transits", manifest.bounds.transits, limited=is_proved)
@@ -336,7 +351,7 @@ def _evidence(manifest: Manifest) -> Iterator[str]:
 
 
 def _confirmation(manifest: Manifest, confirming: list[CrossCheckRecord]) -> Iterator[str]:
-    """Check that the runs in another formulation confirm as much of a proof as the command names."""
+    """Check that the runs in another formulation confirm as much of a proof as the command says."""
     confirm = Making.of(manifest.command).confirm
     close = [check for check in confirming if not any(_too_far(check, manifest))]
     match confirm:
