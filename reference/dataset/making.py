@@ -19,8 +19,8 @@ CONFIRM = "--confirm"
 _WITH_FUNCTION = "--function"
 _WITHOUT_TABLES = "--no-tables"
 # The options in a dataset's command that say how it is made. Two older forms are in manifests that
-# ship: `--no-confirm`, and nothing at all for a whole confirmation. A command without an audit says
-# nothing of it.
+# ship: `--no-confirm`, and nothing at all for a whole confirmation. A command that names
+# no audit had none.
 _OPTIONS = re.compile(
     rf"{ENGINE} (?P<engine>{'|'.join(engine_names())})"
     rf"(?P<audit> {AUDIT}| --no-audit|)"

@@ -28,7 +28,7 @@ _OLDER = {MANIFEST: "an older dataset", RANGES: "older ranges"}
 
 
 def check_target(folder: Path, mark: str = MANIFEST) -> None:
-    """Refuse a target that cannot be written, or that holds anything else than `mark` names.
+    """Refuse a target that cannot be written, or holds anything but a result with the file `mark`.
 
     Raises:
         InputError: the target cannot be written, or something else is in its place.
@@ -119,7 +119,7 @@ def replace(target: Path, new: Path, work: Path) -> None:
 def write_texts(
     texts: Mapping[str, Content], folder: Path, solution: Solution | None = None
 ) -> None:
-    """Write the rendered files of a dataset; without a solution, they were compared with it."""
+    """Write the rendered files of a dataset, after comparing them with the solution if it is given."""
     check_target(folder)
     with writable_place(folder) as (work, target):
         new = filled(work, texts)
