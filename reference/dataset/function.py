@@ -139,16 +139,8 @@ def evaluated_transits(
     Raises:
         ValueError: the function has others.
     """
-    count = manifest.counts.transits
-    for signs_in_a_piece in _SIGNS_IN_A_PIECE:
-        zeros = _zeros(function, signs_in_a_piece).outside(manifest.possible)
-        if len(zeros.times) >= count:
-            break
-    if scene.run.transits and count != len(zeros.times):
-        raise ValueError(f"xdot has {len(zeros.times)} zeros, the manifest counts {count}")
-
-    times = zeros.times[:count]
-    signs = zeros.signs[:count]
+    zeros = _transits(function, scene, manifest)
+    times = zeros.times
     states = _states(function, times)
     derivatives = rates(states, constants_in_double(scene.exact))
     ax = derivatives[3]
@@ -159,7 +151,7 @@ def evaluated_transits(
 
     x, y, z, _, vy, _ = states
     numbers = [str(k) for k in range(1, len(times) + 1)]
-    directions = [f"{sign:+d}" for sign in signs.tolist()]
+    directions = [f"{sign:+d}" for sign in zeros.signs.tolist()]
     columns = [_texts(column) for column in (x, y, z, vy, ax, time_errors)]
     rows = _rows([numbers, _texts(times), directions, *columns])
     return _EvaluatedTable(Sheet(TRANSITS_HEADER, rows, {}), _bounds(function, states, errors))
@@ -209,6 +201,22 @@ class _SignChanges:
             times = times[outside]
             signs = signs[outside]
         return _SignChanges(times, signs)
+
+
+def _transits(function: GoldenFunction, scene: Scene, manifest: Manifest) -> _SignChanges:
+    """Return the zeros of xdot outside the intervals that may hold more.
+
+    Raises:
+        ValueError: there are not as many as the manifest counts.
+    """
+    count = manifest.counts.transits
+    for signs_in_a_piece in _SIGNS_IN_A_PIECE:
+        zeros = _zeros(function, signs_in_a_piece).outside(manifest.possible)
+        if len(zeros.times) >= count:
+            break
+    if scene.run.transits and count != len(zeros.times):
+        raise ValueError(f"xdot has {len(zeros.times)} zeros, the manifest counts {count}")
+    return _SignChanges(zeros.times[:count], zeros.signs[:count])
 
 
 def _zeros(function: GoldenFunction, signs_in_a_piece: int) -> _SignChanges:

@@ -149,38 +149,50 @@ def _differing(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     """Return a sentence for each number that is off; None if the two runs cannot decide."""
     if any(coarse.zeros[word].directions != zeros.directions for word, zeros in fine.zeros.items()):
         return None
-    grid_times = files.scene.exact.grid
-    grid = _Comparison(
-        "grid", files.tables.get("grid.csv"), _at(grid_times, coarse), _at(grid_times, fine)
-    )
-    miscounted, comparisons = [], [grid]
-    for compare in (_transits, _sections):
-        sentences, comparison = compare(files, coarse, fine)
-        miscounted += sentences
-        if comparison is not None:
-            comparisons.append(comparison)
+    miscounted_transits, transits = _transits(files, coarse, fine)
+    miscounted_passages, passages = _sections(files, coarse, fine)
+    comparisons = [_grid(files, coarse, fine), *transits, *passages]
+    off = _off_in_tables(files.manifest, comparisons)
+    if off is None:
+        return None
+    off_in_function = _off_in_function(files, coarse, fine)
+    return [*miscounted_transits, *miscounted_passages, *off, *off_in_function]
 
-    off: list[str] = []
+
+def _off_in_tables(manifest: Manifest, comparisons: Iterable[_Comparison]) -> list[str] | None:
+    """Return a sentence for each printed number that is off; None if the two runs cannot decide."""
+    sentences = []
     for comparison in comparisons:
         kind = comparison.kind
         table = comparison.fine.only(_COLUMNS[kind])
         distance = table.distance(comparison.coarse).largest()
-        if any(distance[name] > files.manifest.bound(kind, name) for name in table.columns):
+        if any(distance[name] > manifest.bound(kind, name) for name in table.columns):
             return None
         if comparison.sheet is not None:
-            off += _off(files.manifest, kind, comparison.sheet, table, distance)
-
-    times = function.moments(files)
-    exact_times = [Fraction(t) for t in times]
-    table = _at(exact_times, fine)
-    distance = table.distance(_at(exact_times, coarse)).largest()
-    return [*miscounted, *off, *function.contradicted(files, times, table, distance)]
+            sentences += _off(manifest, kind, comparison.sheet, table, distance)
+    return sentences
 
 
-def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Comparison | None]:
+def _off_in_function(files: Files, coarse: Run, fine: Run) -> list[str]:
+    """Return a sentence for each value of the golden function that is off."""
+    moments = function.moments(files)
+    times = [Fraction(t) for t in moments]
+    table = _at(times, fine)
+    distance = table.distance(_at(times, coarse)).largest()
+    return function.contradicted(files, moments, table, distance)
+
+
+def _grid(files: Files, coarse: Run, fine: Run) -> _Comparison:
+    """Return the states of the grid, to be compared."""
+    times = files.scene.exact.grid
+    sheet = files.tables.get("grid.csv")
+    return _Comparison("grid", sheet, _at(times, coarse), _at(times, fine))
+
+
+def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], list[_Comparison]]:
     """Check possible intervals and the number of transits; return problems, and what to compare."""
     if coarse.transits is None or fine.transits is None:
-        return [], None
+        return [], []
     outside, sentences = _outside_intervals(files, fine.plan, fine.transits)
     sheet = files.tables.get("transits.csv")
     count = files.manifest.counts.transits
@@ -192,18 +204,18 @@ def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Compari
     if printed != directions or count != len(directions):
         place = MANIFEST if sheet is None else "transits.csv"
         motion = f"the motion's, which are {len(directions)}"
-        return [*sentences, f"{place}: {count} transits are not {motion}"], None
+        return [*sentences, f"{place}: {count} transits are not {motion}"], []
     if not directions:
-        return sentences, None
+        return sentences, []
     rough = _rows(coarse.transits, outside)
-    return sentences, _Comparison("transits", sheet, rough, _rows(fine.transits, outside))
+    return sentences, [_Comparison("transits", sheet, rough, _rows(fine.transits, outside))]
 
 
-def _sections(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Comparison | None]:
+def _sections(files: Files, coarse: Run, fine: Run) -> tuple[list[str], list[_Comparison]]:
     """Check the number of passages in decided sections; return problems, and what to compare."""
     sheet = files.tables.get("sections.csv")
     if sheet is None:
-        return [], None
+        return [], []
     passages = sections_of(fine.zeros)
     rows = [row for row in sheet.rows if row[0] in passages]
     printed = [(row[0], row[3]) for row in rows]
@@ -214,11 +226,11 @@ def _sections(files: Files, coarse: Run, fine: Run) -> tuple[list[str], _Compari
     ]
     if printed != expected:
         motion = f"the motion's, which are {len(expected)}"
-        return [f"sections.csv: {len(rows)} passages are not {motion}"], None
+        return [f"sections.csv: {len(rows)} passages are not {motion}"], []
     if not expected:
-        return [], None
+        return [], []
     rough = _joined(sections_of(coarse.zeros))
-    return [], _Comparison("sections", replace(sheet, rows=rows), rough, _joined(passages))
+    return [], [_Comparison("sections", replace(sheet, rows=rows), rough, _joined(passages))]
 
 
 def _joined(passages: Mapping[str, Zeros[Table]]) -> Table:
@@ -252,36 +264,58 @@ def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int
     """
     times = zeros.exact("t")
     slopes = zeros.exact("ax")
-    near = _GRAZES * files.manifest.bound("grid", "vx")
-    jerk = largest_jerk(files)
+    grazing = _Grazing(_GRAZES * files.manifest.bound("grid", "vx"), largest_jerk(files))
     intervals = files.manifest.possible
     middles = _middles(plan, intervals)
     outside = set(range(len(times)))
     refuted = []
-    for interval, vx, ax in zip(
-        intervals, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True
-    ):
+    rows = zip(intervals, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True)
+    for interval, vx, ax in rows:
         low, high = Fraction(interval.from_s), Fraction(interval.to_s)
         inside = range(bisect_left(times, low), bisect_right(times, high))
         outside.difference_update(inside)
         slopes_inside = [slopes[k] for k in inside]
-
-        # a zero that is crossed so fast that no enclosure misses it, or a number of zeros against
-        # the parity
-        crossed = any(slope**2 > near * jerk for slope in slopes_inside)
-        parity_refuted = interval.parity == ("even" if len(inside) % 2 else "odd")
-        decided = (crossed or parity_refuted) and not _ends_the_run(files, low, high, slopes_inside)
-
-        # |xdot| over the interval is at least its middle's, less what slope and jerk change in half
-        # of it
-        half = (high - low) / 2
-        without_zero = abs(vx) > near + half * (abs(ax) + jerk * half / 2)
-        if decided or without_zero:
+        is_decided = grazing.crosses(slopes_inside) or _has_other_parity(interval, len(inside))
+        if _ends_the_run(files, low, high, slopes_inside):
+            is_decided = False
+        if is_decided or grazing.is_far(vx, ax, (high - low) / 2):
             place = f"possible: from {interval.from_s} to {interval.to_s} s"
             refuted.append(
                 f"{MANIFEST}: {place} the motion has {len(inside)} transits, and that is decided"
             )
     return sorted(outside), refuted
+
+
+@dataclass(frozen=True)
+class _Grazing:
+    """What counts as a grazing zero.
+
+    Attributes:
+        near: |xdot| below which a proof may not have decided whether it is zero, in m/s.
+        jerk: a bound on the rate of xddot, in m/s³.
+    """
+
+    near: Fraction
+    jerk: Fraction
+
+    def crosses(self, slopes: Iterable[Fraction]) -> bool:
+        """Return whether one of some zeros, by its slope in m/s², does not graze."""
+        return any(slope**2 > self.near * self.jerk for slope in slopes)
+
+    def is_far(self, vx: Fraction, ax: Fraction, half_s: Fraction) -> bool:
+        """Return whether xdot is nowhere near zero in an interval.
+
+        Args:
+            vx: xdot in its middle, in m/s.
+            ax: the slope of xdot there, in m/s².
+            half_s: half of its length.
+        """
+        return abs(vx) > self.near + half_s * (abs(ax) + self.jerk * half_s / 2)
+
+
+def _has_other_parity(interval: Possible, count: int) -> bool:
+    """Return whether a number of zeros contradicts the parity of an interval."""
+    return interval.parity == ("even" if count % 2 else "odd")
 
 
 def _middles(plan: Plan, intervals: Iterable[Possible]) -> Table:

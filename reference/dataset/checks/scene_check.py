@@ -267,7 +267,9 @@ def _is_its_id(files: Files) -> bool:
 
     Against a shipped scene it names all; for a user's own scene, some fields that it has.
     """
-    name, scene, full_id = files.manifest.id, files.scene, dataset_id(files.scene)
+    name = files.manifest.id
+    scene = files.scene
+    full_id = dataset_id(scene)
     if name == full_id or shipped_scene(scene) is not scene:
         return name == full_id
     # of a user's own scene the fields before the changes are not known
