@@ -237,9 +237,9 @@ def _generate_dataset(options: _GenerateOptions) -> None:
     """
     from ..dataset.write import check_target, write
 
+    making = options.making
     folder = options.folder
     check_target(folder)
-    making = options.making
     solution = _solved(options, making)
     with stoppable("nothing half was written"):
         write(solution, folder, options.dataset_name, tables=making.tables)
