@@ -140,7 +140,7 @@ def generate_all(
     Raises:
         InputError: a wrong option, or a folder that cannot be written.
         typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were
-        out of reach.
+            out of reach.
     """
     check_workers(workers, cluster)
     if cluster is not None:

@@ -218,13 +218,16 @@ class _Moments:
         return [Fraction(part) * largest * _SLACK for part in total]
 
     def _in_doubles(self, quantity: _Quantity, columns: list[Array], k: Constants) -> Array:
-        """Return a quantity of states in doubles; z and vz are as they follow, where they do."""
+        """Return a quantity of states in doubles, with z and vz from the other columns.
+
+        Where these do not determine them well (`_deep`, `_follows`), they are as given.
+        """
         x, y, z, vx, vy, vz = columns
         depth = _depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0)))
         z = np.where(self._deep, depth, z)
         vertical = _vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy)
         vz = np.where(self._follows, vertical, vz)
-        # a quantity that does not depend on the state is a single number, and z gives it the shape
+        # the last term gives a constant quantity the shape of the columns
         return np.asarray(quantity(*_over_length([x, y, z, vx, vy, vz], k), k) + 0.0 * z)
 
     @property
