@@ -1,4 +1,4 @@
-"""The command `foucault`: the commands of `reference` (compute datasets) and `compare` (judge results) in one."""
+"""The command `foucault`: those of `reference` (compute) and `compare` (judge) in one."""
 
 from __future__ import annotations
 
@@ -9,26 +9,27 @@ import re
 import signal
 import sys
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 if TYPE_CHECKING:
     import typer
 
 # a fault of this program, EX_SOFTWARE of sysexits.h; 1 would be a verdict, 2 the user's mistake
 UNFORESEEN = 70
-INTERRUPTED = 130
-STOPPED = "stopped"  # of a command that says no more of what became of its work
+_INTERRUPTED = 130
+_STOPPED = "stopped"  # of a command that does not say what became of its work
 UNREAD = 141  # the reader of the output is gone, as after SIGPIPE
 GROUPS = {
     "Solve and judge": ("scenes", "show", "generate", "verify", "score", "plot", "atlas"),
     "Compare many": ("methods", "study", "stability", "sweep"),
     "The source papers": ("paper", "pend"),
 }
-SELDOM = 100_000  # objects made between two searches for garbage: imports make many, and leave none
+# objects made between two searches for garbage: imports make many, and leave none
+SELDOM = 100_000
 
 
 def commands() -> typer.Typer:
-    """Return the command line; all imports are here, so that an interruption finds `main` at work."""
+    """Return the command line; all imports are here, so that Ctrl-C finds `main` at work."""
     import typer
     from typer.core import TyperGroup
 
@@ -41,22 +42,22 @@ def commands() -> typer.Typer:
         def format_commands(self, ctx: Any, formatter: Any) -> None:
             """Write a list of commands for each group, with the first line of their help."""
             for heading, names in GROUPS.items():
+                rows = []
+                for name in names:
+                    first_line, _, _ = (self.commands[name].help or "").partition("\n")
+                    rows.append((name, first_line))
                 with formatter.section(heading):
-                    helps = {name: self.commands[name].help or "" for name in names}
-                    formatter.write_dl(
-                        [(name, text.partition("\n")[0]) for name, text in helps.items()]
-                    )
+                    formatter.write_dl(rows)
 
         def invoke(self, ctx: Any) -> Any:
-            """Run a command; a number that is none is told in plain words."""
+            """Run a command; the message on a malformed number is in plain words."""
             try:
                 return super().invoke(ctx)
             except typer.BadParameter as error:
-                told = re.match("Input should be a valid (number|integer)", error.message)
-                if told:
-                    error.message = (
-                        f"expected a {'whole ' * (told[1] == 'integer')}number, without a unit"
-                    )
+                malformed = re.match("Input should be a valid (number|integer)", error.message)
+                if malformed:
+                    number = "whole number" if malformed[1] == "integer" else "number"
+                    error.message = f"expected a {number}, without a unit"
                 raise
             except EOFError as error:  # typer takes it for a user's Ctrl-D: "Aborted!", status 1
                 raise RuntimeError("a file or a pipe ended too early") from error
@@ -108,36 +109,44 @@ def _version(wanted: bool) -> None:
 
 
 def main() -> None:
-    """Run the command line; a mistake, a full disk or an interruption ends with a message and its exit status.
-
-    So does an error that nobody foresaw.
-    """
+    """Run the command line; every error ends with a message and its exit status."""
     gc.set_threshold(SELDOM)
     _open_closed_streams()
     # numpy's matrices are small here: more threads only wait
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
-        ended = _run()
+        end = _run()
     except KeyboardInterrupt:
-        ended = INTERRUPTED, STOPPED, True
+        end = _End(_INTERRUPTED, _STOPPED, interrupted=True)
     except Exception as error:
-        ended = UNFORESEEN, _report(error), False
-    # here no exception is left, which would keep what a signal has interrupted from being cleared away
-    if ended:
-        _end(*ended)
+        end = _End(UNFORESEEN, _report(error))
+    # here no exception is left: it would keep alive what a signal has interrupted
+    if end:
+        _exit(end)
+
+
+class _End(NamedTuple):
+    """How a command ended: its exit status, a message, and whether it was interrupted."""
+
+    status: str | int | None
+    message: str = ""
+    interrupted: bool = False
 
 
 def _open_closed_streams() -> None:
-    """Have what is written to a stream that a shell has closed, as by 2>&-, go nowhere; Python leaves it None."""
+    """Discard what is written to a stream that a shell has closed, as by 2>&-.
+
+    Python leaves such a stream None.
+    """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
 
 
-def _run() -> tuple[str | int | None, str, bool] | None:
-    """Run a command; return how it ended, as `_end` takes it, or None where it simply did."""
-    from reference.errors import FoucaultError, Stopped
-    from reference.plain_text import plain_lines, plain_output
+def _run() -> _End | None:
+    """Run a command; return how it ended, None if it ended without an exit status of its own."""
+    from reference.errors import Stopped
+    from reference.plain_text import plain_output
     from reference.system.interruption import terminable
 
     signals: list[int] = []
@@ -148,28 +157,38 @@ def _run() -> tuple[str | int | None, str, bool] | None:
             finally:
                 sys.stdout.flush()
     except SystemExit as end:
-        unread = isinstance(end.__context__, BrokenPipeError)
-        status = UNREAD if unread else end.code
-        stopped = signals or status == INTERRUPTED
-        return status, STOPPED if stopped else "", bool(signals)
+        status = end.code
+        if isinstance(end.__context__, BrokenPipeError):
+            status = UNREAD
+        stopped = signals or status == _INTERRUPTED
+        return _End(status, _STOPPED if stopped else "", interrupted=bool(signals))
     except Stopped as stopped:
-        return stopped.exit_status, str(stopped), bool(signals)
+        return _End(stopped.exit_status, str(stopped), interrupted=bool(signals))
     except Exception as error:
         if signals:  # what followed from the interruption is no mistake of the user's
-            return 128 + signals[0], STOPPED, True
-        if isinstance(error, FoucaultError):
-            return error.exit_status, str(error), False
-        if not isinstance(error, OSError):
-            raise
-        _flush_output()
-        if isinstance(error, BrokenPipeError):
-            return UNREAD, "", False
-        return 2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"), False
+            return _End(128 + signals[0], _STOPPED, interrupted=True)
+        return _end_of(error)
     return None
 
 
+def _end_of(error: Exception) -> _End:
+    """Return how a command ends by an error that is foreseen; raise any other again."""
+    from reference.errors import FoucaultError
+    from reference.plain_text import plain_lines
+
+    if isinstance(error, FoucaultError):
+        return _End(error.exit_status, str(error))
+    if not isinstance(error, OSError):
+        raise error
+    _flush_output()
+    if isinstance(error, BrokenPipeError):
+        return _End(UNREAD)
+    place = error.filename or "output"
+    return _End(2, plain_lines(f"{place}: {error.strerror or error}"))
+
+
 def _report(error: Exception) -> str:
-    """Return what a user is to do about an error that nobody foresaw, and what a maintainer needs, its traceback."""
+    """Return what a user should do about an unforeseen error, and its traceback."""
     import traceback
 
     from reference.plain_text import plain_lines
@@ -179,22 +198,22 @@ def _report(error: Exception) -> str:
     return plain_lines(f"This is a fault of foucault, not yours. {asked}\n{lines}")
 
 
-def _end(status: str | int | None, message: str, interrupted: bool) -> NoReturn:
-    """End with a message and an exit status; an interrupted run waits for no thread that is still at work."""
+def _exit(end: _End) -> NoReturn:
+    """End with a message and an exit status; an interrupted run waits for no thread."""
     # from here on Ctrl-C would only show the innards of Python's own end
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if message:
+    if end.message:
         with suppress(OSError):  # nobody reads it; the exit status stays
-            print(f"foucault: {message}", file=sys.stderr)
-    if interrupted and isinstance(status, int):
+            print(f"foucault: {end.message}", file=sys.stderr)
+    if end.interrupted and isinstance(end.status, int):
         _flush_output()
         atexit._run_exitfuncs()
-        os._exit(status)
-    raise SystemExit(status) from None
+        os._exit(end.status)
+    raise SystemExit(end.status) from None
 
 
 def _flush_output() -> None:
-    """Write out what waits for stdout; drop what cannot be written, which Python would try again when it ends."""
+    """Flush stdout; drop what cannot be written, which Python would try again at its end."""
     try:
         sys.stdout.flush()
     except OSError:

@@ -1,4 +1,4 @@
-"""Messages to users: the exceptions of this project, each with an exit status, and names near a wrong one."""
+"""Messages to users: exceptions, each with an exit status, and the names near a wrong one."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 from .plain_text import plain, plain_lines, shortened
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
-MOST = 5  # names in a message at most
+_MOST = 5  # names in a message at most
 # of difflib, from 0 to 1: names that are as alike as this leave no room for others
-VERY_ALIKE = 0.8
-MOST_WHOLE = 2**62  # of a number that is counted: what libraries in C take
-LEAST_PART = 3  # characters of a word that is looked for inside the names as well
+_VERY_ALIKE = 0.8
+_MOST_WHOLE = 2**62  # of a number that is counted: what libraries in C take
+_LEAST_PART = 3  # characters of a word that is looked for inside the names as well
 
 
 class FoucaultError(Exception):
@@ -34,13 +34,16 @@ class InputError(FoucaultError):
     exit_status = 2
 
     def __init__(self, field: str, got: object, expected: str, advice: str = "") -> None:
-        self.field, self.got, self.expected, self.advice = field, got, expected, advice
+        self.field = field
+        self.got = got
+        self.expected = expected
+        self.advice = advice
         text = f"{plain(field)}: got {_shown(got)!r}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
 
 
 class NotInstalledError(InputError):
-    """A package is missing: the field that asks for it, what needs it, and the extra that installs it."""
+    """A package is missing: the field that needs it, its purpose, the extra that installs it."""
 
     def __init__(
         self, field: str, purpose: str, package: str, extra: str, instead: str = ""
@@ -48,18 +51,15 @@ class NotInstalledError(InputError):
         expected = f"the package {package}"
         advice = f"Install it with pip install 'foucault-reference[{extra}]'{instead}."
         super().__init__(field, "not installed", expected, advice)
-        self.args = (
-            plain_lines(
-                f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"
-            ),
-        )
+        text = f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"
+        self.args = (plain_lines(text),)
 
 
 @contextmanager
 def usable(
     field: str, path: Path, expected: str = "a folder that can be written to"
 ) -> Iterator[None]:
-    """Make an InputError of what the disk refuses; `field` is the option or variable that names the path."""
+    """Turn an OSError into an InputError; `field` is the option or variable that names the path."""
     try:
         yield
     except OSError as error:
@@ -67,7 +67,7 @@ def usable(
 
 
 def checked_path(field: str, path: object, expected: str, advice: str = "") -> Path:
-    """Return a path that a caller gave; anything but text or a path is an InputError, whose arguments these are."""
+    """Return a path that a caller gave; anything but text or a path is an InputError."""
     if not isinstance(path, str | PathLike):
         raise InputError(field, path, expected, advice)
     return Path(path)
@@ -76,22 +76,24 @@ def checked_path(field: str, path: object, expected: str, advice: str = "") -> P
 def check_whole(
     field: str, number: object, least: int = 1, words: str = "a whole number from 1"
 ) -> None:
-    """Raise InputError for what is no whole number from `least` on; `words` say what was expected."""
-    if (
-        not isinstance(number, Integral)
-        or isinstance(number, bool)
-        or not least <= int(number) <= MOST_WHOLE
-    ):
+    """Raise InputError unless a number is whole and at least `least`, as `words` say."""
+    if not _is_whole(number, least):
         raise InputError(field, number, words)
 
 
+def _is_whole(number: object, least: int) -> bool:
+    """Return whether a number is whole, at least `least`, and small enough for libraries in C."""
+    if not isinstance(number, Integral) or isinstance(number, bool):
+        return False
+    return least <= int(number) <= _MOST_WHOLE
+
+
 def all_of(mistakes: Sequence[InputError]) -> InputError:
-    """Return the first of some mistakes; where there are several, its text tells all of them, one a line."""
+    """Return the first of some mistakes; its text lists all of them, one a line."""
     first = mistakes[0]
     if len(mistakes) > 1:
-        first.args = (
-            plain_lines("\n  ".join((f"{len(mistakes)} mistakes:", *map(str, mistakes)))),
-        )
+        lines = [f"{len(mistakes)} mistakes:", *map(str, mistakes)]
+        first.args = (plain_lines("\n  ".join(lines)),)
     return first
 
 
@@ -99,10 +101,8 @@ def _shown(value: object) -> str:
     """Return the beginning of a value as text."""
     try:
         text = value if isinstance(value, str) else repr(value)
-    except (
-        ValueError,
-        RecursionError,
-    ):  # an integer of more than 4300 digits, or lists in lists without end
+    # an integer of more than 4300 digits, or lists in lists without end
+    except (ValueError, RecursionError):
         text = f"too large a value to print, {type(value).__name__}"
     return shortened(text, LONGEST_VALUE)
 
@@ -113,7 +113,8 @@ class UnreachableError(FoucaultError):
     exit_status = 3
 
     def __init__(self, reason: str, advice: str = "") -> None:
-        self.reason, self.advice = reason, advice
+        self.reason = reason
+        self.advice = advice
         super().__init__(f"{reason} {advice}".rstrip())
 
 
@@ -122,7 +123,7 @@ class IntegrationError(UnreachableError):
 
 
 class BeyondDoublesError(UnreachableError):
-    """A number of a scene is too large for what is computed in binary64, such as steps and sizes."""
+    """A number of a scene is too large for computations in binary64, such as steps and sizes."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -134,7 +135,8 @@ class DatasetError(FoucaultError):
     """A golden dataset is damaged or contradicts itself; `problems` lists how."""
 
     def __init__(self, path: str, problems: list[str]) -> None:
-        self.path, self.problems = path, problems
+        self.path = path
+        self.problems = problems
         super().__init__(f"{path}: " + "; ".join(problems))
 
 
@@ -148,32 +150,49 @@ class Stopped(FoucaultError):
 
 
 def nearest(word: object, known: Iterable[str]) -> list[str]:
-    """Return at most five names: a word's own or what it shortens (site.g), very like it, containing it, or like it."""
+    """Return at most five names like a word.
+
+    The first kind that exists: the word itself, names that it shortens (site.g), very similar
+    names, names that contain it, similar names.
+    """
     names = {name.lower(): name for name in known}
     typed = str(word).lower()  # callers in Python give anything
-    section, _, key = typed.rpartition(".")
-    short = [name for name in names if key and name.startswith(section) and f".{key}" in name]
-    for alike in (
-        [typed] if typed in names else short,
-        get_close_matches(typed, names, n=MOST, cutoff=VERY_ALIKE),
-    ):
-        if alike:
-            return [names[name] for name in alike[:MOST]]
-    containing = sorted(
-        (name for name in names if len(typed) >= LEAST_PART and typed in name), key=len
+    if typed in names:
+        return [names[typed]]
+    matches = (
+        _shortened_by(typed, names)
+        or get_close_matches(typed, names, n=_MOST, cutoff=_VERY_ALIKE)
+        or _containing(typed, names)
+        or get_close_matches(typed, names, n=_MOST)
     )
-    return [names[name] for name in (containing or get_close_matches(typed, names, n=MOST))][:MOST]
+    return [names[name] for name in matches[:_MOST]]
+
+
+def _shortened_by(typed: str, names: Iterable[str]) -> list[str]:
+    """Return the names in the section of a word whose key begins with the word's, as in site.g."""
+    section, _, key = typed.rpartition(".")
+    if not key:
+        return []
+    return [name for name in names if name.startswith(section) and f".{key}" in name]
+
+
+def _containing(typed: str, names: Iterable[str]) -> list[str]:
+    """Return the names that contain a word, the shortest first."""
+    if len(typed) < _LEAST_PART:
+        return []
+    return sorted((name for name in names if typed in name), key=len)
 
 
 def did_you_mean(word: object, known: Iterable[str], otherwise: str) -> str:
-    """Return the question whether one of the nearest names was meant; `otherwise` if no name is near."""
+    """Return the question if one of the nearest names was meant; `otherwise` if none is near."""
     names = nearest(word, known)
     return f"Did you mean {in_words(names)}?" if names else otherwise
 
 
 def in_words(names: Sequence[str]) -> str:
     """Return names as a phrase: a, b or c."""
-    return " or ".join(part for part in (", ".join(names[:-1]), names[-1]) if part)
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def counted(count: int, word: str) -> str:
@@ -184,7 +203,7 @@ def counted(count: int, word: str) -> str:
 def unknown(
     field: str, word: object, expected: str, known: Iterable[str], otherwise: str
 ) -> InputError:
-    """Return the error for a word that is none of the known ones.
+    """Return the error for an unknown word.
 
     Args:
         field: what the word was given for.
@@ -197,12 +216,11 @@ def unknown(
 
 
 def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
-    """Return the error for an unknown attribute, which says what there is, the nearest names first."""
+    """Return the error for an unknown attribute; it lists the names, the nearest first."""
     text = f"{owner} has no attribute {name!r}"
     if name.startswith("_"):  # Python itself asks for such names, and wants no advice
         return AttributeError(text)
     every = sorted(names)
     near = nearest(name, every)
-    return AttributeError(
-        f"{text}; it has {', '.join([*near, *(other for other in every if other not in near)])}"
-    )
+    others = [known for known in every if known not in near]
+    return AttributeError(f"{text}; it has {', '.join([*near, *others])}")

@@ -1,8 +1,8 @@
-r"""Text as terminals and JSON can take it: control characters written out, NaN and infinity as null.
+r"""Text for terminals and JSON: control characters written out, NaN and infinity as null.
 
-Titles, file names and what programs print come from strangers; an escape sequence among them could rewrite a verdict
-on the screen. So control characters are written out, as in \\x1b, and never obeyed: in messages, in documents, and in
-all that a command prints.
+Titles, file names and the output of programs come from strangers; an escape sequence among them
+could rewrite a verdict on the screen. So control characters are written out, as in \\x1b, and never
+obeyed: in messages, in documents, and in all that a command prints.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO, cast
 
-# controls, invisible and direction-changing characters, separators of lines, bytes that are not UTF-8 (surrogates),
-# and the last two, which XML forbids
+# controls, invisible and direction-changing characters, separators of lines, bytes that are not
+# UTF-8 (surrogates), and the last two, which XML forbids
 _UNSAFE = (
     r"\x00-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff"
     r"\ufffe\uffff\U000e0000-\U000e007f"
@@ -41,7 +41,10 @@ def plain_lines(text: str) -> str:
 
 
 def plain_json(document: Any) -> str:
-    """Return a document as JSON, control characters as JSON writes them; NaN and infinity, which it lacks, as null."""
+    """Return a document as JSON, with its escapes for control characters.
+
+    NaN and infinity, which JSON lacks, are null.
+    """
     text = json.dumps(finite(document), indent=1, ensure_ascii=False, allow_nan=False)
     return _CONTROL_BUT_LINES.sub(lambda match: json.dumps(match[0])[1:-1], text)
 
@@ -56,6 +59,7 @@ def finite(value: Any) -> Any:
 
 
 def _written_out(match: re.Match[str]) -> str:
+    """Return a control character as an escape sequence of Python."""
     code = ord(match[0])
     if 0xDC80 <= code <= 0xDCFF:  # how Python holds a byte that is not UTF-8
         return f"\\x{code - 0xDC00:02x}"
@@ -68,7 +72,7 @@ def shortened(text: str, most: int) -> str:
 
 
 class PlainStream:
-    """A stream of text that writes control characters out, and characters that its encoding lacks."""
+    """A stream of text that writes out control characters, and those that its encoding lacks."""
 
     encoding = "utf-8"  # every text can be written
 
@@ -107,5 +111,5 @@ def plain_output() -> Iterator[None]:
 
 
 def terminal_of(stream: TextIO) -> TextIO:
-    """Return the stream behind a `PlainStream`, for those who write their own escape sequences, such as bars."""
+    """Return the stream behind a `PlainStream`, for bars, which write escape sequences."""
     return cast("TextIO", getattr(stream, "_stream", stream))

@@ -1,4 +1,4 @@
-"""The outcome of one run among many, in studies and sweeps: a word, its meaning, and what to do about it."""
+"""The outcome of one run among many: a word, its meaning, and what to do about it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands that compute datasets: scenes, show, generate, verify. Results go to stdout, progress to stderr."""
+"""Commands that compute datasets: scenes, show, generate, verify; progress goes to stderr."""
 
 from __future__ import annotations
 

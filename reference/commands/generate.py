@@ -1,8 +1,9 @@
-"""`foucault generate`: solve a scene and write its golden dataset, or make every dataset that ships."""
+"""`foucault generate`: solve a scene and write its dataset, or make every one that ships."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,6 +14,7 @@ from ..errors import InputError, counted, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
+from .options import Conflict, as_command, refuse_conflicts
 from .progress import progress
 from .terminal import (
     BESIDE_RANGES,
@@ -35,208 +37,305 @@ from .terminal import (
 )
 
 if TYPE_CHECKING:
+    from ..dataset.making import Making
     from ..scenes.scene import Scene
+    from ..solver.ranges import Ranges
+    from ..solver.solution import Solution
 
-ENGINES = (AUTO, *engine_names())
+_ENGINES = (AUTO, *engine_names())
 
-
-SCENE = scene_argument(value="[SCENE]")
-OUT = option(
+_SCENE = scene_argument(value="[SCENE]")
+_OUT = option(
     "--out",
     "Write to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
     "DIR",
 )
-DIGITS = option("--digits", "Digits of the largest number in a column (default: the scene's).", "D")
-LEVEL = option(
+_DIGITS = option(
+    "--digits", "Digits of the largest number in a column (default: the scene's).", "D"
+)
+_LEVEL = option(
     "--level",
     f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
     "L",
     completion(lambda: LEVELS),
 )
-ENGINE = option(
+_ENGINE = option(
     "--engine",
     f"Integrate with {in_words(engine_names())}; auto: the fastest, or what made the dataset that ships.",
     "E",
-    completion(lambda: ENGINES),
+    completion(lambda: _ENGINES),
 )
-NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
-AUDIT = option(
+_NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
+_AUDIT = option(
     "--audit/--no-audit", "Prove it again by FLINT alone: the same digits (default: --audit)."
 )
-CONFIRM = option(
+_CONFIRM = option(
     "--confirm",
     f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
     "(default: sampled; of what ships, the whole).",
     "C",
     completion(lambda: CONFIRMATIONS),
 )
-NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
-FUNCTION = option(
+_NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
+_FUNCTION = option(
     "--function/--no-function",
     "Make the golden function, the motion at any time, of a proof (default: but for what ships without it).",
 )
-NO_TABLES = option("--no-tables", "Write the golden function alone.")
-ALL = option("--all", "Make all that ship and are missing or not sealed.")
+_NO_TABLES = option("--no-tables", "Write the golden function alone.")
+_ALL = option("--all", "Make all that ship and are missing or not sealed.")
 
 
-def command(
-    scene_word: Annotated[str | None, SCENE] = None,
-    out: Annotated[Path | None, OUT] = None,
-    t_end: EndTime = None,
-    digits: Annotated[str | None, DIGITS] = None,
-    level: Annotated[str | None, LEVEL] = None,
-    engine: Annotated[str, ENGINE] = AUTO,
-    no_transits: Annotated[bool, NO_TRANSITS] = False,
-    section: Sections = None,
-    audit: Annotated[bool | None, AUDIT] = None,
-    confirm: Annotated[str | None, CONFIRM] = None,
-    no_confirm: Annotated[bool, NO_CONFIRM] = False,
-    function: Annotated[bool | None, FUNCTION] = None,
-    no_tables: Annotated[bool, NO_TABLES] = False,
-    set_: Assignments = None,
-    uncertain: Uncertain = None,
-    every: Annotated[bool, ALL] = False,
-    workers: Workers = None,
-    cluster: Cluster = None,
-    as_json: AsJson = False,
-) -> None:
+@dataclass(frozen=True)
+class _GenerateOptions:
+    """The options of `foucault generate`, and scene, folder and making that follow from them."""
+
+    scene_word: Annotated[str | None, _SCENE] = None
+    out: Annotated[Path | None, _OUT] = None
+    t_end: EndTime = None
+    digits: Annotated[str | None, _DIGITS] = None
+    level: Annotated[str | None, _LEVEL] = None
+    engine: Annotated[str, _ENGINE] = AUTO
+    no_transits: Annotated[bool, _NO_TRANSITS] = False
+    section: Sections = None
+    audit: Annotated[bool | None, _AUDIT] = None
+    confirm: Annotated[str | None, _CONFIRM] = None
+    no_confirm: Annotated[bool, _NO_CONFIRM] = False
+    function: Annotated[bool | None, _FUNCTION] = None
+    no_tables: Annotated[bool, _NO_TABLES] = False
+    set_: Assignments = None
+    uncertain: Uncertain = None
+    every: Annotated[bool, _ALL] = False
+    workers: Workers = None
+    cluster: Cluster = None
+    as_json: AsJson = False
+
+    @property
+    def replaced(self) -> list[str]:
+        """The fields of the scene that are replaced, by --set and by options of their own."""
+        if self.level:
+            chosen("--level", self.level, LEVELS)
+        fields = {
+            "--t-end": ("run.t_end", self.t_end),
+            "--digits": ("run.digits", self.digits),
+            "--level": ("run.level", self.level),
+            "--no-transits": ("run.transits", "false" if self.no_transits else None),
+            "--section": ("run.sections", ",".join(self.section) if self.section else None),
+        }
+        return replacements(self.set_, fields)
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene to solve, its fields replaced."""
+        if self.scene_word is None:
+            raise InputError(
+                "SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them."
+            )
+        return load_scene(self.scene_word, self.replaced)
+
+    @cached_property
+    def widths(self) -> dict[str, str] | None:
+        """The half-widths of uncertain inputs, by name; None if all inputs are exact."""
+        return widths_by_name(self.uncertain, self.scene)
+
+    @property
+    def dataset_name(self) -> str:
+        """The id of the scene's dataset, which names the fields that were replaced."""
+        from ..dataset.place import dataset_id
+
+        if self.scene_word in scene_ids():
+            return dataset_id(self.scene)
+        return dataset_id(self.scene, load_scene(str(self.scene_word)))
+
+    @cached_property
+    def folder(self) -> Path:
+        """The folder that the scene's dataset is written to."""
+        from ..dataset.place import default_folder
+
+        return self.out or default_folder(self.scene, self.dataset_name)
+
+    @property
+    def making(self) -> Making:
+        """How the dataset is made: by default (`making_of`), but for what an option chooses."""
+        from ..dataset.making import making_of
+
+        if self.confirm is not None:
+            chosen("--confirm", self.confirm, CONFIRMATIONS)
+        choices: dict[str, Any] = {
+            "engine": None if self.engine == AUTO else self.engine,
+            "audit": self.audit,
+            "confirm": "none" if self.no_confirm else self.confirm,
+            "function": self.function,
+        }
+        choices = {name: value for name, value in choices.items() if value is not None}
+        usual = making_of(self.scene, self.dataset_name, self.folder)
+        making = replace(usual, **choices, tables=usual.tables and not self.no_tables)
+
+        # the index, too, may leave the tables out
+        if not (making.tables or making.function):
+            refuse({"--no-tables": True}, "without --function")
+        return making
+
+
+_OF_A_PROOF = "--audit --no-audit --confirm --no-confirm --function --no-function --no-tables"
+# in this order: the scene is read where a case first depends on it
+_CONFLICTS = (
+    Conflict(
+        f"SCENE --no-transits {_OF_A_PROOF} --set --section --uncertain",
+        "with --all",
+        lambda options: options.every,
+    ),
+    Conflict("--engine", "with --all", lambda options: options.every and options.engine != AUTO),
+    Conflict("--workers --cluster", "without --all", lambda options: not options.every),
+    Conflict(
+        f"--digits {_OF_A_PROOF}",
+        BESIDE_RANGES,
+        lambda options: not options.every and options.widths,
+    ),
+    Conflict(
+        _OF_A_PROOF,
+        "without --level enclosed",
+        lambda options: not options.every and options.scene.run.level != "enclosed",
+    ),
+    Conflict("--confirm", "with --no-confirm", lambda options: options.no_confirm),
+)
+
+
+def _generate(options: _GenerateOptions) -> None:
     """Solve a scene and write its golden dataset.
 
     Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
     for every value of these inputs.
     foucault generate --all --workers 2 makes all that ship, into --out.
     """
-    options = {
-        "--t-end": ("run.t_end", t_end),
-        "--digits": ("run.digits", digits),
-        "--level": ("run.level", level and chosen("--level", level, LEVELS)),
-        "--no-transits": ("run.transits", "false" if no_transits else None),
-        "--section": ("run.sections", ",".join(section) if section else None),
-    }
-    proving: dict[str, object] = {
-        "--audit": audit,
-        "--no-audit": audit is False,
-        "--confirm": confirm,
-    }
-    proving |= {
-        "--no-confirm": no_confirm,
-        "--function": function,
-        "--no-function": function is False,
-    }
-    proving["--no-tables"] = no_tables
-    named_engine = None if engine == AUTO else engine
-    if every:
-        unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {
-            "--set": set_,
-            "--section": section,
-            "--uncertain": uncertain,
-            "--engine": named_engine,
-        }
-        refuse(unused, "with --all")
-        from .generate_all import generate_all
+    refuse_conflicts(options, _CONFLICTS)
+    if options.every:
+        _generate_all(options)
+        return
+    chosen("--engine", options.engine, _ENGINES)
+    if options.widths:
+        _generate_ranges(options, options.widths)
+    else:
+        _generate_dataset(options)
 
-        generate_all(replacements(None, options), out, workers, cluster, as_json)
-        return
-    refuse({"--workers": workers, "--cluster": cluster}, "without --all")
-    if scene_word is None:
-        raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
-    chosen("--engine", engine, ENGINES)
-    scene = load_scene(scene_word, replacements(set_, options))
-    if widths := widths_by_name(uncertain, scene):
-        refuse({"--digits": digits, **proving}, BESIDE_RANGES)
-        if level not in (None, "enclosed"):
-            raise InputError(
-                "--level",
-                level,
-                "enclosed, together with uncertain inputs",
-                "Ranges are always proved.",
-            )
-        _generate_ranges(scene, widths, engine, out, as_json)
-        return
-    from ..dataset.making import making_of
-    from ..dataset.place import dataset_id, default_folder
-    from ..dataset.write import check_target, summary, write
+
+command = as_command(_GenerateOptions, _generate)
+
+
+def _generate_all(options: _GenerateOptions) -> None:
+    """Make every dataset that ships and is missing or not sealed."""
+    from .generate_all import generate_all
+
+    generate_all(options.replaced, options.out, options.workers, options.cluster, options.as_json)
+
+
+def _generate_dataset(options: _GenerateOptions) -> None:
+    """Solve a scene, write its dataset, and print what was written.
+
+    Raises:
+        InputError: an option, or the folder.
+        UnreachableError: the scene cannot be solved as asked; nothing is written.
+    """
+    from ..dataset.write import check_target, write
+
+    making = options.making
+    folder = options.folder
+    check_target(folder)
+    solution = _solved(options, making)
+    with stoppable("nothing half was written"):
+        write(solution, folder, options.dataset_name, tables=making.tables)
+    _print_dataset(solution, folder, options.as_json)
+
+
+def _solved(options: _GenerateOptions, making: Making) -> Solution:
+    """Return the solution of a scene in the way in which its dataset is made.
+
+    Raises:
+        InputError: --engine names an engine without the number type that suffices.
+        UnreachableError: the scene cannot be solved as asked.
+    """
     from ..solver.solve import solve
 
-    name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
-    folder = out or default_folder(scene, name)
-    check_target(folder)
-    if scene.run.level != "enclosed":
-        refuse(proving, "without --level enclosed")
-    if no_confirm:
-        refuse({"--confirm": confirm}, "with --no-confirm")
-    # what ships as the index says; else by the fastest engine, with a function, a tenth of it confirmed
-    usual = making_of(scene, name, folder)
-    if confirm is not None:
-        chosen("--confirm", confirm, CONFIRMATIONS)
-    confirm = "none" if no_confirm else confirm
-    choices: dict[str, Any] = {
-        "engine": named_engine,
-        "audit": audit,
-        "confirm": confirm,
-        "function": function,
-    }
-    choices = {name: value for name, value in choices.items() if value is not None}
-    making = replace(usual, **choices, tables=usual.tables and not no_tables)
-    if not (making.tables or making.function):
-        refuse({"--no-tables": True}, "without --function")
+    scene = options.scene
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         solution = solve(scene, **making.solve_options(scene), report=report)
-    if engine not in (AUTO, solution.run.engine):
-        advice = f"So few digits need only {solution.run.number}, which {engine} does not have."
-        raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", advice)
-    with stoppable("nothing half was written"):
-        write(solution, folder, name, tables=making.tables)
-    measured, run = summary(solution, folder), solution.run
+    run = solution.run
+    if options.engine not in (AUTO, run.engine):
+        advice = f"So few digits need only {run.number}, which {options.engine} does not have."
+        raise InputError("--engine", options.engine, f"{AUTO} or {run.engine}", advice)
+    return solution
+
+
+def _print_dataset(solution: Solution, folder: Path, as_json: bool) -> None:
+    """Print what was written: rows, digits, level, bound, run and CPU time."""
+    from ..dataset.write import summary
+
+    measured = summary(solution, folder)
     if as_json:
         emit(measured)
         return
+
+    times = counted(len(solution.times), "grid time")
+    rows = f"{times}, {counted(measured['transits'], 'transit')}"
+    if measured["possible"]:
+        rows += f", {measured['possible']} undecided"
     confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
-    rows = (
-        f"{counted(len(solution.times), 'grid time')}, {counted(measured['transits'], 'transit')}"
-    )
-    rows += f", {measured['possible']} undecided" if measured["possible"] else ""
-    typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}{confirmed}")
+    digits = solution.scene.run.digits
+    typer.echo(f"{folder}: {rows}, {digits} digits, {solution.level}{confirmed}")
+
     if solution.not_checked:
         unseen = "The proof finds all transits; no run with event detection confirms them"
         typer.echo(f"{unseen}: {solution.not_checked}", err=True)
-    typer.echo(
-        f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps"
-    )
-    parts = {
-        "run": run.cpu_s,
+    run = solution.run
+    how = f"{run.formulation}, {run.number}, {run.steps} steps"
+    typer.echo(f"every position within {measured['bound_m']} m; {how}")
+    typer.echo(f"CPU {solution.cpu_s:.2f} s: {_cpu_times(solution)}")
+
+
+def _cpu_times(solution: Solution) -> str:
+    """Return the CPU seconds of each part of a solution that took any."""
+    seconds_by_part = {
+        "run": solution.run.cpu_s,
         "checks": solution.check_s,
         "pilot": solution.pilot_s,
         "discarded": solution.discarded_s,
     }
-    told = ", ".join(f"{name} {seconds:.2f}" for name, seconds in parts.items() if seconds)
-    typer.echo(f"CPU {solution.cpu_s:.2f} s: {told}")
+    return ", ".join(
+        f"{name} {seconds:.2f}" for name, seconds in seconds_by_part.items() if seconds
+    )
 
 
-def _generate_ranges(
-    scene: Scene, widths: dict[str, str], engine: str, out: Path | None, as_json: bool
-) -> None:
-    """Prove intervals for uncertain inputs and write them.
+def _generate_ranges(options: _GenerateOptions, widths: dict[str, str]) -> None:
+    """Prove intervals for uncertain inputs, write them, and print what was written.
 
     Raises:
-        InputError: an input, a width, or the folder.
+        InputError: an input, a width, the level, or the folder.
         UnreachableError: the box is too wide; nothing is written.
     """
     from ..dataset.place import GOLDEN, RANGES
-    from ..dataset.ranges import period_texts, ranges_id, write_ranges
+    from ..dataset.ranges import ranges_id, write_ranges
     from ..dataset.write import check_target
     from ..solver.uncertain import prove_ranges
 
-    if out is not None:
-        check_target(out, RANGES)
+    if options.level not in (None, "enclosed"):
+        expected = "enclosed, together with uncertain inputs"
+        raise InputError("--level", options.level, expected, "Ranges are always proved.")
+    if options.out is not None:
+        check_target(options.out, RANGES)
+    scene = options.scene
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        ranges = prove_ranges(scene, widths, engine=engine, report=report)
-    folder = out or Path(GOLDEN, ranges_id(ranges))
+        ranges = prove_ranges(scene, widths, engine=options.engine, report=report)
+    folder = options.out or Path(GOLDEN, ranges_id(ranges))
     with stoppable("nothing half was written"):
         write_ranges(ranges, folder)
+    _print_ranges(ranges, folder, options.as_json)
+
+
+def _print_ranges(ranges: Ranges, folder: Path, as_json: bool) -> None:
+    """Print what was written: rows, the box, undecided intervals, passages, period and CPU time."""
+    from ..dataset.ranges import period_texts, ranges_id
+
     counts = {
         "grid": len(ranges.times),
         "transits": len(ranges.transits),
@@ -246,15 +345,17 @@ def _generate_ranges(
     if as_json:
         emit({"dataset": ranges_id(ranges), "out": str(folder), "period_s": period, **counts})
         return
+
     box = ", ".join(f"{name} ±{width}" for name, width in ranges.uncertain.items())
     rows = f"{counted(counts['grid'], 'grid time')}, {counted(counts['transits'], 'transit')}"
     typer.echo(f"{folder}: {rows}, for every {box}: enclosed")
     if ranges.possible:
         typer.echo(f"intervals that may hold more transits: {counts['possible']}")
     for word, passages in ranges.sections.items():
-        undecided = (
-            f", intervals that are left open: {len(passages.possible)}" if passages.possible else ""
-        )
-        typer.echo(f"passages of {word}: {len(passages.table)}{undecided}")
+        line = f"passages of {word}: {len(passages.table)}"
+        if passages.possible:
+            line += f", intervals that are left open: {len(passages.possible)}"
+        typer.echo(line)
     if period:
-        typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")
+        low, high = period
+        typer.echo(f"period between {low} and {high} s; CPU {ranges.proof.cpu_s:.2f} s")

@@ -1,4 +1,4 @@
-"""`foucault generate --all`: the datasets that ship, which of them are missing or not sealed, made side by side."""
+"""`foucault generate --all`: make the shipped datasets that are missing or not sealed."""
 
 from __future__ import annotations
 
@@ -32,27 +32,32 @@ from ..system.workspace import clear
 from .progress import progress
 from .terminal import check_workers, emit, stoppable
 
-Row = dict[str, Any]
+_Row = dict[str, Any]
 
-BINARY64 = ".binary64"
+_BINARY64 = ".binary64"
 
 
 @dataclass(frozen=True)
-class Job:
+class _Job:
     """A dataset to be made: its scene, its id and its folder."""
 
     scene: Scene
     name: str
     folder: Path
 
-    def row(self, status: Status, reason: str | None = None) -> Row:
-        """Return what `generate --all --json` says of the dataset, but for what was measured."""
-        identity = {"dataset": self.name, "scene": self.scene.id, "out": str(self.folder)}
-        return {**identity, "status": status.value, "reason": reason}
+    def row(self, status: Status, reason: str | None = None) -> _Row:
+        """Return what `generate --all --json` prints on the dataset, without what was measured."""
+        return {
+            "dataset": self.name,
+            "scene": self.scene.id,
+            "out": str(self.folder),
+            "status": status.value,
+            "reason": reason,
+        }
 
 
-def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
-    """Return all datasets that ship, those of the longest spans first: of each scene, and of sealed other readings.
+def jobs(replaced: Sequence[str], out: Path | None) -> list[_Job]:
+    """Return all datasets that ship, of each scene and of sealed other readings, the longest first.
 
     Args:
         replaced: fields of every scene, each as section.key=value.
@@ -61,33 +66,34 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
     Raises:
         InputError: a replaced field is wrong.
     """
-    readings = [name.removesuffix(BINARY64) for name in seals() if name.endswith(BINARY64)]
+    readings = [name.removesuffix(_BINARY64) for name in seals() if name.endswith(_BINARY64)]
     scenes = [load_scene(name, replaced) for name in scene_ids()]
     scenes += [load_scene(name, ["inputs=binary64", *replaced]) for name in readings]
-    named = [(scene, dataset_id(scene)) for scene in scenes]
-    every = [
-        Job(scene, name, out / name if out else default_folder(scene, name))
-        for scene, name in named
-    ]
+    every = []
+    for scene in scenes:
+        name = dataset_id(scene)
+        folder = out / name if out else default_folder(scene, name)
+        every.append(_Job(scene, name, folder))
     return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
 
 
-def is_done(job: Job) -> bool:
-    """Return whether the dataset is there, sealed, of the same inputs; where it ships, under the seal in the index."""
+def is_done(job: _Job) -> bool:
+    """Return whether the dataset is there and sealed, with the same inputs.
+
+    Where it ships, its seal must be that in the index.
+    """
     try:
         files = read_files(job.folder)
     except FoucaultError:
         return False
-    sealed = not ships(job.folder) or seals().get(job.name) == files.manifest.seal
-    same = (
-        scene_inputs(files.scene) == scene_inputs(job.scene)
-        and files.scene.inputs == job.scene.inputs
-    )
-    return sealed and same and files.manifest.id == job.name
+    is_sealed = not ships(job.folder) or seals().get(job.name) == files.manifest.seal
+    same_inputs = scene_inputs(files.scene) == scene_inputs(job.scene)
+    same_reading = files.scene.inputs == job.scene.inputs
+    return is_sealed and same_inputs and same_reading and files.manifest.id == job.name
 
 
-def made(job: Job) -> tuple[Row, dict[str, Content]]:
-    """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
+def _made(job: _Job) -> tuple[_Row, dict[str, Content]]:
+    """Solve a scene; return the outcome and the files of its dataset, none if it failed."""
     try:
         making = making_of(job.scene, job.name, job.folder)
         solution = solve(job.scene, **making.solve_options(job.scene))
@@ -103,13 +109,13 @@ def made(job: Job) -> tuple[Row, dict[str, Content]]:
         return job.row(Status.INVALID, str(error)), {}
 
 
-def isolated(job: Job) -> tuple[Row, dict[str, Content]]:
-    """Make a dataset in a process that is started for it: the solver is not made for several threads."""
+def _isolated(job: _Job) -> tuple[_Row, dict[str, Content]]:
+    """Make a dataset in a process of its own: the solver is not made for several threads."""
     with Pool(1) as pool:
-        return cast("tuple[Row, dict[str, Content]]", pool.submit(made, job).result())
+        return cast("tuple[_Row, dict[str, Content]]", pool.submit(_made, job).result())
 
 
-def _check_installed(job: Job) -> None:
+def _check_installed(job: _Job) -> None:
     """Refuse a dataset for which a package is missing: others would fail by it too.
 
     Raises:
@@ -127,59 +133,85 @@ def generate_all(
     cluster: str | None,
     as_json: bool,
 ) -> None:
-    """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
+    """Make what is missing or not sealed, each in a process of its own.
+
+    The failure of a scene does not affect the others.
 
     Raises:
         InputError: a wrong option, or a folder that cannot be written.
-        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
+        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were
+            out of reach.
     """
     check_workers(workers, cluster)
     if cluster is not None:
         needed("distributed", "cluster", "--cluster", "sending scenes to a cluster")
     every = jobs(replaced, out)
     with stoppable("what is done stays, and the same command goes on"), progress() as show:
-        for job in every:
-            with suppress(OSError):  # no such folder yet
-                # a dataset that is done is not written again
-                clear(job.folder.parent, job.folder.name)
-        undone = [job for job in every if not is_done(job)]
-        for job in undone:
-            _check_installed(job)
-            check_target(job.folder)
-        move, rows = show("datasets", len(undone), "datasets"), []
-        with closing(_made(undone, workers, cluster)) as outcomes:
+        undone = _undone(every)
+        move = show("datasets", len(undone), "datasets")
+        rows = []
+        with closing(_made_side_by_side(undone, workers, cluster)) as outcomes:
             for row in outcomes:
                 rows.append(row)
                 move(len(rows), item=row["scene"])
                 if not as_json:
                     typer.echo(_line(row))
     rows.sort(key=lambda row: str(row["dataset"]))
+    _print_counts(len(every), rows, as_json)
+
+
+def _undone(every: list[_Job]) -> list[_Job]:
+    """Return the datasets to be made, after clearing away what an interrupted command left.
+
+    Raises:
+        InputError: a package is missing, or a folder cannot be written.
+    """
+    for job in every:
+        with suppress(OSError):  # no such folder yet
+            # a dataset that is done is not written again
+            clear(job.folder.parent, job.folder.name)
+    undone = [job for job in every if not is_done(job)]
+    for job in undone:
+        _check_installed(job)
+        check_target(job.folder)
+    return undone
+
+
+def _print_counts(count: int, rows: list[_Row], as_json: bool) -> None:
+    """Print how many datasets there were, and how many were made, or failed.
+
+    Args:
+        count: of all datasets.
+        rows: the outcome of each that was not there.
+        as_json: whether to print a document with the rows.
+
+    Raises:
+        typer.Exit: a dataset failed.
+    """
+    sealed_before = count - len(rows)
     failed = [row for row in rows if row["status"] != Status.OK.value]
-    counts = {
-        "datasets": len(every),
-        "sealed_before": len(every) - len(undone),
-        "failed": len(failed),
-    }
     if as_json:
+        counts = {"datasets": count, "sealed_before": sealed_before, "failed": len(failed)}
         emit({"rows": rows, **counts})
     else:
-        done = len(undone) - len(failed)
+        made = len(rows) - len(failed)
         typer.echo(
-            f"{len(every)} datasets: {len(every) - len(undone)} were there, {done} made, {len(failed)} failed"
+            f"{count} datasets: {sealed_before} were there, {made} made, {len(failed)} failed"
         )
     if failed:
-        typer.echo(
-            f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}",
-            err=True,
-        )
+        first = failed[0]["dataset"]
+        typer.echo(f"foucault: {len(failed)} of {count} datasets failed, first {first}", err=True)
         unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
         raise typer.Exit(UnreachableError.exit_status if unreachable else 1)
 
 
-def _made(
-    undone: list[Job], workers: int | None, cluster: str | None
-) -> Generator[Row, None, None]:
-    """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
+def _made_side_by_side(
+    undone: list[_Job], workers: int | None, cluster: str | None
+) -> Generator[_Row, None, None]:
+    """Make datasets side by side, and write each as it comes.
+
+    This process alone writes, since it keeps the index of seals.
+    """
     if not undone:
         return
     with ExitStack() as stack:
@@ -187,10 +219,12 @@ def _made(
             from ..sweeps.cluster import scheduler_at
 
             scheduler = stack.enter_context(scheduler_at(cluster))
-            begin, check = partial(scheduler.submit, isolated), scheduler.check
+            begin = partial(scheduler.submit, _isolated)
+            check = scheduler.check
         else:
             pool = stack.enter_context(Pool(min(workers or usable_cores(), len(undone))))
-            begin, check = partial(pool.submit, made), None
+            begin = partial(pool.submit, _made)
+            check = None
         for job, future in as_done(begin, undone, len(undone), check):
             try:
                 row, texts = future.result()
@@ -203,7 +237,8 @@ def _made(
             yield row
 
 
-def _line(row: Row) -> str:
+def _line(row: _Row) -> str:
+    """Return what is printed on a dataset that was made, or failed."""
     if row["status"] != Status.OK.value:
         return f"{row['dataset']}: {Status(row['status']).words}: {row['reason']}"
     transits = counted(row["transits"], "transit")

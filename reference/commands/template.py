@@ -9,26 +9,36 @@ from typing import Any
 from ..scenes.fields import SceneTable
 from ..scenes.scene import Scene, parse_scene
 
-BEGIN = """\
+_BEGIN = """\
 # A scene of the Foucault pendulum. docs/scene.md explains each field, drag and the azimuth with an example.
 # Numbers stand in quotes, so that they are taken exactly as written. A field that you leave out has its default.
 """
-COLUMN = 34  # where comments begin
+_COLUMN = 34  # where comments begin
+_TEMPLATE = {
+    "id": "mine",
+    "title": "my pendulum",
+    "site": {"gravity_is": "effective"},
+    "release": {"angle": "5", "azimuth": "0"},
+}
 
 
 def scene_file(scene: Scene | None) -> str:
-    """Return a scene as a TOML file with comments; without one, the defaults with a measured g and a release."""
-    template = {"id": "mine", "title": "my pendulum", "site": {"gravity_is": "effective"}}
-    scene = scene or parse_scene({**template, "release": {"angle": "5", "azimuth": "0"}})
-    parts = [BEGIN, *_lines(scene)]
+    """Return a scene as a TOML file with comments.
+
+    Without a scene, it has the defaults, a measured g and a release.
+    """
+    if scene is None:
+        scene = parse_scene(_TEMPLATE)
+    lines = [_BEGIN, *_lines(scene)]
     for name in Scene.model_fields:
-        if isinstance(table := getattr(scene, name), SceneTable):
-            parts += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
+        table = getattr(scene, name)
+        if isinstance(table, SceneTable):
+            lines += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
     if scene.uncertain:
         meaning = Scene.model_fields["uncertain"].description
-        widths = (f"{_toml(name)} = {_toml(width)}" for name, width in scene.uncertain.items())
-        parts += ["", f"[uncertain]  # {meaning}", *widths]
-    return "\n".join(parts) + "\n"
+        lines += ["", f"[uncertain]  # {meaning}"]
+        lines += [f"{_toml(name)} = {_toml(width)}" for name, width in scene.uncertain.items()]
+    return "\n".join(lines) + "\n"
 
 
 def _lines(table: SceneTable) -> Iterator[str]:
@@ -37,15 +47,16 @@ def _lines(table: SceneTable) -> Iterator[str]:
         value = getattr(table, name)
         if isinstance(value, SceneTable | dict):
             continue
-        example = ["highest", "gate 30"] if name == "sections" else "0"
-        written = (
-            f"{'# ' if value is None else ''}{name} = {_toml(example if value is None else value)}"
-        )
+        if value is None:
+            example = ["highest", "gate 30"] if name == "sections" else "0"
+            assignment = f"# {name} = {_toml(example)}"
+        else:
+            assignment = f"{name} = {_toml(value)}"
         extra: Any = info.json_schema_extra or {}
         unit = f"{extra['unit']}; " if extra else ""
-        yield f"{written:{COLUMN}}  # {unit}{info.description}"
+        yield f"{assignment:{_COLUMN}}  # {unit}{info.description}"
 
 
 def _toml(value: Any) -> str:
-    """Return a value as TOML writes it, which of texts, lists, whole numbers and truth values is what JSON writes."""
+    """Return a value as TOML; texts, lists, whole numbers and truth values are as in JSON."""
     return json.dumps(value, ensure_ascii=False)

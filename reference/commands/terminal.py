@@ -1,4 +1,4 @@
-"""Parts shared by all commands: arguments, options and their completion, refusals, JSON documents on stdout."""
+"""Parts shared by all commands: arguments, options, completion, refusals, JSON on stdout."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def option(
     names: Callable[[str], list[str]] | None = None,
     **more: Any,
 ) -> Any:
-    """Return an option: its word, what the help says of it, the word for its value, and what a shell may complete.
+    """Return an option: its word, its help, the word for its value, and its completion.
 
     More arguments are those of `typer.Option`.
     """
@@ -36,7 +36,7 @@ def option(
 def scene_argument(
     text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE"
 ) -> Any:
-    """Return the argument that is a scene: what the help says of it, and the word for it; a shell completes the ids."""
+    """Return the argument that is a scene, by its help and its word; a shell completes the ids."""
     return typer.Argument(metavar=value, help=text, autocompletion=completion(scene_ids))
 
 
@@ -68,12 +68,14 @@ Workers = Annotated[int | None, option("--workers", "Use this many cores (defaul
 Cluster = Annotated[
     str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")
 ]
-SECTION = option(
-    "--section",
-    "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
-    "WORD",
-)
-Sections = Annotated[list[str] | None, SECTION]
+Sections = Annotated[
+    list[str] | None,
+    option(
+        "--section",
+        "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
+        "WORD",
+    ),
+]
 AsJson = Annotated[bool, option("--json", "Print one JSON document on stdout and nothing else.")]
 
 
@@ -84,7 +86,7 @@ def emit(document: dict[str, Any]) -> None:
 
 @contextmanager
 def stoppable(outcome: str) -> Iterator[None]:
-    """Have Ctrl-C end the command meanwhile with one line that says what became of its work, or how to go on.
+    """Have Ctrl-C end the command with one line: what became of its work, or how to go on.
 
     Raises:
         Stopped: it was interrupted.
@@ -119,56 +121,71 @@ def replacements(
         assignments: those of `--set`.
         options: the field that each option replaces, and its value; None if it was not given.
         unused: fields, or fields with a value, that make no difference to the command, and why.
-        note: called with a sentence for each of these that is replaced; without it they are refused.
+        note: called with a sentence for each of these that is replaced; without it they are
+            refused.
 
     Raises:
-        InputError: a replacement would have no effect: the field is replaced by two values, or it is an unused one.
+        InputError: a replacement would have no effect: the field is replaced by two values, or it
+            is an unused one.
     """
-    values: dict[str, str] = {}
-    reasons = unused or {}
-    for assignment in assignments or ():
-        word, sign, value = assignment.partition("=")
-        field = full_name(word)
-        reason = reasons.get(field) or reasons.get(f"{field}{sign}{value.strip()}")
-        if reason and note is not None:
-            note(f"--set {assignment} makes no difference here. {reason}")
-        elif reason:
-            raise InputError("--set", assignment, "a field that makes a difference here", reason)
-        if field in values:
-            raise InputError(
-                "--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one."
-            )
-        values[field] = assignment
+    values = _assigned(assignments or (), unused or {}, note)
     for option, (field, text) in options.items():
-        if text is not None:
-            if field in values and not (option == "--t-end" and values[field] == f"{field}={text}"):
-                raise InputError(
-                    option, text, f"no such option together with --set {values[field]}", "Keep one."
-                )
-            values[field] = f"{field}={text}"
+        if text is None:
+            continue
+        value = f"{field}={text}"
+        same_end = option == "--t-end" and values.get(field) == value
+        if field in values and not same_end:
+            expected = f"no such option together with --set {values[field]}"
+            raise InputError(option, text, expected, "Keep one.")
+        values[field] = value
     return list(values.values())
 
 
+def _assigned(
+    assignments: Iterable[str], unused: Mapping[str, str], note: Callable[[str], None] | None
+) -> dict[str, str]:
+    """Return the replacements by `--set`, by field; for the arguments see `replacements`.
+
+    Raises:
+        InputError: a field is replaced twice, or is an unused one.
+    """
+    values: dict[str, str] = {}
+    for assignment in assignments:
+        word, sign, value = assignment.partition("=")
+        field = full_name(word)
+        reason = unused.get(field) or unused.get(f"{field}{sign}{value.strip()}")
+        if reason and note is None:
+            raise InputError("--set", assignment, "a field that makes a difference here", reason)
+        if reason and note is not None:
+            note(f"--set {assignment} makes no difference here. {reason}")
+        if field in values:
+            advice = f"{values[field]} stands before it: keep one."
+            raise InputError("--set", assignment, f"{field} once", advice)
+        values[field] = assignment
+    return values
+
+
 def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] | None:
-    """Return the widths that `--uncertain` gives, by name, and those of the scene; None if all inputs are exact.
+    """Return the widths by `--uncertain` and those of the scene, by name; None if all are exact.
 
     Raises:
         InputError: a word is not KEY=±WIDTH, or one key has two widths.
     """
     if list(words or ()) == ["none"]:
         return None
-    widths: dict[str, str] = {}
+    typed: dict[str, str] = {}
     for word in words or ():
         key, sign, width = word.partition("=")
-        if not sign or not key.strip():
+        name = key.strip()
+        if not sign or not name:
             raise InputError("--uncertain", word, "KEY=±WIDTH, such as pendulum.length=±0.001")
-        if key.strip() in widths:
-            raise InputError("--uncertain", word, f"one width of {key.strip()}")
-        widths[key.strip()] = width
-    overridden = {full_name(key) for key in widths}
-    return {
-        name: width for name, width in scene.uncertain.items() if name not in overridden
-    } | widths or None
+        if name in typed:
+            raise InputError("--uncertain", word, f"one width of {name}")
+        typed[name] = width
+    overridden = {full_name(name) for name in typed}
+    widths = {name: width for name, width in scene.uncertain.items() if name not in overridden}
+    widths |= typed
+    return widths or None
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:
@@ -179,14 +196,17 @@ def refuse(options: Mapping[str, object], why: str) -> None:
     """
     for option, value in options.items():
         if value is not None and value is not False and value != []:  # 0 was given
-            got = (
-                " ".join(map(str, value))
-                if isinstance(value, list)
-                else "set"
-                if value is True
-                else str(value)
-            )
-            raise InputError(option, got, f"no such option {why}", "It would have no effect.")
+            expected = f"no such option {why}"
+            raise InputError(option, _as_typed(value), expected, "It would have no effect.")
+
+
+def _as_typed(value: object) -> str:
+    """Return the value of an option as it was typed; a switch is "set"."""
+    if value is True:
+        return "set"
+    if isinstance(value, list):
+        return " ".join(map(str, value))
+    return str(value)
 
 
 def check_workers(workers: int | None, cluster: str | None) -> None:

@@ -1,1 +1,1 @@
-"""Golden datasets: the files of a solved scene written, read, verified, and evaluated between their rows."""
+"""Golden datasets: the files of a solved scene, written, read, verified and evaluated."""

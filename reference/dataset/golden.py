@@ -1,4 +1,4 @@
-"""A golden dataset as read: its columns as doubles, texts or fractions; between its rows the scene is solved again."""
+"""A golden dataset as read: its columns as doubles, texts or fractions, and states between."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from ..numbers.precision import Array
 from ..scenes.fields import Level
 from ..scenes.scene import Scene
 from .files import Files, read_files
-from .function import evaluated
+from .function import evaluated_grid, evaluated_transits
 from .manifest import FUNCTION, Manifest
 from .place import golden_folder
 from .sheets import TRANSITS_HEADER, Sheet
 
 WITHIN = 2.0**-58  # error allowed, relative to the cord length: enough to judge programs in double
-ROUNDED = 2.0**-40  # relative, of the times that a program has added up
-PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two doubles
+_ROUNDED = 2.0**-40  # relative, of the times that a program has added up
+_PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two doubles
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,11 +63,15 @@ class PrintedTable(Framed):
         return [Fraction(Decimal(text)) for text in self.decimals(name)]
 
     def bound(self, name: str) -> list[Fraction]:
-        """Return bounds on the errors of a column's printed values: a transit time's own, else the column's largest."""
+        """Return bounds on the errors of a column's printed values.
+
+        A transit time has a bound of its own; for other columns it is the largest of all rows.
+        """
         if name == "t":
             return self.exact("bound") if "bound" in self.columns else [Fraction(0)] * len(self)
-        # a table without rows has none
-        if name not in (self._bounds if len(self) else self.columns):
+        # a table without rows has no bounds
+        bounded = self._bounds if len(self) else self.columns
+        if name not in bounded:
             raise KeyError(f"a dataset bounds {', '.join(['t', *self._bounds])}, not {name!r}")
         return [Fraction(self._bounds[name])] * len(self) if len(self) else []
 
@@ -81,18 +85,20 @@ class PrintedTable(Framed):
 class Golden(GridColumns):
     """A golden dataset, as read from disk: the same columns as a `Solution`, as printed.
 
-    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have `table["x"]`, the same,
-    `table.exact("x")` as fractions, `table.bound("x")`, and `table.decimals("x")`, the printed texts.
+    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have
+    `table["x"]`, the same, `table.exact("x")` as fractions, `table.bound("x")`, and
+    `table.decimals("x")`, the printed texts.
 
     Attributes:
         path: the folder.
         manifest: its manifest.json.
         scene: the scene that it solves.
         grid: `grid.csv`.
-        transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically zero.
+        transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically
+            zero.
         function: the golden function, None if it has none; `at` serves all the same.
-        sections: the rows of `sections.csv` of each section that the scene asks for, by its word; none where the
-            dataset is a function alone.
+        sections: the rows of `sections.csv` of each section that the scene asks for, by its word;
+            none where the dataset is a function alone.
     """
 
     path: Path
@@ -106,8 +112,8 @@ class Golden(GridColumns):
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, with their bounds.
 
-        They come from the golden function, or the scene is solved again (needs heyoka, takes longer) and its numbers
-        are rounded to doubles.
+        They come from the golden function, or the scene is solved again (needs heyoka, takes
+        longer) and its numbers are rounded to doubles.
 
         Raises:
             InputError: a time is not finite, or outside of the dataset's span.
@@ -119,15 +125,12 @@ class Golden(GridColumns):
             return States.of(moments, np.empty((6, 0)), {})
         trajectory = dense(self, moments)
         rows = trajectory.states[np.searchsorted(trajectory.t, moments.ravel())]
-        rounding = dict(
-            zip(STATE, np.spacing(np.abs(trajectory.states).max(axis=0)).tolist(), strict=True)
-        )
-        bounds = {
-            name: trajectory.bound_m if name in POSITION else trajectory.bound_m_s for name in STATE
-        }
-        return States.of(
-            moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()}
-        )
+        rounding = np.spacing(np.abs(trajectory.states).max(axis=0)).tolist()
+        bounds = {}
+        for name, ulp in zip(STATE, rounding, strict=True):
+            bound = trajectory.bound_m if name in POSITION else trajectory.bound_m_s
+            bounds[name] = bound + ulp
+        return States.of(moments, rows.T, bounds)
 
     @property
     def level(self) -> Level:
@@ -150,54 +153,77 @@ class Golden(GridColumns):
 
     def __repr__(self) -> str:
         """Return id, level, digits, and the numbers of rows and transits."""
-        about, counts = self.manifest, self.manifest.counts
-        rows = f"{counted(counts.grid, 'grid time')}, {counted(counts.transits, 'transit')}"
-        return f"Golden({about.id}: {about.level}, {about.digits} digits, {rows})"
+        manifest = self.manifest
+        times = counted(manifest.counts.grid, "grid time")
+        transits = counted(manifest.counts.transits, "transit")
+        accuracy = f"{manifest.level}, {manifest.digits} digits"
+        return f"Golden({manifest.id}: {accuracy}, {times}, {transits})"
 
 
 def load(name: str | Path) -> Golden:
-    """Read a golden dataset by id or path, after checking its seal, its hashes and the form of every file.
+    """Read a golden dataset by id or path; check its seal, its hashes and the form of every file.
 
     Raises:
         InputError: there is no such dataset.
-        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
+        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or
+            its seal.
     """
     files = read_files(golden_folder(name))
-    function, bounds = files.function and files.function[1], files.manifest.bounds
+    function = files.function[1] if files.function else None
     if function is not None and files.manifest.alone:
-        try:
-            tables = evaluated(function, files.scene, files.manifest)
-        except ValueError as error:
-            raise DatasetError(str(files.folder), [f"{FUNCTION[0]}: {error}"]) from None
+        grid, transits = _evaluated_tables(files, function)
     else:
-        empty = Sheet(TRANSITS_HEADER, [], {})
-        printed = files.tables["grid.csv"], files.tables.get("transits.csv", empty)
-        tables = (printed[0], bounds.grid), (printed[1], bounds.transits)
-    grid, transits = (PrintedTable(*table) for table in tables)
+        grid, transits = _printed_tables(files)
     return Golden(
         files.folder, files.manifest, files.scene, grid, transits, function, _sections(files)
     )
 
 
+def _printed_tables(files: Files) -> tuple[PrintedTable, PrintedTable]:
+    """Return grid and transits as printed."""
+    bounds = files.manifest.bounds
+    without_transits = Sheet(TRANSITS_HEADER, [], {})
+    transits = files.tables.get("transits.csv", without_transits)
+    return (
+        PrintedTable(files.tables["grid.csv"], bounds.grid),
+        PrintedTable(transits, bounds.transits),
+    )
+
+
+def _evaluated_tables(files: Files, function: GoldenFunction) -> tuple[PrintedTable, PrintedTable]:
+    """Return grid and transits of a dataset without tables, evaluated in doubles.
+
+    Raises:
+        DatasetError: the function does not have the transits that the manifest counts.
+    """
+    grid = evaluated_grid(function, files.scene)
+    try:
+        transits = evaluated_transits(function, files.scene, files.manifest)
+    except ValueError as error:
+        raise DatasetError(str(files.folder), [f"{FUNCTION[0]}: {error}"]) from None
+    return PrintedTable(grid.sheet, grid.bounds), PrintedTable(transits.sheet, transits.bounds)
+
+
 class _Sections(dict[str, PrintedTable]):
+    """The passages of each section, by its word; a word that is not there is refused."""
+
     def __missing__(self, word: str) -> PrintedTable:
         expected = f"a section of sections.csv, of which there are: {', '.join(self) or 'none'}"
-        raise InputError(
-            "sections", word, expected, "reference.solve(golden.scene, sections=…) finds any."
-        )
+        advice = "reference.solve(golden.scene, sections=…) finds any."
+        raise InputError("sections", word, expected, advice)
 
 
 def _sections(files: Files) -> _Sections:
-    if (sheet := files.tables.get("sections.csv")) is None or files.manifest.sections is None:
-        return _Sections()
-    record, header = files.manifest.sections, sheet.header[1:]
-    rows = {word: [row[1:] for row in sheet.rows if row[0] == word] for word in record.counts}
-    return _Sections(
-        {
-            word: PrintedTable(Sheet(header, passages, {}), record.bounds)
-            for word, passages in rows.items()
-        }
-    )
+    """Return the rows of `sections.csv` of each section that the manifest counts."""
+    sections = _Sections()
+    sheet = files.tables.get("sections.csv")
+    record = files.manifest.sections
+    if sheet is None or record is None:
+        return sections
+    for word in record.counts:
+        rows = [row[1:] for row in sheet.rows if row[0] == word]
+        sections[word] = PrintedTable(Sheet(sheet.header[1:], rows, {}), record.bounds)
+    return sections
 
 
 @dataclass(frozen=True)
@@ -221,16 +247,31 @@ class Dense:
     @classmethod
     def of(cls, times: Array, table: Any, rows: Any) -> Dense:
         """Build from some rows of a table that has bounds."""
-        exact = [[column[i].as_integer_ratio() for i in rows] for column in map(table.exact, STATE)]
-        states = np.array([[p / q for p, q in column] for column in exact])
-        near = [[x.as_integer_ratio() for x in column] for column in states.tolist()]
-        pairs = (zip(*columns, strict=True) for columns in zip(exact, near, strict=True))
-        low = np.array([[(p * d - n * q) / (q * d) for (p, q), (n, d) in pair] for pair in pairs])
-        sizes = map(Fraction, np.abs(states).max(axis=1).tolist())
-        off = [
-            max(table.bound(name)) + PAIR * size for name, size in zip(STATE, sizes, strict=True)
-        ]
-        return cls(times, states.T, low.T, float(max(off[:3])), float(max(off[3:])))
+        doubles = []
+        remainders = []
+        bounds = []
+        for name in STATE:
+            exact = table.exact(name)
+            pairs = [_as_pair(exact[i]) for i in rows]
+            high = [double for double, _ in pairs]
+            doubles.append(high)
+            remainders.append([remainder for _, remainder in pairs])
+            size = Fraction(max(map(abs, high)))
+            bounds.append(max(table.bound(name)) + _PAIR * size)
+        bound_m = float(max(bounds[:3]))
+        bound_m_s = float(max(bounds[3:]))
+        return cls(times, np.array(doubles).T, np.array(remainders).T, bound_m, bound_m_s)
+
+
+def _as_pair(value: Fraction) -> tuple[float, float]:
+    """Return the nearest double, and the double nearest to what it leaves over.
+
+    In integers, which is faster than in fractions.
+    """
+    p, q = value.as_integer_ratio()
+    double = p / q
+    n, d = double.as_integer_ratio()
+    return double, (p * d - n * q) / (q * d)
 
 
 def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
@@ -239,24 +280,27 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     Args:
         golden: the dataset: its rows are taken where all times are those of its grid.
         times: in s, in any order; repeated ones are merged.
-        within: error aimed at, relative to the cord length; the bound that was reached is `bound_m`.
+        within: error aimed at, relative to the cord length; the bound that was reached is
+            `bound_m`.
 
     Raises:
-        InputError: there is no time, or one is not finite, negative, or more than a grid step beyond the dataset's end.
+        InputError: there is no time, or one is not finite, negative, or more than a grid step
+            beyond the dataset's end.
         UnreachableError: the scene cannot be solved so closely.
     """
     grid = golden.times
     # a program that counts steps may end with one more
-    later = float(grid[-1] - grid[-2]) + ROUNDED * float(grid[-1])
+    later = float(grid[-1] - grid[-2]) + _ROUNDED * float(grid[-1])
     requested = np.unique(moments_of(times, grid[-1], later))
     if not requested.size:
         raise InputError("t", "no times", "at least one time in s")
-    exact = [Fraction(t) for t in requested.tolist()]
+    exact_times = [Fraction(t) for t in requested.tolist()]
     row = {t: i for i, t in enumerate(grid)}
-    if row.keys() >= set(exact):
-        return Dense.of(requested, golden.grid, [row[t] for t in exact])
+    if row.keys() >= set(exact_times):
+        return Dense.of(requested, golden.grid, [row[t] for t in exact_times])
     from ..solver.solve import solve_at
 
-    solution = solve_at(golden.scene, exact, math.ceil(-math.log10(within)) + 1)
+    digits = math.ceil(-math.log10(within)) + 1
+    solution = solve_at(golden.scene, exact_times, digits)
     row = {t: i for i, t in enumerate(solution.times)}
-    return Dense.of(requested, solution.grid, [row[t] for t in exact])
+    return Dense.of(requested, solution.grid, [row[t] for t in exact_times])

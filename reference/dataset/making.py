@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from ..engines import AUTO, engine_names
 from ..scenes.fields import Confirmation
@@ -13,24 +13,34 @@ from ..scenes.scene import Scene
 from ..scenes.shipped import index, scene_ids
 from .place import changes, changes_in, is_of_shipped_scene, shipped_scene, ships
 
-ENGINE, AUDIT, CONFIRM, WITH_FUNCTION, BARE = (
-    "--engine",
-    "--audit",
-    "--confirm",
-    "--function",
-    "--no-tables",
+ENGINE = "--engine"
+AUDIT = "--audit"
+CONFIRM = "--confirm"
+_WITH_FUNCTION = "--function"
+_WITHOUT_TABLES = "--no-tables"
+# The options in a dataset's command that say how it is made. Two older forms are in manifests that
+# ship: `--no-confirm`, and nothing at all for a whole confirmation. A command that names
+# no audit had none.
+_OPTIONS = re.compile(
+    rf"{ENGINE} (?P<engine>{'|'.join(engine_names())})"
+    rf"(?P<audit> {AUDIT}| --no-audit|)"
+    rf"(?: {CONFIRM} (?P<confirm>whole|sampled|none)|(?P<no_confirm> --no-confirm)|)"
+    rf"(?P<function> {_WITH_FUNCTION}|)"
+    rf"(?P<no_tables> {_WITHOUT_TABLES}|)"
 )
-# How a dataset is made, in its command. What was made before there was --confirm says --no-confirm or, of a whole
-# confirmation, nothing; and nothing of an audit that there was not.
-OPTIONS = re.compile(
-    rf"{ENGINE} ({'|'.join(engine_names())})( {AUDIT}| --no-audit|)"
-    rf"(?: {CONFIRM} (whole|sampled|none)|( --no-confirm)|)( {WITH_FUNCTION}|)( {BARE}|)"
-)
+# the fields of a scene that have options of their own
+_OPTION_FIELDS = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "run.sections=")
+
+
+def options_in(command: str) -> str | None:
+    """Return the options in a dataset's command that say how it is made, None if there are none."""
+    match = _OPTIONS.search(command)
+    return match and match[0]
 
 
 @dataclass(frozen=True)
 class Making:
-    """How a dataset is made: by which engine, whether audited, what is confirmed, with a function, with its tables."""
+    """How a dataset is made: engine, audit, confirmation, with or without function and tables."""
 
     engine: str = "limbs"
     audit: bool = True
@@ -40,40 +50,59 @@ class Making:
 
     @classmethod
     def of(cls, command: str) -> Making:
-        """Read it off a dataset's command, or off the options in the index of what ships."""
-        engine, audit, confirm, no_confirm, function, bare = OPTIONS.findall(command)[0]
-        keywords: dict[str, Any] = {
-            "confirm": "none" if no_confirm else confirm or "whole",
-            "tables": not bare,
-        }
-        return cls(engine, audit.strip() == AUDIT, function=bool(function), **keywords)
+        """Read it off a dataset's command, or off the options in the index of what ships.
+
+        Raises:
+            ValueError: the command does not say it.
+        """
+        match = _OPTIONS.search(command)
+        if match is None:
+            raise ValueError(f"no options that say how a dataset is made in {command!r}")
+        confirm = "none" if match["no_confirm"] else match["confirm"] or "whole"
+        return cls(
+            engine=match["engine"],
+            audit=match["audit"].strip() == AUDIT,
+            confirm=cast("Confirmation", confirm),
+            function=bool(match["function"]),
+            tables=not match["no_tables"],
+        )
 
     @property
     def options(self) -> str:
         """The options that say it, of a proof."""
-        audit = AUDIT if self.audit else "--no-audit"
-        last = [*[WITH_FUNCTION] * self.function, *[BARE] * (not self.tables)]
-        return " ".join([ENGINE, self.engine, audit, CONFIRM, self.confirm, *last])
+        words = [ENGINE, self.engine]
+        words.append(AUDIT if self.audit else "--no-audit")
+        words += [CONFIRM, self.confirm]
+        if self.function:
+            words.append(_WITH_FUNCTION)
+        if not self.tables:
+            words.append(_WITHOUT_TABLES)
+        return " ".join(words)
 
     def options_for(self, scene: Scene, name: str) -> str:
-        """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
-        listed = index().get(name, {}).get("options", self.options)
-        return (
-            listed
-            if is_of_shipped_scene(scene, name) and Making.of(listed) == self
-            else self.options
-        )
+        """Return the options of a dataset's command, as the index has them if it says the same."""
+        listed = index().get(name, {}).get("options")
+        if listed and is_of_shipped_scene(scene, name) and Making.of(listed) == self:
+            return listed
+        return self.options
 
     def solve_options(self, scene: Scene) -> dict[str, Any]:
-        """Return the options with which `solve` makes a scene's dataset in this way, or refuses it."""
-        proof = {"audit": self.audit, "confirm": self.confirm, "function": self.function}
-        return {"engine": self.engine} | (proof if scene.run.level == "enclosed" else {})
+        """Return the options with which `solve` makes a scene's dataset in this way."""
+        options: dict[str, Any] = {"engine": self.engine}
+        if scene.run.level == "enclosed":
+            options["audit"] = self.audit
+            options["confirm"] = self.confirm
+            options["function"] = self.function
+        return options
 
 
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
-    """Return how a dataset is made if nothing else is asked for: what ships as the index says, wherever it is written.
+    """Return how a dataset is made if nothing else is asked for.
 
-    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two codes.
+    What ships is made as the index says, wherever it is written.
+
+    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two
+    codes.
     """
     if ships(folder) or is_of_shipped_scene(scene, name):
         entry = index().get(name)
@@ -82,19 +111,27 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
 
 
 def command(scene: Scene, name: str, options: str) -> str:
-    """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
+    """Return the command that makes a dataset of a shipped scene, or of a user's own file.
 
     `name` is the dataset's id, which names the changes; `options` say how it is made.
     """
     run = scene.run
-    parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
-    parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level, options]
-    parts += [] if run.transits else ["--no-transits"]
-    parts += [word for section in run.sections or () for word in ("--section", f"'{section}'")]
-    option_fields = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "run.sections=")
+    words = ["foucault", "generate"]
+    words.append(scene.id if scene.id in scene_ids() else f"{scene.id}.toml")
+    words += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level, options]
+    if not run.transits:
+        words.append("--no-transits")
+    for section in run.sections or ():
+        words += ["--section", f"'{section}'"]
+
     shipped = shipped_scene(scene)
-    changed = changes_in(name) if shipped is scene else changes(scene, shipped)
-    changed = [change for change in changed if not change.startswith(option_fields)]
-    parts += ["--uncertain", "none"] if shipped is not scene and shipped.uncertain else []
-    changed += [f"inputs={scene.inputs}"] if f".{scene.inputs}" in name else []
-    return " ".join([*parts, *(word for change in changed for word in ("--set", change))])
+    is_users_own = shipped is scene
+    if shipped.uncertain and not is_users_own:
+        words += ["--uncertain", "none"]
+    changed = changes_in(name) if is_users_own else changes(scene, shipped)
+    for change in changed:
+        if not change.startswith(_OPTION_FIELDS):
+            words += ["--set", change]
+    if f".{scene.inputs}" in name:
+        words += ["--set", f"inputs={scene.inputs}"]
+    return " ".join(words)

@@ -1,4 +1,4 @@
-"""`manifest.json` of a golden dataset: its fields and their types, which refuse extra keys, its text and its seal."""
+"""`manifest.json` of a golden dataset: its fields, their types and rules, its text and its seal."""
 
 from __future__ import annotations
 
@@ -19,21 +19,22 @@ from ..scenes.scene import Reading
 MANIFEST = "manifest.json"
 FORMAT = 3
 # bounded: an exponent of nine digits fills the memory
-NUMBER = r"^-?[0-9]{1,1100}(\.[0-9]{1,1100})?(e[+-][0-9]{1,4})?$"
+_NUMBER = r"^-?[0-9]{1,1100}(\.[0-9]{1,1100})?(e[+-][0-9]{1,4})?$"
 
 
 def _bound_as_text(value: object) -> object:
+    """Return a bound as text, rounded up; anything else as it is."""
     return rounded_up(value) if isinstance(value, Fraction) else value
 
 
-Decimal = Annotated[str, Field(pattern=NUMBER), BeforeValidator(_bound_as_text)]
-Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+Decimal = Annotated[str, Field(pattern=_NUMBER), BeforeValidator(_bound_as_text)]
+_Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 Name = Annotated[str, Field(max_length=400)]
 Text = Annotated[str, Field(max_length=20_000)]
 Kind = Literal["grid", "transits", "sections"]  # of a table
 Count = Annotated[int, Field(ge=0, le=10**10)]
 Decimals = Annotated[int, Field(ge=0, le=2000)]  # digits after the point
-FileName = Literal[
+_FileName = Literal[
     "grid.csv",
     "certified.txt",
     "transits.csv",
@@ -44,8 +45,9 @@ FileName = Literal[
     "function.f64",
     "sections.csv",
 ]
-ALWAYS, OPTIONAL = get_args(FileName)[:2], get_args(FileName)[2:]
-FUNCTION: tuple[FileName, FileName] = ("function.json", "function.f64")
+ALWAYS = get_args(_FileName)[:2]
+OPTIONAL = get_args(_FileName)[2:]
+FUNCTION: tuple[_FileName, _FileName] = ("function.json", "function.f64")
 Content = str | bytes  # of a file
 
 
@@ -155,7 +157,7 @@ class FileRecord(ManifestPart):
     """Size and hash of a file of the dataset."""
 
     bytes: Count
-    sha256: Sha256
+    sha256: _Sha256
 
     @classmethod
     def of(cls, content: Content) -> FileRecord:
@@ -171,7 +173,7 @@ class Manifest(ManifestPart):
     """
 
     schema_version: Literal[3]  # FORMAT
-    seal: Sha256 | Literal[""]
+    seal: _Sha256 | Literal[""]
     id: Name
     title: Text
     source: Text
@@ -197,8 +199,8 @@ class Manifest(ManifestPart):
     enclosure: EnclosureRecord | None
     generator: dict[Name, Name]
     command: Text
-    files: dict[FileName, FileRecord]
-    # where the scene asks for some; else it does not stand there
+    files: dict[_FileName, FileRecord]
+    # left out of the file if the scene asks for none
     sections: SectionsRecord | None = None
 
     def text(self) -> str:
@@ -207,46 +209,63 @@ class Manifest(ManifestPart):
 
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:
-        bounds, transits = self.bounds, TRANSITS if self.counts.transits else ()
-        needed = [
-            *ALWAYS,
-            *["transits.csv"] * bool(transits),
-            *["sections.csv"] * bool(self.sections),
-        ]
-        lacking = [] if self.alone else [name for name in needed if name not in self.files]
-        sections, function = bool(self.sections), [name in self.files for name in FUNCTION]
-        numbers = map(float, (*bounds.grid.values(), *bounds.transits.values()))
-        of_grid, of_transits = ({*self.decimals.get(kind, ())} for kind in ("grid", "transits"))
-        rules = {
-            "level: a proof and the level enclosed belong together": (self.level == "enclosed")
-            == bool(self.enclosure),
-            "level: no run agrees with the published one": bool(self.cross_checks)
-            or self.level == "computed",
-            "level: a single run has no cross-checks": not (
-                self.cross_checks and self.level == "computed"
-            ),
-            "notes: one for each flag": {*self.notes} == {*self.flags},
-            "counts: a grid has two times at least": self.counts.grid >= 2,
-            f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(bounds.grid) == GRID,
-            f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(bounds.transits)
-            == transits,
-            "bounds: a number beyond the range of binary64": all(map(math.isfinite, numbers)),
-            f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": of_grid
-            == {"t", *GRID},
-            f"decimals.transits: must name the columns {', '.join(TRANSITS)}": of_transits
-            in ({*TRANSITS}, {*transits}),
-            f"files: {' and '.join(lacking)} must be there, but for a golden function alone": not lacking,
-            "sections: they belong to a scene that asks for some": sections
-            == ("sections" in self.scene.get("run", ())),
-            "files: sections.csv belongs to a dataset with sections": sections
-            or "sections.csv" not in self.files,
-            "files: a golden function has two files, and a proof": function[0]
-            == function[1]
-            <= bool(self.enclosure),
-        }
-        if broken := [rule for rule, holds in rules.items() if not holds]:
-            raise ValueError(broken[0])
+        """Refuse a manifest whose fields contradict each other, with the first contradiction."""
+        for contradictions in (self._in_level(), self._in_columns(), self._in_files()):
+            for contradiction in contradictions:
+                raise ValueError(contradiction)
         return self
+
+    def _in_level(self) -> Iterator[str]:
+        """Yield where level, evidence, flags and counts contradict each other."""
+        is_proved = self.enclosure is not None
+        if is_proved != (self.level == "enclosed"):
+            yield "level: a proof and the level enclosed belong together"
+        if self.level != "computed" and not self.cross_checks:
+            yield "level: no run agrees with the published one"
+        if self.level == "computed" and self.cross_checks:
+            yield "level: a single run has no cross-checks"
+        if set(self.notes) != set(self.flags):
+            yield "notes: one for each flag"
+        if self.counts.grid < 2:
+            yield "counts: a grid has two times at least"
+
+    def _in_columns(self) -> Iterator[str]:
+        """Yield where bounds and decimals are not those of the tables' columns."""
+        bounds = self.bounds
+        transits = TRANSITS if self.counts.transits else ()
+        if tuple(bounds.grid) != GRID:
+            yield f"bounds.grid: must name the columns {', '.join(GRID)}"
+        if tuple(bounds.transits) != transits:
+            yield f"bounds.transits: must name the columns {', '.join(TRANSITS)}"
+        numbers = [float(bound) for bound in (*bounds.grid.values(), *bounds.transits.values())]
+        if not all(map(math.isfinite, numbers)):
+            yield "bounds: a number beyond the range of binary64"
+        if set(self.decimals.get("grid", ())) != {"t", *GRID}:
+            yield f"decimals.grid: must name the columns {', '.join(('t', *GRID))}"
+        # a dataset without transits may have their decimals
+        if set(self.decimals.get("transits", ())) not in ({*TRANSITS}, {*transits}):
+            yield f"decimals.transits: must name the columns {', '.join(TRANSITS)}"
+
+    def _in_files(self) -> Iterator[str]:
+        """Yield where the files are not those of the tables, the sections and the function."""
+        needed = [*ALWAYS]
+        if self.counts.transits:
+            needed.append("transits.csv")
+        if self.sections:
+            needed.append("sections.csv")
+        lacking = [name for name in needed if name not in self.files]
+        if lacking and not self.alone:
+            yield f"files: {' and '.join(lacking)} must be there, but for a golden function alone"
+
+        asks_for_sections = "sections" in self.scene.get("run", ())
+        if asks_for_sections != (self.sections is not None):
+            yield "sections: they belong to a scene that asks for some"
+        if "sections.csv" in self.files and self.sections is None:
+            yield "files: sections.csv belongs to a dataset with sections"
+        has_description, has_coefficients = (name in self.files for name in FUNCTION)
+        is_unproved = has_coefficients and self.enclosure is None
+        if has_description != has_coefficients or is_unproved:
+            yield "files: a golden function has two files, and a proof"
 
     @property
     def alone(self) -> bool:
@@ -263,19 +282,17 @@ class Manifest(ManifestPart):
 
     def bound(self, table: Kind, column: str) -> Fraction:
         """Return the bound on a column's printed numbers, the largest of all rows."""
-        bounds = (
-            self.sections.bounds
-            if table == "sections" and self.sections
-            else getattr(self.bounds, table)
-        )
-        return Fraction(bounds[column])
+        if table == "sections" and self.sections:
+            return Fraction(self.sections.bounds[column])
+        return Fraction(getattr(self.bounds, table)[column])
 
 
 def differences(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:
-    """Yield each field in which two documents differ: where it stands, and both values."""
+    """Yield each field in which two documents differ: its place, and both values."""
     if isinstance(old, dict) and isinstance(new, dict):
         for key in {**old, **new}:
-            yield from differences(old.get(key), new.get(key), f"{place}.{key}" if place else key)
+            inner = f"{place}.{key}" if place else key
+            yield from differences(old.get(key), new.get(key), inner)
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         for i, (old_item, new_item) in enumerate(zip(old, new, strict=True)):
             yield from differences(old_item, new_item, f"{place}[{i}]")

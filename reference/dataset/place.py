@@ -17,24 +17,26 @@ MAX_ID = 160  # characters; more changes than fit are named by their hash
 
 def changes(scene: Scene, base: Scene) -> list[str]:
     """Return the fields of a scene that are not those of another, each as section.key=value."""
-    before, after = by_field(scene_inputs(base)), by_field(scene_inputs(scene))
+    before = by_field(scene_inputs(base))
+    after = by_field(scene_inputs(scene))
     return [f"{field}={value}" for field, value in after.items() if before.get(field) != value]
 
 
 def shipped_scene(scene: Scene) -> Scene:
-    """Return the scene of that id that comes with the project, or the scene itself if there is none."""
+    """Return the scene of that id that ships, or the scene itself if there is none."""
     return load_scene(scene.id) if scene.id in scene_ids() else scene
 
 
 def dataset_id(scene: Scene, base: Scene | None = None) -> str:
-    """Return the id of a scene's dataset: the scene's own, such as `paris`, with its reading and what was changed.
+    """Return the id of a scene's dataset: the scene's own, with its reading and its changes.
 
-    Span, digits and level are not named: of a scene there is one dataset in a place. Examples: `paris`,
+    Span, digits and level are not named: a folder has one dataset of a scene. Examples: `paris`,
     `paris.binary64`, `paris+site.latitude=0`.
 
     Args:
         scene: the scene that is solved.
-        base: the scene before its changes; by default the one of that id that comes with the project.
+        base: the scene before its changes; by default the one of that id that comes with the
+            project.
     """
     name = scene.id if scene.inputs == "decimal" else f"{scene.id}.{scene.inputs}"
     every = changes(scene, base or shipped_scene(scene))
@@ -43,27 +45,34 @@ def dataset_id(scene: Scene, base: Scene | None = None) -> str:
 
 
 def id_with(name: str, sign: str, words: str) -> str:
-    """Return an id and, behind a sign, what it is changed by: words, or their hash where they are too long."""
+    """Return an id and, behind a sign, its changes: as words, or as a hash if they are too long."""
     if len(name) + len(words) >= MAX_ID:
         words = f"sha256={hashlib.sha256(words.encode()).hexdigest()[:16]}"
     return f"{name}{sign}{words}"
 
 
 def changes_in(name: str) -> list[str]:
-    """Return the changes that an id names, each as section.key=value; none where their hash stands for them."""
+    """Return the changes that an id names, each as section.key=value; none if it has a hash."""
     _, _, changed = name.partition("+")
-    return [] if changed.startswith("sha256=") else [word for word in changed.split(",") if word]
+    if changed.startswith("sha256="):
+        return []
+    return [change for change in changed.split(",") if change]
 
 
 def is_of_shipped_scene(scene: Scene, name: str) -> bool:
-    """Return whether a dataset is that of a scene that comes with the project, unchanged but for its reading."""
+    """Return whether a dataset is that of a scene that ships, unchanged but for its reading."""
     shipped = shipped_scene(scene)
-    alike = shipped.model_copy(update={"inputs": scene.inputs, "uncertain": scene.uncertain})
-    return shipped is not scene and scene == alike and name == dataset_id(scene)
+    if shipped is scene:
+        return False
+    same_reading = shipped.model_copy(update={"inputs": scene.inputs, "uncertain": scene.uncertain})
+    return scene == same_reading and name == dataset_id(scene)
 
 
 def default_folder(scene: Scene, name: str) -> Path:
-    """Return the folder that a dataset of this id is written to: ./golden, or the checkout's data for what ships."""
+    """Return the folder that a dataset of this id is written to.
+
+    It is in ./golden, or in the checkout's data if it ships.
+    """
     local = Path(GOLDEN) / name
     if is_of_shipped_scene(scene, name) and in_checkout() and not local.is_dir():
         return golden_root() / name
@@ -76,7 +85,7 @@ def ships(folder: Path) -> bool:
 
 
 def golden_folder(name: str | Path) -> Path:
-    """Return the folder that a name means: a path, or else an id in ./golden, in data/golden, in the package.
+    """Return the folder that a name means: a path, or an id in ./golden, data/golden, the package.
 
     Raises:
         InputError: it is neither text nor a path.

@@ -1,4 +1,4 @@
-"""A dataset of ranges: proven intervals for uncertain inputs, in tables whose ends are rounded outward."""
+"""A dataset of ranges: proven intervals for uncertain inputs, their ends rounded outward."""
 
 from __future__ import annotations
 
@@ -27,20 +27,25 @@ from .place import RANGES, dataset_id, golden_folder, id_with
 from .sheets import open_intervals, scene_inputs
 from .write import check_target, filled, replace, writable_place
 
-FORMAT = 1
-GRID_FILE, TRANSITS_FILE, SECTIONS_FILE = "grid.csv", "transits.csv", "sections.csv"
-DIGITS = 2  # that a width has in the tables: the ends widen it by a tenth at most
-WIDER = ("possible", "sections")  # intervals that may be wider than those that are proved
+_FORMAT = 1
+_GRID = "grid.csv"
+_TRANSITS = "transits.csv"
+_SECTIONS = "sections.csv"
+_DIGITS = 2  # that a width has in the tables: the ends widen it by a tenth at most
+_WIDER = ("possible", "sections")  # intervals that may be wider than those that are proved
 
 
 def ranges_id(ranges: Ranges) -> str:
-    """Return the id: that of the scene's dataset, with the half-widths, such as paris+-pendulum.length=0.001."""
+    """Return the id: that of the scene's dataset, with the half-widths.
+
+    Example: paris+-pendulum.length=0.001.
+    """
     box = ",".join(f"{key}={width}" for key, width in ranges.uncertain.items())
     return id_with(dataset_id(ranges.scene), "+-", box)
 
 
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
-    """Write ranges: `ranges.json`, which says the scene, the box and the proof, and the tables; whole or not at all.
+    """Write ranges: `ranges.json`, with scene, box and proof, and the tables; whole or not at all.
 
     Args:
         ranges: what `prove_ranges` returned.
@@ -65,20 +70,21 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
 
 
 def load_ranges(name: str | Path) -> Ranges:
-    """Read ranges by id or path, after checking their seal and hashes: the intervals as printed, `proof` None.
+    """Read ranges by id or path, with intervals as printed and no proof; check seal and hashes.
 
     Raises:
         InputError: there are none.
         DatasetError: a file is missing, changed or malformed.
     """
-    return _read(golden_folder(name))[0]
+    ranges, _ = _read(golden_folder(name))
+    return ranges
 
 
 def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = False) -> list[str]:
-    """Prove ranges again, and have trusted code hold their files against that.
+    """Prove ranges again, and have trusted code compare their files with that.
 
     Args:
-        folder: where they stand.
+        folder: their folder.
         report: called with the simulated time reached, in s.
         recompute: also compare every byte.
 
@@ -86,7 +92,8 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
         A sentence for each problem; none if every printed interval holds what is proved.
 
     Raises:
-        InputError: there are none at `folder`, or the engine that they were made with is not installed.
+        InputError: there are none at `folder`, or the engine that they were made with is not
+            installed.
         UnreachableError: the proof fails here.
     """
     try:
@@ -112,55 +119,70 @@ def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = 
 
 
 def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
-    """Return ranges and the texts of their files."""
+    """Return ranges and the texts of their files, by name."""
     try:
         manifest = json_document(folder / RANGES, "PATH")
     except FileNotFoundError:
         advice = "`foucault generate SCENE --uncertain …` makes them."
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
-        names = (GRID_FILE, TRANSITS_FILE, *([SECTIONS_FILE] if "sections" in manifest else []))
-        texts = {name: _text(folder / name) for name in (RANGES, *names)}
-        if text_of({**manifest, "seal": _seal(manifest)}) != texts[RANGES]:
-            hint = _hint(texts[RANGES], _hash(text_of({**manifest, "seal": _seal(manifest)})))
-            raise DatasetError(
-                str(folder), [f"{RANGES} does not fit its seal: a byte was changed{hint}"]
-            )
-        for name, digest in manifest["sha256"].items():
-            if _hash(texts[name]) != digest:
-                hint = _hint(texts[name], digest)
-                raise DatasetError(
-                    str(folder), [f"{name}: a byte was changed (sha256 differs){hint}"]
-                )
-        scene_id = manifest["id"].partition("+")[0].removesuffix(f".{manifest['inputs']}")
-        scene = parse_scene({"id": scene_id, "inputs": manifest["inputs"], **manifest["scene"]})
-        tables = {
-            name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in names
-        }
-        passages = {
-            word: _zeros(
-                [row[1:] for row in tables[SECTIONS_FILE] if row[0] == word], SECTION, possible
-            )
-            for word, possible in manifest.get("sections", {}).items()
-        }
-        transits = _zeros(tables[TRANSITS_FILE], TRANSITS, manifest["possible"])
-        zeros = {XDOT: transits, **passages}
-        ranges = Ranges(
-            scene,
-            {name: width.removeprefix("±") for name, width in manifest["uncertain"].items()},
-            tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
-            Intervals(STATE, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
-            zeros,
-            manifest["proof"]["engine"],
-            derivatives=manifest["proof"].get("derivatives") is True,
-        )
+        texts = _checked_texts(folder, manifest)
+        return _parsed(manifest, texts), texts
+    except DatasetError:
+        raise
     except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
-        if isinstance(error, DatasetError):
-            raise
-        raise DatasetError(
-            str(folder), [f"cannot be read: {type(error).__name__} {error}"]
-        ) from None
-    return ranges, texts
+        problem = f"cannot be read: {type(error).__name__} {error}"
+        raise DatasetError(str(folder), [problem]) from None
+
+
+def _checked_texts(folder: Path, manifest: dict[str, Any]) -> dict[str, str]:
+    """Return the texts of the files, by name.
+
+    Raises:
+        DatasetError: one cannot be read, or does not fit the seal or its hash.
+    """
+    names = [RANGES, _GRID, _TRANSITS]
+    if "sections" in manifest:
+        names.append(_SECTIONS)
+    texts = {name: _text(folder / name) for name in names}
+
+    sealed = text_of({**manifest, "seal": _seal(manifest)})
+    if sealed != texts[RANGES]:
+        hint = _hint(texts[RANGES], _hash(sealed))
+        problem = f"{RANGES} does not fit its seal: a byte was changed{hint}"
+        raise DatasetError(str(folder), [problem])
+    for name, digest in manifest["sha256"].items():
+        if _hash(texts[name]) != digest:
+            hint = _hint(texts[name], digest)
+            problem = f"{name}: a byte was changed (sha256 differs){hint}"
+            raise DatasetError(str(folder), [problem])
+    return texts
+
+
+def _parsed(manifest: dict[str, Any], texts: dict[str, str]) -> Ranges:
+    """Return ranges as their files print them."""
+    inputs = manifest["inputs"]
+    scene_id = manifest["id"].partition("+")[0].removesuffix(f".{inputs}")
+    scene = parse_scene({"id": scene_id, "inputs": inputs, **manifest["scene"]})
+    grid = _rows(texts[_GRID])
+    zeros = {XDOT: _zeros(_rows(texts[_TRANSITS]), TRANSITS, manifest["possible"])}
+    for word, possible in manifest.get("sections", {}).items():
+        rows = [row[1:] for row in _rows(texts[_SECTIONS]) if row[0] == word]
+        zeros[word] = _zeros(rows, SECTION, possible)
+    return Ranges(
+        scene,
+        {name: width.removeprefix("±") for name, width in manifest["uncertain"].items()},
+        tuple(Fraction(row[0]) for row in grid),
+        Intervals(STATE, tuple(_intervals(row[1:]) for row in grid)),
+        zeros,
+        manifest["proof"]["engine"],
+        derivatives=manifest["proof"].get("derivatives") is True,
+    )
+
+
+def _rows(text: str) -> list[list[str]]:
+    """Return the cells of a table, row by row."""
+    return [line.split(",") for line in text.splitlines()[1:]]
 
 
 def _text(path: Path) -> str:
@@ -178,7 +200,7 @@ def _text(path: Path) -> str:
 
 
 def _hint(text: str, digest: str) -> str:
-    """Return what to say of a text that does not fit its hash: that a copy changed its line ends, or nothing."""
+    """Return why a text does not fit its hash, if a copy changed its line ends; else nothing."""
     lines = text.replace("\r\n", "\n")
     return f": {LINE_ENDS}" if lines != text and _hash(lines) == digest else ""
 
@@ -186,20 +208,24 @@ def _hint(text: str, digest: str) -> str:
 def _zeros(
     rows: list[list[str]], columns: tuple[str, ...], possible: list[dict[str, str]]
 ) -> Zeros[Intervals]:
+    """Return zeros from their rows (number, direction, ends) and intervals that may hold more."""
     return Zeros(
         Intervals(columns, tuple(_intervals(row[2:]) for row in rows)),
         [int(row[1]) for row in rows],
-        tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in possible),
+        tuple(
+            (Fraction(part["from_s"]), Fraction(part["to_s"]), part["parity"]) for part in possible
+        ),
     )
 
 
 def _intervals(cells: Sequence[str]) -> tuple[Ends, ...]:
-    ends = [Fraction(text) for text in cells]
-    return tuple(Ends(*pair) for pair in zip(ends[::2], ends[1::2], strict=True))
+    """Return intervals from cells that alternate between their lower and upper ends."""
+    numbers = [Fraction(text) for text in cells]
+    return tuple(Ends(*pair) for pair in zip(numbers[::2], numbers[1::2], strict=True))
 
 
 def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
-    """Return in a sentence what does not hold what was proved, found by trusted code."""
+    """Return a sentence if a table does not contain what was proved; trusted code decides that."""
     from ..enclosure.trusted.printed_box import check_ranges
 
     try:
@@ -210,77 +236,92 @@ def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
 
 
 def _other_facts(texts: dict[str, str], again: Ranges) -> Iterator[str]:
-    """Yield where `ranges.json` says something of the box or of its proof that proving it again does not give."""
-    said = json.loads(texts[RANGES])
+    """Yield each field of `ranges.json` on box or proof that proving it again does not give."""
+    printed = json.loads(texts[RANGES])
     tables = {name: text for name, text in texts.items() if name != RANGES}
-    expected = _manifest(again, tables) | {"seal": said["seal"]}
-    for document in (said, expected):
-        for name in WIDER:
+    expected = _manifest(again, tables) | {"seal": printed["seal"]}
+    for document in (printed, expected):
+        for name in _WIDER:
             document.pop(name, None)
         document["period_s"] = document["period_s"] and "an interval"
-    for place, old, new in differences(said, expected):
+    for place, old, new in differences(printed, expected):
         yield f"{RANGES}: {place} = {old}, proved again {new}"
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
-    """Return the ends of the period's interval as text, or None: what follows from transits.csv."""
+    """Return the ends of the period's interval as text, by transits.csv; None if it is open."""
     period = with_fields(ranges, proof=None).period
     return period and list(ends(*period))
 
 
 def ends(low: Fraction, high: Fraction, places: int | None = None) -> tuple[str, str]:
-    """Return the ends of an interval as text, rounded outward to `places`, or to the digits that its width supports."""
+    """Return the ends of an interval as text, rounded outward.
+
+    They have `places` digits after the point, or as many as the width supports.
+    """
     if places is None:
-        places = places_of(low, high)
+        places = _places_of(low, high)
     return outward(low, -1, places), outward(high, 1, places)
 
 
-def places_of(low: Fraction, high: Fraction) -> int:
+def _places_of(low: Fraction, high: Fraction) -> int:
     """Return the digits after the point that an interval's ends have."""
-    return max(0, DIGITS - 1 - magnitude(high - low)) if high > low else 0
+    if high <= low:
+        return 0
+    return max(0, _DIGITS - 1 - magnitude(high - low))
 
 
-def _cells(rows: Sequence[Sequence[Any]]) -> list[list[str]]:
-    """Return the ends of all intervals as text, row by row."""
-    return [[text for x in row for text in ends(x.low, x.high)] for row in rows]
+def _cells(row: Sequence[Any]) -> list[str]:
+    """Return the ends of the intervals of a row as text."""
+    cells: list[str] = []
+    for interval in row:
+        cells += ends(interval.low, interval.high)
+    return cells
 
 
 def _grid_rows(ranges: Ranges) -> list[list[str]]:
+    """Return the rows of grid.csv: the time, exactly, and the ends of the state's intervals."""
     decimals = exact_decimals(ranges.times)
-    first, *later = ranges.grid.rows
-    # the release may be known exactly, up to the rounding of the proof: it has the digits of the next row
-    pairs = zip(first, later[0], strict=True)
-    release = [
-        text for x, after in pairs for text in ends(x.low, x.high, places_of(after.low, after.high))
+    release, *later = ranges.grid.rows
+    # the release may be known exactly, up to the rounding of the proof: it has the digits of the
+    # next row
+    release_cells: list[str] = []
+    for interval, after in zip(release, later[0], strict=True):
+        release_cells += ends(interval.low, interval.high, _places_of(after.low, after.high))
+
+    states = [release_cells, *map(_cells, later)]
+    return [
+        [fixed_decimal(t, decimals), *cells] for t, cells in zip(ranges.times, states, strict=True)
     ]
-    rows = zip(ranges.times, [release, *_cells(later)], strict=True)
-    return [[fixed_decimal(t, decimals), *row] for t, row in rows]
 
 
 def _zero_rows(table: Intervals, directions: Sequence[int]) -> list[list[str]]:
-    rows = zip(directions, _cells(table.rows), strict=True)
-    return [[str(k), str(direction), *row] for k, (direction, row) in enumerate(rows, 1)]
+    """Return the rows of zeros: number, direction, and the ends of the intervals."""
+    rows = zip(directions, table.rows, strict=True)
+    return [[str(k), str(direction), *_cells(row)] for k, (direction, row) in enumerate(rows, 1)]
 
 
 def _table(first: Sequence[str], columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Return a table as text: its first columns, and two for each column of intervals."""
-    header = [*first, *(f"{name}_{word}" for name in columns for word in ("low", "high"))]
+    header = [*first]
+    for name in columns:
+        header += [f"{name}_low", f"{name}_high"]
     return "".join(",".join(line) + "\n" for line in (header, *rows))
 
 
 def _texts(ranges: Ranges) -> dict[str, str]:
     """Return the files of ranges, sealed."""
-    tables = {GRID_FILE: _table(["t"], STATE, _grid_rows(ranges))}
-    tables[TRANSITS_FILE] = _table(
-        ["k", "direction"], TRANSITS, _zero_rows(ranges.transits, ranges.directions)
-    )
-    if sections := ranges.sections.items():
-        rows = [
-            [word, *row]
-            for word, zeros in sections
-            for row in _zero_rows(zeros.table, zeros.directions)
-        ]
-        tables[SECTIONS_FILE] = _table(["section", "k", "direction"], SECTION, rows)
+    transits = _zero_rows(ranges.transits, ranges.directions)
+    tables = {
+        _GRID: _table(["t"], STATE, _grid_rows(ranges)),
+        _TRANSITS: _table(["k", "direction"], TRANSITS, transits),
+    }
+    if ranges.sections:
+        passages = []
+        for word, zeros in ranges.sections.items():
+            rows = _zero_rows(zeros.table, zeros.directions)
+            passages += [[word, *row] for row in rows]
+        tables[_SECTIONS] = _table(["section", "k", "direction"], SECTION, passages)
     manifest = _manifest(ranges, tables)
     return {RANGES: text_of(manifest | {"seal": _seal(manifest)}), **tables}
 
@@ -291,33 +332,50 @@ def _seal(manifest: dict[str, Any]) -> str:
 
 
 def _hash(text: str) -> str:
+    """Return the sha256 of a text."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
-    proof, scene = ranges.proof, ranges.scene
-    inputs = scene_inputs(scene)
-    # as widths support
-    inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}
-    run: dict[str, Any] = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
-    run |= {"derivatives": True} if ranges.derivatives else {}
-    sections = {word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()}
-    return {
-        "format": FORMAT,
+    """Return `ranges.json` with an empty seal."""
+    scene = ranges.scene
+    manifest: dict[str, Any] = {
+        "format": _FORMAT,
         "seal": "",
         "id": ranges_id(ranges),
         "level": scene.run.level,
         "inputs": scene.inputs,
-        "scene": inputs,
+        "scene": _inputs(ranges),
         "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
         "period_s": period_texts(ranges),
         "possible": open_intervals(ranges.possible),
-        **({"sections": sections} if sections else {}),
-        "counts": {
-            "grid": len(ranges.times),
-            "transits": len(ranges.transits),
-            "possible": len(ranges.possible),
-        },
-        "proof": run | {"radius_m": rounded_up(proof.radius)},
-        "sha256": {name: _hash(text) for name, text in tables.items()},
     }
+    if ranges.sections:
+        manifest["sections"] = {
+            word: open_intervals(zeros.possible) for word, zeros in ranges.sections.items()
+        }
+    manifest["counts"] = {
+        "grid": len(ranges.times),
+        "transits": len(ranges.transits),
+        "possible": len(ranges.possible),
+    }
+    manifest["proof"] = _proof(ranges)
+    manifest["sha256"] = {name: _hash(text) for name, text in tables.items()}
+    return manifest
+
+
+def _inputs(ranges: Ranges) -> dict[str, dict[str, str]]:
+    """Return the inputs of the scene without `digits`, which the widths decide."""
+    inputs = scene_inputs(ranges.scene)
+    inputs["run"] = {name: text for name, text in inputs["run"].items() if name != "digits"}
+    return inputs
+
+
+def _proof(ranges: Ranges) -> dict[str, Any]:
+    """Return what `ranges.json` says of the proof."""
+    proof = ranges.proof
+    record: dict[str, Any] = {"engine": ranges.engine, "bits": proof.bits, "steps": proof.steps}
+    if ranges.derivatives:
+        record["derivatives"] = True
+    record["radius_m"] = rounded_up(proof.radius)
+    return record

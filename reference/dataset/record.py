@@ -1,4 +1,4 @@
-"""How a dataset is made, and its manifest: what was solved, how, to which bounds, what agrees; without its files."""
+"""The manifest of a solution, still without files: scene, run, bounds, checks and proof."""
 
 from __future__ import annotations
 
@@ -35,10 +35,8 @@ from .place import dataset_id
 from .sheets import Sheet, column_bounds, open_intervals, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
-UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {
-    "bound": "s",
-    "angles": "degrees",
-}
+_UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()}
+_UNIT_OF |= {"bound": "s", "angles": "degrees"}
 PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
 INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
 
@@ -54,17 +52,20 @@ def manifest_of(
         name: the dataset's id, by default the scene's own.
         tables: whether they are written; else the command says that they are left out.
     """
-    grid, transits = sheets["grid.csv"], sheets.get("transits.csv", Sheet((), [], {}))
-    scene, run, proof = solution.scene, solution.run, solution.proof
+    scene = solution.scene
+    run = solution.run
     name = name or dataset_id(scene)
-    options = f"{ENGINE} {run.engine}"
-    if proof is not None:
-        making = Making(
-            run.engine, proof.audited, proof.confirmed, proof.enclosure.function is not None, tables
-        )
-        options = making.options_for(scene, name)
-    of_transits = column_bounds(solution.transits, transits.decimals) if transits.rows else {}
-    end = grid.rows[-1][0]
+    grid = sheets["grid.csv"]
+    transits = sheets.get("transits.csv", Sheet((), [], {}))
+    transits_bounds = {}
+    if transits.rows:
+        transits_bounds = column_bounds(solution.transits, transits.decimals)
+    counts = Counts(
+        grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)
+    )
+    sections = None
+    if "sections.csv" in sheets:
+        sections = _sections(solution, sheets["sections.csv"])
     return Manifest.model_construct(
         schema_version=3,
         seal="",
@@ -76,66 +77,79 @@ def manifest_of(
         level=scene.run.level,
         digits=scene.run.digits,
         decimals={"grid": grid.decimals, "transits": transits.decimals},
-        bounds=bounds_of(column_bounds(solution.grid, grid.decimals), of_transits),
-        counts=Counts(
-            grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)
-        ),
+        bounds=bounds_of(column_bounds(solution.grid, grid.decimals), transits_bounds),
+        counts=counts,
         transits=completeness(scene, XDOT not in solution.zeros, bool(solution.possible)),
-        possible=_possible(solution.possible, end),
+        possible=_possible(solution.possible, grid.rows[-1][0]),
         run=RunRecord.model_validate(run),
         cross_checks=[CrossCheckRecord.model_validate(check) for check in solution.checks],
-        enclosure=None if proof is None else _enclosure(proof),
+        enclosure=_enclosure(solution.proof) if solution.proof else None,
         generator=generator(),
-        command=command(scene, name, options),
+        command=command(scene, name, _options(solution, name, tables)),
         files={},
-        sections=_sections(solution, sheets["sections.csv"]) if "sections.csv" in sheets else None,
+        sections=sections,
         **following(scene, run.formulation, run.number, grid),
     )
 
 
+def _options(solution: Solution, name: str, tables: bool) -> str:
+    """Return the options in the dataset's command that say how it is made."""
+    engine = solution.run.engine
+    proof = solution.proof
+    if proof is None:
+        return f"{ENGINE} {engine}"
+    making = Making(
+        engine=engine,
+        audit=proof.audited,
+        confirm=proof.confirmed,
+        function=proof.enclosure.function is not None,
+        tables=tables,
+    )
+    return making.options_for(solution.scene, name)
+
+
 def _possible(intervals: Iterable[tuple[Fraction, Fraction, str]], end: str) -> list[Possible]:
-    """Return intervals rounded outwards, but not beyond the end of the run, which the last row prints exactly."""
-    texts = open_intervals(intervals)
-    return [
-        Possible.model_validate(part | {"to_s": min(part["to_s"], end, key=Fraction)})
-        for part in texts
-    ]
+    """Return intervals rounded outwards, but not beyond the end of the run, `end`."""
+    records = []
+    for interval in open_intervals(intervals):
+        to_s = min(interval["to_s"], end, key=Fraction)
+        records.append(Possible.model_validate({**interval, "to_s": to_s}))
+    return records
 
 
 def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
     """Return what a manifest says of `sections.csv`."""
-    named, bounds = solution.sections.items(), dict[str, str]()
     end = fixed_decimal(solution.times[-1], exact_decimals(solution.times[-1:]))
-    for _, passages in named if sheet.rows else ():
-        of_section = column_bounds(passages.table, sheet.decimals)
-        bounds = {
-            column: max(bounds.get(column, "0"), bound, key=Fraction)
-            for column, bound in of_section.items()
-        }
-    return SectionsRecord(
-        decimals=sheet.decimals,
-        bounds=bounds,
-        counts={word: len(passages.table) for word, passages in named},
-        possible={word: _possible(passages.possible, end) for word, passages in named},
-    )
+    bounds: dict[str, str] = {}
+    counts = {}
+    possible = {}
+    for word, passages in solution.sections.items():
+        counts[word] = len(passages.table)
+        possible[word] = _possible(passages.possible, end)
+        if sheet.rows:
+            for column, bound in column_bounds(passages.table, sheet.decimals).items():
+                bounds[column] = max(bounds.get(column, "0"), bound, key=Fraction)
+    return SectionsRecord(decimals=sheet.decimals, bounds=bounds, counts=counts, possible=possible)
 
 
 def following(scene: Scene, formulation: str, number: str, grid: Sheet | None) -> dict[str, Any]:
-    """Return the fields of a manifest that follow from its scene, its run's formulation and number, and its grid."""
+    """Return the fields of a manifest that follow from scene, formulation, number and grid."""
     lines, left_out = lines_and_left_out(scene, formulation, number)
     up = _UP[scene.site.gravity_is]
-    return {
+    fields: dict[str, Any] = {
         "notes": flag_meanings(scene.flags),
         "scene": scene_inputs(scene),
         "frame": f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it",
-        "units": UNIT_OF,
+        "units": _UNIT_OF,
         "equations": Equations(formulation=formulation, lines=lines, left_out=left_out),
-        **({"invariant": invariant_drift(scene, grid)} if grid is not None else {}),
     }
+    if grid is not None:
+        fields["invariant"] = invariant_drift(scene, grid)
+    return fields
 
 
 def generator() -> dict[str, str]:
-    """Return the version of the data, and those of the installed libraries that the bytes depend on.
+    """Return the versions of the data and of the libraries that the bytes depend on.
 
     The version of the code is not among them: a release that changes no digit changes no dataset.
     """
@@ -148,9 +162,11 @@ def generator() -> dict[str, str]:
 
 def bounds_of(grid: dict[str, str], transits: dict[str, str]) -> Bounds:
     """Return the bounds of columns, and the largest of each kind."""
+    positions = [grid[name] for name in POSITION]
+    velocities = [grid[name] for name in VELOCITY]
     return Bounds(
-        position_m=max((grid[name] for name in POSITION), key=Fraction),
-        velocity_m_s=max((grid[name] for name in VELOCITY), key=Fraction),
+        position_m=max(positions, key=Fraction),
+        velocity_m_s=max(velocities, key=Fraction),
         transit_s=transits.get("t"),
         grid=grid,
         transits=transits,
@@ -167,30 +183,32 @@ def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
 
 
 def _enclosure(proof: Proof) -> EnclosureRecord:
+    """Return what a manifest says of a proof."""
     enclosure = proof.enclosure
-    record = {
-        "method": enclosure.method,
-        "prec": enclosure.bits,
-        "order": enclosure.order,
-        "steps": enclosure.steps,
-    }
-    record |= {
-        "position_radius_m": enclosure.position_radius,
-        "velocity_radius_m_s": enclosure.velocity_radius,
-    }
-    record |= {"transit_radius_s": proof.transit_radius, "agreement_bits": proof.agreement_bits}
-    return EnclosureRecord.model_validate(record)
+    return EnclosureRecord.model_validate(
+        {
+            "method": enclosure.method,
+            "prec": enclosure.bits,
+            "order": enclosure.order,
+            "steps": enclosure.steps,
+            "position_radius_m": enclosure.position_radius,
+            "velocity_radius_m_s": enclosure.velocity_radius,
+            "transit_radius_s": proof.transit_radius,
+            "agreement_bits": proof.agreement_bits,
+        }
+    )
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:
-    """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
+    """Return h of the first row in m²/s², and its largest change over the rows, rounded up."""
     bits = bits_of(scene.run.digits) + INVARIANT_BITS
     k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
     states, unit = grid.integers(STATE)
     x, y, z, vx, vy, vz = (FixedPoint.column(column, unit, bits) / k.length for column in states)
     h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
     values = h.fractions()
-    drift = rounded_up(max(abs(value - values[0]) for value in values))
+    first = values[0]
+    drift = max(abs(value - first) for value in values)
     return Invariant.model_construct(
-        h_m2_s2=fixed_decimal(values[0], scene.run.digits), drift_m2_s2=drift
+        h_m2_s2=fixed_decimal(first, scene.run.digits), drift_m2_s2=rounded_up(drift)
     )

@@ -38,37 +38,55 @@ class Sheet:
             yield [Fraction(Decimal(row[i])) for i in places]
 
     def integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
-        """Return some columns of decimals as integers over a common unit, and the unit, a power of ten."""
-        places = [self.header.index(name) for name in columns]
-        parted = [[row[i].partition(".") for row in self.rows] for i in places]
-        decimals = max((len(part) for column in parted for _, _, part in column), default=0)
-        scaled = (
-            (int(whole + part) * 10 ** (decimals - len(part)) for whole, _, part in column)
-            for column in parted
-        )
-        return [integers(column) for column in scaled], 10**decimals
+        """Return some columns as integers over a common unit, and the unit, a power of ten."""
+        texts = []
+        decimals = 0
+        for name in columns:
+            place = self.header.index(name)
+            column = [row[place] for row in self.rows]
+            decimals = max([decimals, *map(_decimals_in, column)])
+            texts.append(column)
+        scaled = [integers(_scaled(text, decimals) for text in column) for column in texts]
+        return scaled, 10**decimals
 
     def csv(self) -> str:
         """Return the text of the file: one header line, commas, LF."""
         return "".join(",".join(row) + "\n" for row in (self.header, *self.rows))
 
 
+def _decimals_in(text: str) -> int:
+    """Return the digits after the point of a decimal."""
+    return len(text.partition(".")[2])
+
+
+def _scaled(text: str, decimals: int) -> int:
+    """Return a decimal times a power of ten, which makes it an integer."""
+    whole, _, fraction = text.partition(".")
+    unit: int = 10 ** (decimals - len(fraction))
+    return int(whole + fraction) * unit
+
+
 def grid_sheet(solution: Solution) -> Sheet:
-    """Return `grid.csv`: exact times, and the state at each; of the release what the scene gives, as it is."""
+    """Return `grid.csv`: exact times, and the state at each.
+
+    The release has the numbers of the scene as they are.
+    """
     decimals = {"t": exact_decimals(solution.times), **grid_decimals(solution)}
-    times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
     first, *later = solution.grid.printed(decimals)
-    given = {
-        name: fixed_decimal(value, decimals[name])
-        for name, value in solution.scene.exact.released.items()
-    }
-    release = tuple(given.get(name, text) for name, text in zip(GRID, first, strict=True))
-    printed = [release, *later]
-    return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
+    release = dict(zip(GRID, first, strict=True))
+    for name, value in solution.scene.exact.released.items():
+        release[name] = fixed_decimal(value, decimals[name])
+
+    states = [tuple(release.values()), *later]
+    rows = [
+        (fixed_decimal(t, decimals["t"]), *state)
+        for t, state in zip(solution.times, states, strict=True)
+    ]
+    return Sheet(GRID_HEADER, rows, decimals)
 
 
 def transits_sheet(solution: Solution) -> Sheet:
-    """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
+    """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t."""
     decimals = decimals_of_zeros(solution, XDOT)
     rows = _zeros(solution.zeros[XDOT], decimals) if XDOT in solution.zeros else []
     return Sheet(TRANSITS_HEADER, rows, decimals)
@@ -84,7 +102,7 @@ def sections_sheet(solution: Solution) -> Sheet:
 
 
 def _zeros(zeros: Zeros[Table], decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
-    """Return the rows of zeros: number, time, direction, the other columns, and the bound on the time."""
+    """Return the rows of zeros: number, time, direction, other columns, bound on the time."""
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
     rows = zip(zeros.table.printed(decimals), zeros.table.bound("t"), zeros.directions, strict=True)
     return [
@@ -94,29 +112,40 @@ def _zeros(zeros: Zeros[Table], decimals: Mapping[str, int]) -> list[tuple[str, 
 
 
 def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Sheet:
-    """Return a sheet with doubles for its numbers, by column: 17 significant digits, then all again as hexfloats."""
+    """Return a sheet with doubles for its numbers, by column.
+
+    They have 17 significant digits; behind them they are repeated as hexfloats.
+    """
     columns = [doubles.get(name) for name in sheet.header]
     rows = []
     for i, row in enumerate(sheet.rows):
-        numbers = [None if column is None else float(column[i]) for column in columns]
-        plain = (
-            text if number is None else f"{number:.16e}"
-            for text, number in zip(row, numbers, strict=True)
-        )
-        rows.append((*plain, *(number.hex() for number in numbers if number is not None)))
-    return Sheet(
-        (*sheet.header, *(f"{name}_hex" for name in sheet.header if name in doubles)), rows, {}
-    )
+        cells = []
+        hexfloats = []
+        for text, column in zip(row, columns, strict=True):
+            if column is None:
+                cells.append(text)
+            else:
+                number = float(column[i])
+                cells.append(f"{number:.16e}")
+                hexfloats.append(number.hex())
+        rows.append((*cells, *hexfloats))
+    hex_header = [f"{name}_hex" for name in sheet.header if name in doubles]
+    return Sheet((*sheet.header, *hex_header), rows, {})
 
 
 def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
-    """Return the doubles nearest to the numbers of a table, which are known to more digits than its sheet prints.
+    """Return the doubles nearest to the numbers of a table, by column.
 
-    A number smaller than its error bound is noise about zero, and gets the double of the printed decimal.
+    They are known to more digits than the sheet prints.
+
+    A number smaller than its error bound is noise about zero, and gets the double of the printed
+    decimal.
     """
-    unit, doubles = 1 << table.bits, {}
+    unit = 1 << table.bits
+    doubles = {}
     for i, name in enumerate(table.columns):
-        place, column = sheet.header.index(name), []
+        place = sheet.header.index(name)
+        column = []
         for value, error, row in zip(table.values, table.errors, sheet.rows, strict=True):
             is_noise = abs(value[i]) <= error[i]
             column.append(float(Fraction(row[place])) if is_noise else value[i] / unit)
@@ -127,14 +156,15 @@ def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
 def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
     """Return the largest bound of each column as text, rounding to the printed digits included."""
     bounds = table.largest_bounds()
-    return {
-        name: rounded_up(bounds[name] + Fraction(1, 2 * 10 ** decimals[name]))
-        for name in table.columns
-    }
+    texts = {}
+    for name in table.columns:
+        half_unit = Fraction(1, 2 * 10 ** decimals[name])
+        texts[name] = rounded_up(bounds[name] + half_unit)
+    return texts
 
 
 def open_intervals(intervals: Iterable[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
-    """Return intervals that may hold other zeros as text, rounded outwards, each with the parity of their number."""
+    """Return intervals that may hold other zeros as text, rounded outwards, with their parity."""
     return [
         {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
         for low, high, parity in intervals
@@ -153,13 +183,16 @@ def by_field(inputs: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
     """Return all inputs of a scene as strings, section by section."""
     document = scene.model_dump(exclude_none=True, include={"pendulum", "site", "release", "run"})
+    inputs = {}
+    for section, table in document.items():
+        inputs[section] = {key: _input_text(value) for key, value in table.items()}
+    return inputs
 
-    def text(value: Any) -> str:
-        if isinstance(value, tuple):
-            return SECTION_SEPARATOR.join(value)
-        return str(value).lower() if isinstance(value, bool) else str(value)
 
-    return {
-        section: {key: text(value) for key, value in table.items()}
-        for section, table in document.items()
-    }
+def _input_text(value: Any) -> str:
+    """Return a field of a scene as text, as `--set` takes it."""
+    if isinstance(value, tuple):
+        return SECTION_SEPARATOR.join(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value)

@@ -1,4 +1,4 @@
-"""Verify a golden dataset: files, what follows from its scene, each row, the motion, the seal; or solve it again."""
+"""Verify a golden dataset: files, scene, each row, the motion, the seal; or solve it again."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
+from typing import Any
 
 from ..engines.plan import Report
 from ..errors import BeyondDoublesError, DatasetError, FoucaultError
@@ -19,14 +20,14 @@ from .manifest import MANIFEST, Content, Manifest, differences
 from .record import generator
 from .render import render
 
-MAX_PROBLEMS = 20  # sentences returned at most
-BEYOND = (
+_MAX_PROBLEMS = 20  # sentences returned at most
+_BEYOND = (
     "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"
 )
-FOLLOWS = ("seal", "files")  # from everything else
+_FOLLOWING = {"seal", "files"}  # from everything else
 # may differ with the machine or the libraries
-MEASURED = ("run", "cross_checks", "enclosure", "generator")
-HARDWARE = (DOUBLE.name, LONG_DOUBLE.name)
+_MEASURED = ("run", "cross_checks", "enclosure", "generator")
+_HARDWARE = (DOUBLE.name, LONG_DOUBLE.name)
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     """Check a dataset, and integrate its scene again, which takes some seconds for a day of Paris.
 
     Args:
-        folder: where it stands.
+        folder: its folder.
         report: called with the simulated time reached and the whole span, in s.
 
     Raises:
@@ -57,36 +58,45 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     try:
         files = read_files(folder)
     except DatasetError as error:
-        return Verification(error.problems[:MAX_PROBLEMS], [], [])
-    foreign = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:MAX_PROBLEMS]]
-    foreign += [f"and {more} more"] if (more := len(files.foreign) - MAX_PROBLEMS) > 0 else []
-    problems = [*islice(seal_problems(files), MAX_PROBLEMS), *_row_by_row(files)]
+        return Verification(error.problems[:_MAX_PROBLEMS], [], [])
+    foreign = _foreign(files)
+    problems = [*islice(_seal_problems(files), _MAX_PROBLEMS), *_row_by_row(files)]
     undecided: list[str] = []
     if not problems:
         try:
             problems, undecided = motion.problems(files, report)
         except (ArithmeticError, BeyondDoublesError):
-            problems = [BEYOND]
+            problems = [_BEYOND]
     if problems:
-        return Verification(problems[:MAX_PROBLEMS], foreign, [])
-    words = ", ".join([*undecided, *_claims(files.manifest)])
-    return Verification([], foreign, [f"not decided without --recompute: {words}"] if words else [])
+        return Verification(problems[:_MAX_PROBLEMS], foreign, [])
+
+    undecided = [*undecided, *_unconfirmed(files.manifest)]
+    if undecided:
+        undecided = [f"not decided without --recompute: {', '.join(undecided)}"]
+    return Verification([], foreign, undecided)
 
 
-def _claims(manifest: Manifest) -> list[str]:
-    """Return what a manifest says of its proof and its cross-checks, for which nothing but the index can vouch."""
-    confirmed = (
-        f" (confirmation: {Making.of(manifest.command).confirm})" if manifest.enclosure else ""
-    )
-    claims = {
-        "the proof": manifest.enclosure,
-        f"the cross-checks{confirmed}": manifest.cross_checks,
-    }
-    return [
-        name
-        for name, evidence in claims.items()
-        if evidence and seals().get(manifest.id) != manifest.seal
-    ]
+def _foreign(files: Files) -> list[str]:
+    """Return a note on each file that does not belong to a dataset, at most 20 and a count."""
+    notes = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:_MAX_PROBLEMS]]
+    more = len(files.foreign) - _MAX_PROBLEMS
+    if more > 0:
+        notes.append(f"and {more} more")
+    return notes
+
+
+def _unconfirmed(manifest: Manifest) -> list[str]:
+    """Return the evidence, proof and cross-checks, that no seal in the index vouches for."""
+    if seals().get(manifest.id) == manifest.seal:
+        return []
+    evidence = []
+    confirmation = ""
+    if manifest.enclosure:
+        evidence.append("the proof")
+        confirmation = f" (confirmation: {Making.of(manifest.command).confirm})"
+    if manifest.cross_checks:
+        evidence.append(f"the cross-checks{confirmation}")
+    return evidence
 
 
 def problems_of(folder: Path) -> list[str]:
@@ -98,31 +108,38 @@ def problems_of(folder: Path) -> list[str]:
     try:
         return _row_by_row(read_files(folder))
     except DatasetError as error:
-        return error.problems[:MAX_PROBLEMS]
+        return error.problems[:_MAX_PROBLEMS]
 
 
 def _row_by_row(files: Files) -> list[str]:
-    """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    of_tables = [
-        scene_check.table_problems,
-        scene_check.problems,
-        read_back.problems,
-        physics.problems,
-    ]
-    checks = [scene_check.problems] if files.manifest.alone else of_tables
-    for check in (*checks, function.problems):
+    """Return what is wrong with the record and with each row by itself.
+
+    The first check that finds a problem ends this: later ones rely on it.
+    """
+    if files.manifest.alone:
+        checks = [scene_check.problems, function.problems]
+    else:
+        checks = [
+            scene_check.table_problems,
+            scene_check.problems,
+            read_back.problems,
+            physics.problems,
+            function.problems,
+        ]
+    for check in checks:
         try:
-            problems = list(islice(check(files), MAX_PROBLEMS))
+            problems = list(islice(check(files), _MAX_PROBLEMS))
         except (ArithmeticError, BeyondDoublesError):
-            problems = [BEYOND]
+            problems = [_BEYOND]
         if problems:
             return problems
     return []
 
 
-def seal_problems(files: Files) -> Iterator[str]:
+def _seal_problems(files: Files) -> Iterator[str]:
     """Check the seal of a dataset that ships, in its place or copied from there."""
-    manifest, ships = files.manifest, golden_root() / files.manifest.id
+    manifest = files.manifest
+    ships = golden_root() / manifest.id
     in_place = files.folder.resolve() == ships.resolve()
     if in_place and manifest.level == "enclosed" and AUDIT not in manifest.command.split():
         yield f"{MANIFEST}: a proof that ships must be audited: make it again with {AUDIT}"
@@ -130,55 +147,81 @@ def seal_problems(files: Files) -> Iterator[str]:
     if seal in (None, manifest.seal):
         return
     if in_place or _is_copy(manifest, ships):
-        ours, theirs = manifest.seal[:12], seal[:12]
-        yield f"{MANIFEST}: its seal {ours}… is not that of the dataset that ships, {theirs}… (index.json)"
+        text = f"its seal {manifest.seal[:12]}… is not that of the dataset that ships, {seal[:12]}…"
+        yield f"{MANIFEST}: {text} (index.json)"
 
 
 def _is_copy(manifest: Manifest, ships: Path) -> bool:
-    """Return whether a dataset must be that which ships: made by the same command, not here with other versions."""
+    """Return whether a dataset must be the one that ships.
+
+    It was made by the same command, and not here with other versions.
+    """
     try:
         shipped = read_manifest(ships)
     except FoucaultError:
         return False
-    made_otherwise = shipped.generator != manifest.generator == generator()
-    same = manifest.scene == shipped.scene and manifest.command == shipped.command
-    return same and not made_otherwise
+    if manifest.scene != shipped.scene or manifest.command != shipped.command:
+        return False
+    made_here = manifest.generator == generator()
+    return manifest.generator == shipped.generator or not made_here
 
 
 def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list[str], list[str]]:
     """Solve the scene of a dataset again, and compare.
 
     Returns:
-        A sentence for each field and file that differs, and a note where only figures differ that are measured: those
-        of runs in double or long double, or of other versions of the libraries.
+        A sentence for each field and file that differs, and a note where only figures differ that
+        are measured: those of runs in double or long double, or of other versions of the libraries.
 
     Raises:
         InputError, DatasetError: as `read_files`.
         UnreachableError: the scene cannot be solved here.
     """
     files = read_files(folder)
-    manifest, end = files.manifest, float(files.scene.exact.t_end)
-    making = Making.of(manifest.command)
-    tell: Report | None = report and (lambda t: report(t, end))
-    solution = solve(files.scene, **making.solve_options(files.scene), report=tell)
-    texts = render(solution, manifest.id, tables=making.tables)
-    again = Manifest.model_validate_json(texts.pop(MANIFEST))
-    fields = [
-        *differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))
-    ]
+    manifest = files.manifest
+    contents = _made_again(files, report)
+    again = Manifest.model_validate_json(contents.pop(MANIFEST))
+    fields = [*differences(_without_following(manifest), _without_following(again))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
-    changed = [name for name, record in again.files.items() if record != manifest.files.get(name)]
-    wrong = [f"{name}: {_how_it_differs(files.texts.get(name), texts[name])}" for name in changed]
+    wrong = [
+        f"{name}: {_how_it_differs(files.texts.get(name), contents[name])}"
+        for name, record in again.files.items()
+        if record != manifest.files.get(name)
+    ]
     if wrong or not fields:
         return [*wrong, *lines], []
-    runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
-    excused = manifest.generator != again.generator or any(run.number in HARDWARE for run in runs)
-    if excused and all(place.startswith(MEASURED) for place, *_ in fields):
-        return [], [
-            f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}",
-            *lines,
-        ]
+
+    only_measured = all(place.startswith(_MEASURED) for place, *_ in fields)
+    if only_measured and _may_be_measured_otherwise(manifest, again):
+        figures = _differ(len(fields), "measured figure")
+        return [], [f"every digit and bound is the same; {figures}", *lines]
     return lines, []
+
+
+def _made_again(files: Files, report: motion.Progress | None) -> dict[str, Content]:
+    """Return the files of a dataset as its command makes them.
+
+    Raises:
+        UnreachableError: the scene cannot be solved here.
+    """
+    manifest = files.manifest
+    making = Making.of(manifest.command)
+    t_end = float(files.scene.exact.t_end)
+    tell: Report | None = report and (lambda t: report(t, t_end))
+    solution = solve(files.scene, **making.solve_options(files.scene), report=tell)
+    return render(solution, manifest.id, tables=making.tables)
+
+
+def _without_following(manifest: Manifest) -> dict[str, Any]:
+    """Return the fields of a manifest but for those that follow from everything else."""
+    return manifest.model_dump(exclude=_FOLLOWING)
+
+
+def _may_be_measured_otherwise(manifest: Manifest, again: Manifest) -> bool:
+    """Return whether libraries differ in version, or a run was in the numbers of the processor."""
+    runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
+    in_hardware = any(run.number in _HARDWARE for run in runs)
+    return in_hardware or manifest.generator != again.generator
 
 
 def _how_it_differs(old: str | None, new: Content) -> str:
@@ -188,13 +231,17 @@ def _how_it_differs(old: str | None, new: Content) -> str:
     if old is None:
         return "recomputing gives this file too"
     # with their ends, which may be all that differs
-    old_lines, new_lines = (text.splitlines(keepends=True) for text in (old, new))
+    old_lines = old.splitlines(keepends=True)
+    new_lines = new.splitlines(keepends=True)
     pairs = enumerate(zip_longest(old_lines, new_lines, fillvalue="nothing"), 1)
-    differing = [(number, *pair) for number, pair in pairs if pair[0] != pair[1]]
+    differing = [(number, before, after) for number, (before, after) in pairs if before != after]
     number, before, after = differing[0]
-    shown = repr if before.rstrip() == after.rstrip() else str.rstrip
-    return f"{_differ(len(differing), 'line')}; line {number} is {shown(before)}, recomputed {shown(after)}"
+    only_ends_differ = before.rstrip() == after.rstrip()
+    shown = repr if only_ends_differ else str.rstrip
+    first = f"line {number} is {shown(before)}, recomputed {shown(after)}"
+    return f"{_differ(len(differing), 'line')}; {first}"
 
 
-def _differ(count: int, what: str) -> str:
-    return f"{count} {what}s differ" if count > 1 else f"1 {what} differs"
+def _differ(count: int, noun: str) -> str:
+    """Return how many of something differ."""
+    return f"{count} {noun}s differ" if count > 1 else f"1 {noun} differs"

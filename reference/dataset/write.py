@@ -1,4 +1,4 @@
-"""Write a dataset: its files are checked in a temporary folder and put in place together, or not at all; tell of it."""
+"""Write a dataset: its files are checked elsewhere and put in place together, or not at all."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
 from ..system.workspace import OLD, workspace
 from .evidence import check_evidence
-from .making import OPTIONS
+from .making import options_in
 from .manifest import ALWAYS, FUNCTION, MANIFEST, OPTIONAL, Content
 from .place import RANGES, ships
 from .render import check_proved, render
@@ -28,7 +28,7 @@ _OLDER = {MANIFEST: "an older dataset", RANGES: "older ranges"}
 
 
 def check_target(folder: Path, mark: str = MANIFEST) -> None:
-    """Refuse a target that cannot be written, or that holds something other than what has the file `mark`.
+    """Refuse a target that cannot be written, or holds anything but a result with the file `mark`.
 
     Raises:
         InputError: the target cannot be written, or something else is in its place.
@@ -39,7 +39,9 @@ def check_target(folder: Path, mark: str = MANIFEST) -> None:
     foreign = names - {mark, *ALWAYS, *OPTIONAL}
     if foreign or (names and mark not in names):
         expected = f"a new or empty folder, or {_OLDER[mark]} and nothing else"
-        advice = f"Nothing was changed{f': {min(foreign)!r} is there' if foreign else ''}."
+        advice = "Nothing was changed."
+        if foreign:
+            advice = f"Nothing was changed: {min(foreign)!r} is there."
         raise InputError("--out", str(folder), expected, advice)
     with writable_place(folder):
         pass
@@ -57,20 +59,17 @@ def writable_place(folder: Path) -> Iterator[tuple[Path, Path]]:
         target.parent.mkdir(parents=True, exist_ok=True)
         with workspace(target.parent, target.name) as work:
             yield work, target
-    except (
-        OSError,
-        RuntimeError,
-    ) as error:  # the latter: links in a circle, on older versions of Python
+    # RuntimeError: links in a circle, on older versions of Python
+    except (OSError, RuntimeError) as error:
+        expected = "a writable place with room for a dataset"
         advice = f"{getattr(error, 'strerror', None) or error}."
-        raise InputError(
-            "--out", str(folder), "a writable place with room for a dataset", advice
-        ) from None
+        raise InputError("--out", str(folder), expected, advice) from None
 
 
 def write(
     solution: Solution, folder: str | Path, name: str | None = None, *, tables: bool = True
 ) -> Path:
-    """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in its place.
+    """Write a solution as a golden dataset, checked beside `folder` and then put in its place.
 
     Args:
         solution: what to write.
@@ -79,21 +78,18 @@ def write(
         tables: whether to write more than the golden function and its manifest.
 
     Raises:
-        InputError: the folder cannot be written, it ships and the proof is not audited, or nothing would be written.
-        DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
+        InputError: the folder cannot be written, it ships and the proof is not audited, or nothing
+            would be written.
+        DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as
+            it is.
     """
     if not isinstance(solution, Solution):
-        raise InputError(
-            "solution",
-            solution,
-            "a Solution",
-            "Solve the scene first. Ranges are written by write_ranges.",
-        )
+        advice = "Solve the scene first. Ranges are written by write_ranges."
+        raise InputError("solution", solution, "a Solution", advice)
     folder = checked_path("folder", folder, "the folder to write to")
     if not tables and solution.function is None:
-        raise InputError(
-            "tables", "none", "a golden function, or tables", "Solve it with function=True."
-        )
+        expected = "a golden function, or tables"
+        raise InputError("tables", "none", expected, "Solve it with function=True.")
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
         advice = "What ships in data/golden is proved by FLINT alone, too."
         raise InputError("audit", "no audit", "an audited proof", advice)
@@ -102,7 +98,7 @@ def write(
 
 
 def filled(work: Path, texts: Mapping[str, Content]) -> Path:
-    """Return a new folder in `work` with these files, which are on the disk."""
+    """Return a new folder in `work` with these files, written through to the disk."""
     new = work / "new"
     new.mkdir()
     for file, text in texts.items():
@@ -123,34 +119,33 @@ def replace(target: Path, new: Path, work: Path) -> None:
 def write_texts(
     texts: Mapping[str, Content], folder: Path, solution: Solution | None = None
 ) -> None:
-    """Write the files of a dataset that was rendered, as `write` does; without its solution, they were checked."""
+    """Write the rendered files of a dataset, after comparing them with the solution if it is given."""
     check_target(folder)
     with writable_place(folder) as (work, target):
         new = filled(work, texts)
-        if problems := problems_of(new):
+        problems = problems_of(new)
+        if problems:
             raise DatasetError(str(folder), problems)
         if solution is not None:
-            contents = {path.name: path.read_bytes() for path in new.iterdir()}
-            kept = {
-                name: data if name == FUNCTION[1] else data.decode()
-                for name, data in contents.items()
-            }
-            check_evidence(kept, solution)
-            check_proved(kept, solution)
+            written = {path.name: _content(path) for path in new.iterdir()}
+            check_evidence(written, solution)
+            check_proved(written, solution)
         replace(target, new, work)
         if ships(target):
             manifest = json.loads(texts[MANIFEST])
-            keep_seal(target.name, manifest["seal"], next(OPTIONS.finditer(manifest["command"]))[0])
+            keep_seal(target.name, manifest["seal"], str(options_in(manifest["command"])))
+
+
+def _content(path: Path) -> Content:
+    """Return the content of a file of a dataset: text, or the bytes of the golden function."""
+    data = path.read_bytes()
+    return data if path.name == FUNCTION[1] else data.decode()
 
 
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
-    """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
+    """Return what `generate --json` prints on a dataset, with measurements that are in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=Fraction)
-    measured = vars(solution.guard).items() if solution.guard else ()
-    guard = {
-        name: float(value) if isinstance(value, Fraction) else value for name, value in measured
-    }
     return {
         "scene": solution.scene.id,
         "out": str(folder),
@@ -160,8 +155,7 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "confirmed": solution.proof.confirmed if solution.proof else None,
         "transits": len(solution.directions),
         "possible": len(solution.possible),
-        # the least double, where it is less
-        "bound_m": float(bound) or math.ulp(0.0) * (bound != "0"),
+        "bound_m": _as_double(bound),
         "cpu_s": solution.cpu_s,
         "run_cpu_s": solution.run.cpu_s,
         "check_cpu_s": solution.check_s,
@@ -170,6 +164,23 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "compile_s": solution.run.compile_s,
         "number": solution.run.number,
         "steps": solution.run.steps,
-        "guard": guard or None,
+        "guard": _guard(solution) or None,
         "not_checked": solution.not_checked or None,
+    }
+
+
+def _as_double(bound: str) -> float:
+    """Return a bound as a double; the smallest one if it is less, but not 0."""
+    double = float(bound)
+    if double == 0 and bound != "0":
+        return math.ulp(0.0)
+    return double
+
+
+def _guard(solution: Solution) -> dict[str, Any]:
+    """Return what the pilot measured of the growth of errors, nothing without a pilot."""
+    measured = vars(solution.guard) if solution.guard else {}
+    return {
+        name: float(value) if isinstance(value, Fraction) else value
+        for name, value in measured.items()
     }

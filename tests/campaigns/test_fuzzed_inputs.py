@@ -38,7 +38,7 @@ def examine(word, *assignments):
     with contextlib.suppress(FoucaultError):  # no double is as large
         scene.with_values(["inputs=binary64"])
     placeholders(scene)
-    show(word, set_=list(assignments))
+    show(scene_word=word, set_=list(assignments))
 
 
 @pytest.mark.filterwarnings("ignore")

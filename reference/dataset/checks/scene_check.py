@@ -1,8 +1,8 @@
-"""Check manifest and tables against the scene, from which all of one follows, and times and first row of the other."""
+"""Check manifest and tables against the scene, and each with itself."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 
@@ -15,33 +15,35 @@ from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...plain_text import shortened
 from ...solver.solution import exact_decimals
 from ..files import Files
-from ..making import ENGINE, OPTIONS, Making, command
-from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Manifest, differences
+from ..making import ENGINE, Making, command, options_in
+from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Kind, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import bounds_of, completeness, following
 from ..render import derived_texts
 from ..sheets import NUMBERS, Sheet, by_field
 
-PREC = 128  # bits; only exact zeros matter here
-SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
+_PREC = 128  # bits; only exact zeros matter here
+_SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
 # a column is noise, and has no digits of its own, if no number is this many times its bound
-SIGNIFICANT = 8
+_SIGNIFICANT = 8
 _BOUNDED = ("position_m", "velocity_m_s", "transit_s")  # what a run or a proof may be off in
+_HALF = Fraction(1, 2)
 
 
 def table_problems(files: Files) -> Iterator[str]:
-    """Yield what is wrong with the rows of the tables, taken by themselves and against the scene's inputs."""
+    """Yield what is wrong with the rows of the tables, by themselves and against the scene."""
     yield from _times(files)
     yield from _release(files)
     yield from _digits(files)
-    for kind in ("grid", "transits"):
-        yield from _doubles(files, kind)
+    yield from _doubles(files, "grid")
+    yield from _doubles(files, "transits")
     if files.manifest.counts.transits:
         yield from _order(files, files.tables["transits.csv"])
         yield from _bound_column(files, files.tables["transits.csv"])
 
 
 def _times(files: Files) -> Iterator[str]:
+    """Check that the grid has the scene's times, exactly."""
     times = files.scene.exact.grid
     if [Fraction(row[0]) for row in files.tables["grid.csv"].rows] != times:
         yield "grid.csv: the times are not those of the scene"
@@ -61,155 +63,153 @@ def _release(files: Files) -> Iterator[str]:
 
 def _digits(files: Files) -> Iterator[str]:
     """Check that the largest number of each column of the grid has the digits asked for."""
-    sheet, manifest = files.tables["grid.csv"], files.manifest
+    sheet = files.tables["grid.csv"]
+    manifest = files.manifest
     for name in GRID:
-        largest, bound = (
-            max(abs(row[0]) for row in sheet.numbers((name,))),
-            manifest.bound("grid", name),
-        )
+        largest = max(abs(number) for (number,) in sheet.numbers((name,)))
+        bound = manifest.bound("grid", name)
         fewest = decimals_for(largest + bound, manifest.digits)
-        if largest > SIGNIFICANT * bound and manifest.decimals["grid"][name] < fewest:
+        if largest > _SIGNIFICANT * bound and manifest.decimals["grid"][name] < fewest:
             yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
 
 
-def _doubles(files: Files, kind: str) -> Iterator[str]:
-    """Check that each double is the nearest to some number that the bound on the printed decimal allows."""
-    plain, doubles = files.tables.get(f"{kind}.csv"), files.tables.get(f"{kind}.binary64.csv")
+def _doubles(files: Files, kind: Kind) -> Iterator[str]:
+    """Check that each double is the nearest to some number within the bound of the decimal."""
+    plain = files.tables.get(f"{kind}.csv")
+    doubles = files.tables.get(f"{kind}.binary64.csv")
     if plain is None or doubles is None or not plain.rows:
         return
-    count = len(plain.header)
+    name_of_file = f"{kind}.binary64.csv"
     for name in NUMBERS[kind]:
-        i, j = plain.header.index(name), count + NUMBERS[kind].index(name)
-        column = Fraction(0) if (kind, name) == ("grid", "t") else files.manifest.bound(kind, name)  # type: ignore[arg-type]
-        for row, double_row in zip(plain.rows, doubles.rows, strict=True):
-            bound = Fraction(row[-1]) if kind == "transits" and name == "t" else column
-            value, double = Fraction(row[i]), float(double_row[i])
-            if double.hex() != double_row[j] or not float(value - bound) <= double <= float(
-                value + bound
-            ):
-                yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not the double nearest to {row[i]}"
-            elif f"{double:.16e}" != double_row[i]:
-                yield f"{kind}.binary64.csv: {name} = {double_row[i]} is not written with the digits of {double!r}"
+        place = plain.header.index(name)
+        hex_place = len(plain.header) + NUMBERS[kind].index(name)
+        bounds = _bounds_by_row(files, kind, name, plain)
+        for row, double_row, bound in zip(plain.rows, doubles.rows, bounds, strict=True):
+            text = double_row[place]
+            double = float(text)
+            hexfloat = double_row[hex_place]
+            if double.hex() != hexfloat or not _may_be_nearest(double, Fraction(row[place]), bound):
+                yield f"{name_of_file}: {name} = {text} is not the double nearest to {row[place]}"
+            elif f"{double:.16e}" != text:
+                yield f"{name_of_file}: {name} = {text} is not written with the digits of {double!r}"
+
+    exact_places = [i for i, name in enumerate(plain.header) if name not in NUMBERS[kind]]
     for row, double_row in zip(plain.rows, doubles.rows, strict=True):
-        if any(
-            row[i] != double_row[i]
-            for i, name in enumerate(plain.header)
-            if name not in NUMBERS[kind]
-        ):
-            yield f"{kind}.binary64.csv: row {row[0]} has another direction, number or bound than {kind}.csv"
+        if any(row[i] != double_row[i] for i in exact_places):
+            yield f"{name_of_file}: row {row[0]} has another direction, number or bound than {kind}.csv"
+
+
+def _bounds_by_row(files: Files, kind: Kind, name: str, sheet: Sheet) -> list[Fraction]:
+    """Return the bound on a column's number in each row.
+
+    Times of the grid are exact; the time of a transit has a bound of its own.
+    """
+    if name == "t" and kind == "transits":
+        return [Fraction(row[-1]) for row in sheet.rows]
+    bound = Fraction(0) if name == "t" else files.manifest.bound(kind, name)
+    return [bound] * len(sheet.rows)
+
+
+def _may_be_nearest(double: float, value: Fraction, bound: Fraction) -> bool:
+    """Return whether a double is the nearest to some number within a bound of a value."""
+    return float(value - bound) <= double <= float(value + bound)
 
 
 def _order(files: Files, transits: Sheet) -> Iterator[str]:
-    """Check that transits count from 1, lie in (0, t_end] in order, alternate, and that the signs on the grid agree."""
+    """Check that transits count from 1, lie in (0, t_end] in order, and alternate.
+
+    The signs of vx on the grid must agree.
+    """
     times, bounds, directions = zip(*transits.numbers(("t", "bound", "direction")), strict=True)
     if [row[0] for row in transits.rows] != [str(k) for k in range(1, len(times) + 1)]:
         yield "transits.csv: k does not count from 1"
     if times[0] <= -bounds[0] or times[-1] > files.scene.exact.t_end + bounds[-1]:
         yield "transits.csv: a transit lies outside (0, t_end]"
-    for k, ((a, b), (p, q)) in enumerate(zip(pairwise(times), pairwise(bounds), strict=True), 1):
-        if b - a < -(p + q):
+    for k in range(1, len(times)):
+        if times[k] - times[k - 1] < -(bounds[k - 1] + bounds[k]):
             yield f"transits.csv: transits {k} and {k + 1} are not in order"
     if files.manifest.transits != "complete":
         return
-    for k, (p, q) in enumerate(pairwise(directions), 1):
-        if p == q:
+    for k, (before, after) in enumerate(pairwise(directions), 1):
+        if before == after:
             yield f"transits.csv: transits {k} and {k + 1} do not alternate"
     yield from _signs_on_grid(files, times, bounds, directions)
 
 
 def _signs_on_grid(
     files: Files,
-    times: tuple[Fraction, ...],
-    bounds: tuple[Fraction, ...],
-    directions: tuple[Fraction, ...],
+    times: Sequence[Fraction],
+    bounds: Sequence[Fraction],
+    directions: Sequence[Fraction],
 ) -> Iterator[str]:
-    """Check the sign of vx between transits, in every grid row where the bounds leave it certain."""
-    dv, passed = files.manifest.bound("grid", "vx"), 0
-    for t, vx in list(files.tables["grid.csv"].numbers(("t", "vx")))[1:]:
+    """Check the sign of vx between transits, in grid rows where the bounds leave it certain."""
+    vx_bound = files.manifest.bound("grid", "vx")
+    passed = 0
+    _, *rows = files.tables["grid.csv"].numbers(("t", "vx"))
+    for t, vx in rows:
         while passed < len(times) and times[passed] <= t:
             passed += 1
-        near = (k for k in (passed - 1, passed) if 0 <= k < len(times))
         expected = directions[passed - 1] if passed else -directions[0]
-        if (
-            abs(vx) > dv
-            and vx * expected < 0
-            and not any(abs(times[k] - t) <= bounds[k] for k in near)
-        ):
+        if abs(vx) <= vx_bound or vx * expected >= 0:
+            continue
+        neighbours = [k for k in (passed - 1, passed) if 0 <= k < len(times)]
+        if not any(abs(times[k] - t) <= bounds[k] for k in neighbours):
             yield f"grid.csv: t = {float(t):.17g}: the sign of vx contradicts the transits before it"
 
 
 def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
-    """Check each bound on a time: at least its rounding, at most what the runs or the proof leave open."""
+    """Check each bound on a time: at least its rounding, at most what runs or proof leave open."""
     manifest = files.manifest
     half_unit = Fraction(1, 2 * 10 ** manifest.decimals["transits"]["t"])
     gaps = [check.transit_s for check in manifest.cross_checks]
-    gaps += [manifest.enclosure.transit_radius_s] if manifest.enclosure else []
-    apart = 2 * max((Fraction(gap) for gap in gaps if gap is not None), default=Fraction(0))
+    if manifest.enclosure:
+        gaps.append(manifest.enclosure.transit_radius_s)
+    distance = 2 * max((Fraction(gap) for gap in gaps if gap is not None), default=Fraction(0))
     error = 2 * manifest.bound("grid", "vx")  # of xdot, and over ax that of the time
     grazing = error * largest_jerk(files)
     for k, (bound, ax) in enumerate(transits.numbers(("bound", "ax")), 1):
+        place = f"transits.csv: transit {k}: bound {float(bound):.2g} s"
         if bound < half_unit:
-            yield f"transits.csv: transit {k}: bound {float(bound):.2g} s is less than half a unit of the last digit"
-        elif ax * ax > grazing and bound > SLACK * (half_unit + max(apart, error / abs(ax))):
-            yield f"transits.csv: transit {k}: bound {float(bound):.2g} s is more than the runs leave open"
+            yield f"{place} is less than half a unit of the last digit"
+        elif ax * ax > grazing and bound > _SLACK * (half_unit + max(distance, error / abs(ax))):
+            yield f"{place} is more than the runs leave open"
     if max(transits.numbers(("bound",)))[0] != manifest.bound("transits", "t"):
         yield f"{MANIFEST}: bounds.transits.t is not the largest bound of transits.csv"
 
 
 def largest_jerk(files: Files) -> Fraction:
-    """Return a bound on the rate of xddot, in m/s³: where ax is small against it, a zero of xdot may graze.
+    """Return a bound on the rate of xddot, in m/s³; where ax is small against it, a zero may graze.
 
-    With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at the release and drag
-    can only lower, it is 8 l (p + v² + w²) (v + w).
+    With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at
+    the release and drag can only lower, it is 8 l (p + v² + w²) (v + w).
     """
     start = Start.of(files.scene.exact, GUARD_BITS)
-    ctx, k = start.ctx, start.k
-    pull, w = ctx.norm(k.pull), 2 * abs(k.rate) + k.drag
+    ctx = start.ctx
+    k = start.k
+    pull = ctx.norm(k.pull)
+    w = 2 * abs(k.rate) + k.drag
     v = ctx.sqrt(ctx.norm(start.v) ** 2 + 2 * (pull - dot(start.n, k.pull) + k.rate**2))
     return to_fraction(8 * k.length * (pull + v**2 + w**2) * (v + w))
 
 
 def problems(files: Files) -> Iterator[str]:
-    """Yield what of a manifest, of the page and of the vectors does not follow from the scene and the tables."""
-    manifest, scene, run = files.manifest, files.scene, files.manifest.run
-    if run.formulation not in FORMULATIONS:
-        yield f"{MANIFEST}: run.formulation = {run.formulation} is none"
+    """Yield what in manifest, page and vectors does not follow from the scene and the tables."""
+    manifest = files.manifest
+    formulation = manifest.run.formulation
+    if formulation not in FORMULATIONS:
+        yield f"{MANIFEST}: run.formulation = {formulation} is none"
         return
-    vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
-    counts, possible, sought = (
-        manifest.counts,
-        manifest.possible,
-        scene.run.transits and not vanishes,
-    )
-    expected = manifest.model_copy(
-        update={
-            **following(scene, run.formulation, run.number, files.tables.get("grid.csv")),
-            "level": scene.run.level,
-            "digits": scene.run.digits,
-            "counts": counts.model_copy(
-                update={"transits": counts.transits * sought, "possible": len(possible)}
-            ),
-            "possible": possible * sought,
-            "bounds": bounds_of(manifest.bounds.grid, manifest.bounds.transits),
-            "transits": completeness(scene, vanishes, bool(possible)),
-        }
-    )
+    expected = _expected(files)
     for place, *values in differences(manifest.model_dump(), expected.model_dump()):
         old, new = (shortened(str(value), LONGEST_VALUE) for value in values)
         yield f"{MANIFEST}: {place} = {old} does not follow from the scene and the tables, which give {new}"
     # what is checked below needs them whole
-    if (manifest.scene, manifest.notes) != (expected.scene, expected.notes):
+    if manifest.scene != expected.scene or manifest.notes != expected.notes:
         return
     if not _is_its_id(files):
-        yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    match = OPTIONS.search(manifest.command)
-    options = match and (match[0] if manifest.level == "enclosed" else f"{ENGINE} {match[1]}")
-    if (
-        not options
-        or (FUNCTION[0] in manifest.files) != Making.of(options).function
-        or manifest.alone == Making.of(options).tables
-        or command(scene, manifest.id, options) != manifest.command
-    ):
+        full_id = dataset_id(files.scene)
+        yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {full_id}"
+    if not _command_follows(files):
         yield f"{MANIFEST}: command does not follow from the scene"
         return
     yield from _possible(files)
@@ -220,9 +220,56 @@ def problems(files: Files) -> Iterator[str]:
         yield from _derived(files)
 
 
+def _expected(files: Files) -> Manifest:
+    """Return the manifest with everything that follows from scene and tables as it should be."""
+    manifest = files.manifest
+    scene = files.scene
+    run = manifest.run
+    vanishes = xdot_vanishes(Start.of(scene.exact, _PREC))
+    are_sought = scene.run.transits and not vanishes
+    possible = manifest.possible if are_sought else []
+    counts = {
+        "transits": manifest.counts.transits if are_sought else 0,
+        "possible": len(manifest.possible),
+    }
+    grid = files.tables.get("grid.csv")
+    return manifest.model_copy(
+        update={
+            **following(scene, run.formulation, run.number, grid),
+            "level": scene.run.level,
+            "digits": scene.run.digits,
+            "counts": manifest.counts.model_copy(update=counts),
+            "possible": possible,
+            "bounds": bounds_of(manifest.bounds.grid, manifest.bounds.transits),
+            "transits": completeness(scene, vanishes, bool(manifest.possible)),
+        }
+    )
+
+
+def _command_follows(files: Files) -> bool:
+    """Return whether the command is that of the scene, and makes the files that there are."""
+    manifest = files.manifest
+    options = options_in(manifest.command)
+    if options is None:
+        return False
+    if manifest.level != "enclosed":
+        options = f"{ENGINE} {Making.of(options).engine}"
+    making = Making.of(options)
+    return (
+        making.function == (FUNCTION[0] in manifest.files)
+        and making.tables != manifest.alone
+        and command(files.scene, manifest.id, options) == manifest.command
+    )
+
+
 def _is_its_id(files: Files) -> bool:
-    """Return whether an id names the scene's changes: all against a shipped scene, else some that the scene has."""
-    name, scene, full_id = files.manifest.id, files.scene, dataset_id(files.scene)
+    """Return whether an id names the scene's changes.
+
+    Against a shipped scene it names all; for a user's own scene, some fields that it has.
+    """
+    name = files.manifest.id
+    scene = files.scene
+    full_id = dataset_id(scene)
     if name == full_id or shipped_scene(scene) is not scene:
         return name == full_id
     # of a user's own scene the fields before the changes are not known
@@ -231,87 +278,113 @@ def _is_its_id(files: Files) -> bool:
 
 
 def _possible(files: Files) -> Iterator[str]:
+    """Check that the possible transits lie in intervals in order."""
     last = Fraction(0)
     for interval in files.manifest.possible:
-        low, high = Fraction(interval.from_s), Fraction(interval.to_s)
+        low = Fraction(interval.from_s)
+        high = Fraction(interval.to_s)
         if not last <= low < high <= files.scene.exact.t_end:
             yield f"{MANIFEST}: possible transits must be intervals in order within (0, t_end]"
         last = high
 
 
 def _sections(files: Files) -> Iterator[str]:
-    """Check that `sections.csv` has the scene's sections in order, their rows counted, with bounds of their digits."""
-    record, sheet = files.manifest.sections, files.tables.get("sections.csv")
+    """Check that `sections.csv` has the scene's sections in order, their rows counted.
+
+    A bound is at least half a unit of the last digit.
+    """
+    record = files.manifest.sections
     if record is None:
         return
     words = files.scene.run.sections or ()
     if not tuple(record.counts) == tuple(record.possible) == words:
         yield f"{MANIFEST}: sections are not those of the scene: {', '.join(words)}"
-    numbered = [
-        (word, str(k)) for word, count in record.counts.items() for k in range(1, count + 1)
-    ]
-    if sheet and [row[:2] for row in sheet.rows] != numbered:
-        yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
+    sheet = files.tables.get("sections.csv")
+    if sheet is not None:
+        numbered = [
+            (word, str(k)) for word, count in record.counts.items() for k in range(1, count + 1)
+        ]
+        if [row[:2] for row in sheet.rows] != numbered:
+            yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
     for name, bound in record.bounds.items():
-        if Fraction(bound) * 10 ** record.decimals[name] < Fraction(1, 2):
+        if Fraction(bound) * 10 ** record.decimals[name] < _HALF:
             yield f"{MANIFEST}: sections.bounds.{name} = {bound} is less than half a unit of the last digit"
 
 
 def _bounds(manifest: Manifest) -> Iterator[str]:
-    """Check that each bound covers the rounding to the printed digits, and leaves only the last of them open."""
-    for kind in ("grid", "transits"):
-        for name, bound in getattr(manifest.bounds, kind).items():
-            units = Fraction(bound) * 10 ** manifest.decimals[kind][name]
-            if units < Fraction(1, 2) or (units > 1 and (kind == "grid" or manifest.enclosure)):
-                yield f"{MANIFEST}: bounds.{kind}.{name} = {bound} is not from half a unit to one of the last digit"
+    """Check that each bound covers the rounding to the printed digits.
+
+    On the grid, and with a proof everywhere, it is at most a unit of the last digit.
+    """
+    yield from _bounds_in_units(manifest, "grid", manifest.bounds.grid, limited=True)
+    is_proved = manifest.enclosure is not None
+    yield from _bounds_in_units(manifest, "transits", manifest.bounds.transits, limited=is_proved)
+
+
+def _bounds_in_units(
+    manifest: Manifest, kind: Kind, bounds: dict[str, str], limited: bool
+) -> Iterator[str]:
+    """Check that bounds are from half a unit of the last digit, if `limited` up to one."""
+    for name, bound in bounds.items():
+        units = Fraction(bound) * 10 ** manifest.decimals[kind][name]
+        if units < _HALF or (limited and units > 1):
+            yield f"{MANIFEST}: bounds.{kind}.{name} = {bound} is not from half a unit to one of the last digit"
 
 
 def _evidence(manifest: Manifest) -> Iterator[str]:
-    """Check the level against what stands behind it: other runs, or a proof, as close as the bounds say."""
-    checks, bounds, run, proof = (
-        manifest.cross_checks,
-        manifest.bounds,
-        manifest.run,
-        manifest.enclosure,
-    )
+    """Check the level against its evidence: other runs, or a proof, as close as the bounds say."""
+    checks = manifest.cross_checks
+    run = manifest.run
     confirming = [check for check in checks if check.formulation != run.formulation]
     if manifest.level == "confirmed" and not confirming:
         yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
-    same_run = [
+    if manifest.level == "self_consistent" and all(
         (check.formulation, check.number) == (run.formulation, run.number) for check in checks
-    ]
-    if manifest.level == "self_consistent" and all(same_run):
+    ):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
-    if proof is not None:
-        close = [check for check in confirming if not any(_too_far(check, manifest))]
-        # a sample sees no transits
-        seen = manifest.transits != "complete" or any(check.transit_s for check in close)
-        confirm = Making.of(manifest.command).confirm
-        if not {
-            "whole": close and seen,
-            "sampled": any(not check.transit_s for check in close),
-            "none": True,
-        }[confirm]:
-            yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {confirm}"
-        radii = proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s
-        for name, radius in zip(_BOUNDED, radii, strict=True):
-            if (
-                radius is not None
-                and (bound := getattr(bounds, name))
-                and Fraction(radius) > SLACK * Fraction(bound)
-            ):
-                yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
+    if manifest.enclosure is not None:
+        yield from _confirmation(manifest, confirming)
+        yield from _radii(manifest)
     for check in checks:
         if check.formulation not in FORMULATIONS:
             yield f"{MANIFEST}: cross_checks: {check.formulation} is no formulation"
-        if proof is None:  # a proof needs no close second run
+        if manifest.enclosure is None:  # a proof needs no close second run
             yield from _too_far(check, manifest)
+
+
+def _confirmation(manifest: Manifest, confirming: list[CrossCheckRecord]) -> Iterator[str]:
+    """Check that the runs in another formulation confirm as much of a proof as the command says."""
+    confirm = Making.of(manifest.command).confirm
+    close = [check for check in confirming if not any(_too_far(check, manifest))]
+    match confirm:
+        case "whole":
+            sees_transits = any(check.transit_s for check in close)
+            shown = bool(close) and (sees_transits or manifest.transits != "complete")
+        case "sampled":
+            shown = any(not check.transit_s for check in close)  # a sample sees no transits
+        case "none":
+            shown = True
+    if not shown:
+        yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {confirm}"
+
+
+def _radii(manifest: Manifest) -> Iterator[str]:
+    """Check that the radii of a proof are within the bounds."""
+    proof = manifest.enclosure
+    if proof is None:
+        return
+    radii = (proof.position_radius_m, proof.velocity_radius_m_s, proof.transit_radius_s)
+    for name, radius in zip(_BOUNDED, radii, strict=True):
+        bound = getattr(manifest.bounds, name)
+        if radius is not None and bound and Fraction(radius) > _SLACK * Fraction(bound):
+            yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
 
 
 def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
     """Yield where a run is further from the published one than the bounds allow."""
     for name in _BOUNDED:
-        gap, bound = getattr(check, name), getattr(manifest.bounds, name)
+        gap = getattr(check, name)
+        bound = getattr(manifest.bounds, name)
         if gap is not None and bound and Fraction(gap) > Fraction(bound):
             yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
 
