@@ -9,17 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import typer
 
-from reference import FoucaultError, InputError, Ranges, Scene, load_ranges, load_scene
+from reference import FoucaultError, InputError, Scene, load_scene
 from reference.commands.progress import progress
-from reference.commands.terminal import emit, refuse, stoppable
-from reference.dataset.place import RANGES, golden_folder
+from reference.commands.terminal import stoppable
 from reference.errors import Stopped
 from reference.numbers.precision import Array
 from reference.plain_text import plain
-from reference.solver.ranges import Intervals
-from reference.solver.uncertain import exact_texts, widths_of
 
 from .. import judge
 from ..approximations import APPROXIMATIONS, Motion
@@ -31,8 +27,6 @@ from ..candidates.read import named, read, read_stream, read_transits
 from ..report import suite
 from ..score.baseline import FILE, document_of, rows_of
 from ..score.document import of_outcome
-from ..score.measured import APART, Measured, measured
-from ..score.passages import PassageScore, score_passages
 from ..score.verdict import Outcome, Score
 from .experimenting import GIVEN, Runnable
 from .options import announce
@@ -227,64 +221,6 @@ class Judging:
     ) -> Score:
         return self.score(load_scene(word), self._read(candidate), self.times(transits), earlier)
 
-    def hold(
-        self,
-        files: list[str] | None,
-        transits: str | None,
-        section: str | None,
-        truth: Ranges | Scene,
-        as_json: bool,
-    ) -> None:
-        """Hold files, or transits alone, against ranges, or passages of a section against a scene; print the outcome.
-
-        Exit status 1 where one disagrees.
-        """
-        scene = truth.scene if isinstance(truth, Ranges) else truth
-        word = "" if section is None else _section_word(section, transits, scene)
-        if not files and transits is None:
-            raise InputError(
-                "CANDIDATE",
-                "nothing",
-                "a file, - for stdin, or --transits",
-                "Name what was measured.",
-            )
-        times, tolerance = self.times(transits), self.options["tolerance"]
-        scores: list[Measured | PassageScore] = []
-        for rows in [self._read(file) for file in files or ()] or [None]:
-            with stoppable("nothing was written"), progress() as show:
-                label = "the truth" if truth is scene else "the proof"
-                report: Any = show(f"{label} of {scene.id}", float(scene.exact.t_end))
-                if isinstance(truth, Ranges):
-                    scores.append(
-                        measured(
-                            rows,
-                            times,
-                            truth,
-                            tolerance or 0.0,
-                            str(transits),
-                            report,
-                            word or None,
-                        )
-                    )
-                else:
-                    assert times is not None
-                    scores.append(
-                        score_passages(
-                            str(transits), times, scene, word, tolerance, announce, report
-                        )
-                    )
-        if as_json:
-            emit(
-                scores[0].document()
-                if len(scores) == 1
-                else {"rows": [score.document() for score in scores]}
-            )
-        else:
-            for line in (line for score in scores for line in score.lines()):
-                typer.echo(line)
-        if any(score.verdict == APART for score in scores):
-            raise typer.Exit(1)
-
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
         return None if name is None else read_transits(name, self.naming.units)
@@ -295,30 +231,3 @@ class Judging:
             if name is None
             else read(name, columns=self.naming.columns, units=self.naming.units)
         )
-
-
-def ranges_named(word: str | None) -> Ranges | None:
-    """Return the ranges that a word names, an id or a folder; None if it names none."""
-    folder = None if word is None else golden_folder(word)
-    return load_ranges(folder) if folder is not None and (folder / RANGES).is_file() else None
-
-
-def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
-    """Return ranges that have no times yet.
-
-    Raises:
-        InputError: an input, or a width.
-    """
-    return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), {}, "")
-
-
-def _section_word(section: str, transits: str | None, scene: Scene) -> str:
-    """Return the word of the one section that transits are passages of, as scenes write it."""
-    if transits is None:
-        refuse({"--section": section}, "without --transits")
-    words = scene.with_values({"run.sections": section}).run.sections or ()
-    if len(words) != 1:
-        raise InputError(
-            "--section", section, "one section", "Score the passages of each by themselves."
-        )
-    return words[0]

@@ -20,9 +20,12 @@ class Options:
     run: Annotated[str | None, option("--run", "Run a program.", "COMMAND")] = None
     timeout: Annotated[float | None, option("--timeout", "Stop it.", "S")] = None
     audit: Annotated[bool | None, option("--audit/--no-audit", "Prove it again.")] = None
+    reading: Annotated[str, option("--reading", "Read it so.", "WORD")] = "auto"
 
 
-CONFLICTS = [Conflict("--timeout --no-audit", "without --run", lambda chosen: chosen.run is None)]
+CONFLICTS = [
+    Conflict("--timeout --no-audit --reading", "without --run", lambda chosen: chosen.run is None)
+]
 
 
 def run(options: Options) -> None:
@@ -48,6 +51,7 @@ def test_values_are_named_as_a_user_types_them():
         "--timeout": None,
         "--audit": None,
         "--no-audit": True,
+        "--reading": None,
     }
 
 
@@ -57,3 +61,9 @@ def test_an_option_without_effect_is_refused_by_its_word_and_the_case():
         refuse_conflicts(Options("paris", None, 3.0), CONFLICTS)
     with pytest.raises(InputError, match=r"--no-audit"):
         refuse_conflicts(Options("paris", audit=False), CONFLICTS)
+
+
+def test_an_option_at_its_default_changes_nothing_and_is_not_refused():
+    refuse_conflicts(Options("paris", reading="auto"), CONFLICTS)
+    with pytest.raises(InputError, match=r"--reading: got 'binary64'.*without --run"):
+        refuse_conflicts(Options("paris", reading="binary64"), CONFLICTS)
