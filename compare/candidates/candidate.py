@@ -145,6 +145,21 @@ class Candidate:
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
 
 
+@dataclass(frozen=True)
+class Passages:
+    """Times at which a bob passed, measured or computed.
+
+    Attributes:
+        name: the file that they came from.
+        times: in s, in order.
+        section: the word of the section that was passed, such as "gate 30"; None for transits, xdot = 0.
+    """
+
+    name: str
+    times: Array
+    section: str | None = None
+
+
 def _lost_frames(columns: dict[str, Array]) -> npt.NDArray[np.bool_]:
     """Return which rows hold NaN though a later row does not: a camera may miss a frame, but no run recovers."""
     lost = np.zeros(len(next(iter(columns.values()))), dtype=bool)

@@ -44,8 +44,12 @@ LABEL = re.compile(
     r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?",
     re.IGNORECASE,
 )
-TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
-LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
+TIMES: dict[str, Fraction] = {
+    unit: Fraction(size) for unit, size in vocabulary["times"].items()
+}  # in s
+LENGTHS: dict[str, Fraction] = {
+    unit: Fraction(size) for unit, size in vocabulary["lengths"].items()
+}  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read

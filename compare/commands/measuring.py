@@ -13,11 +13,12 @@ from reference.dataset.place import RANGES, golden_folder
 from reference.solver.ranges import Intervals
 from reference.solver.uncertain import exact_texts, widths_of
 
-from ..candidates.candidate import Candidate
+from ..candidates.candidate import Candidate, Passages
 from ..candidates.names import Naming
 from ..candidates.read import read, read_transits
-from ..score.measured import APART, Measured, measured
+from ..score.measured import DISAGREES, Measured, measured
 from ..score.passages import PassageScore, score_passages
+from ..truth import Progress
 from .options import announce
 
 _STOPPED = "nothing was written"  # what an interruption leaves
@@ -41,7 +42,17 @@ def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
     return Ranges(scene, uncertain, (), Intervals((), ()), {}, "")
 
 
-def section_word(section: str, scene: Scene) -> str:
+def passages_of(file: str, section: str | None, scene: Scene, naming: Naming) -> Passages:
+    """Read passages of a section, or transits, from a file.
+
+    Raises:
+        InputError: the file cannot be read, or the word is not that of one section.
+    """
+    word = None if section is None else _section_word(section, scene)
+    return Passages(file, read_transits(file, naming.units), word)
+
+
+def _section_word(section: str, scene: Scene) -> str:
     """Return the word of one section as scenes write it.
 
     Raises:
@@ -57,18 +68,16 @@ def section_word(section: str, scene: Scene) -> str:
 
 def compare_with_ranges(
     files: Sequence[str],
-    transits: str | None,
-    section: str | None,
+    passages: Passages | None,
     ranges: Ranges,
     tolerance_m: float,
     naming: Naming,
 ) -> list[Measured]:
-    """Compare each file of rows, or times alone, with ranges.
+    """Compare each file of rows, or passages alone, with ranges.
 
     Args:
         files: rows of positions.
-        transits: a file of times of xdot = 0, or of passages of a section.
-        section: its word; None for transits.
+        passages: of a section, or transits.
         ranges: those that ship, or ranges without times, which are proved now.
         tolerance_m: how far outside a number of a row may be.
         naming: what the user says of the columns of files.
@@ -76,10 +85,6 @@ def compare_with_ranges(
     Raises:
         InputError: no file is given, or one cannot be read or compared.
     """
-    if not files and transits is None:
-        expected = "a file, - for stdin, or --transits"
-        raise InputError("CANDIDATE", "nothing", expected, "Name what was measured.")
-    times = None if transits is None else read_transits(transits, naming.units)
     candidates: list[Candidate | None] = [None]
     if files:
         candidates = [read(file, columns=naming.columns, units=naming.units) for file in files]
@@ -88,24 +93,19 @@ def compare_with_ranges(
     for candidate in candidates:
         with stoppable(_STOPPED), progress() as show:
             report = show(f"the proof of {ranges.scene.id}", float(ranges.scene.exact.t_end))
-            scores.append(
-                measured(candidate, times, ranges, tolerance_m, str(transits), report, section)
-            )
+            scores.append(measured(candidate, passages, ranges, tolerance_m, report))
     return scores
 
 
-def compare_passages(
-    file: str, section: str, scene: Scene, tolerance_m: float | None, naming: Naming
-) -> PassageScore:
-    """Compare the times in a file with the passages of a section of a scene.
+def compare_passages(passages: Passages, scene: Scene, tolerance_m: float | None) -> PassageScore:
+    """Compare passages of a section with those of a scene.
 
     Raises:
-        InputError: the file cannot be read, or has no time in the scene's span.
+        InputError: none is in the scene's span.
     """
-    times = read_transits(file, naming.units)
     with stoppable(_STOPPED), progress() as show:
         report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-        return score_passages(file, times, scene, section, tolerance_m, announce, report)
+        return score_passages(passages, scene, tolerance_m, Progress(announce, report))
 
 
 def print_scores(scores: Sequence[Measured | PassageScore], as_json: bool) -> None:
@@ -121,5 +121,5 @@ def print_scores(scores: Sequence[Measured | PassageScore], as_json: bool) -> No
         for score in scores:
             for line in score.lines():
                 typer.echo(line)
-    if any(score.verdict == APART for score in scores):
+    if any(score.verdict == DISAGREES for score in scores):
         raise typer.Exit(1)

@@ -335,7 +335,7 @@ def _score(options: ScoreOptions) -> None:
         _compare_with_ranges(options, options.ranges, naming)
         return
     if options.section is not None:
-        _compare_passages(options, options.section, naming)
+        _compare_passages(options, naming)
         return
 
     _check_values(options)
@@ -389,16 +389,17 @@ def _check_values(options: ScoreOptions) -> None:
 
 def _judging(options: ScoreOptions, naming: Naming) -> Judging:
     """Return what judges every candidate of the command."""
+    from ..score.judge import JudgeOptions
     from .judging import Judging
 
-    limits = {
-        "tolerance": options.tolerance,
-        "inputs": options.inputs,
-        "t_end": None if options.t_end is None else float(options.scene.exact.t_end),
-        "covers": options.covers or 0.0,
-        "as_model": options.as_model,
-        "explain": not options.no_diagnosis,
-    }
+    limits = JudgeOptions(
+        tolerance_m=options.tolerance,
+        inputs=options.inputs,
+        t_end_s=None if options.t_end is None else float(options.scene.exact.t_end),
+        covers=options.covers or 0.0,
+        as_model=options.as_model,
+        explain=not options.no_diagnosis,
+    )
     return Judging(naming, limits, options.baseline)
 
 
@@ -499,23 +500,33 @@ def _print_lines(outcomes: list[Outcome], github: bool) -> None:
 
 
 def _compare_with_ranges(options: ScoreOptions, ranges: Ranges, naming: Naming) -> None:
-    """Compare files, or times alone, with what is proved for uncertain inputs, and print the scores."""
-    from .measuring import compare_with_ranges, print_scores, section_word
+    """Compare files, or times alone, with what is proved for uncertain inputs, and print the scores.
 
-    section = None if options.section is None else section_word(options.section, ranges.scene)
+    Raises:
+        InputError: there is nothing to compare.
+    """
+    from .measuring import compare_with_ranges, passages_of, print_scores
+
     files = options.candidates or []
+    if not files and options.transits is None:
+        expected = "a file, - for stdin, or --transits"
+        raise InputError("CANDIDATE", "nothing", expected, "Name what was measured.")
+
+    passages = None
+    if options.transits is not None:
+        passages = passages_of(options.transits, options.section, ranges.scene, naming)
     tolerance_m = options.tolerance or 0.0
-    scores = compare_with_ranges(files, options.transits, section, ranges, tolerance_m, naming)
+    scores = compare_with_ranges(files, passages, ranges, tolerance_m, naming)
     print_scores(scores, options.as_json)
 
 
-def _compare_passages(options: ScoreOptions, section: str, naming: Naming) -> None:
+def _compare_passages(options: ScoreOptions, naming: Naming) -> None:
     """Compare passages of a section with those of the scene, and print the score.
 
     Raises:
         InputError: there is a file of rows as well.
     """
-    from .measuring import compare_passages, print_scores, section_word
+    from .measuring import compare_passages, passages_of, print_scores
 
     if options.candidates:
         raise InputError(
@@ -527,10 +538,9 @@ def _compare_passages(options: ScoreOptions, section: str, naming: Naming) -> No
         )
     scene = options.scene
     if options.reading is None:
-        # the program that the passages are from has most likely read the inputs as doubles
+        # the program that printed the passages most likely took the inputs as doubles
         scene = scene.with_values(["inputs=binary64"])
 
-    assert options.transits is not None  # else --section would have no effect
-    word = section_word(section, scene)
-    score = compare_passages(options.transits, word, scene, options.tolerance, naming)
-    print_scores([score], options.as_json)
+    assert options.transits is not None  # else --section was refused
+    passages = passages_of(options.transits, options.section, scene, naming)
+    print_scores([compare_passages(passages, scene, options.tolerance)], options.as_json)

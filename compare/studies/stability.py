@@ -23,7 +23,7 @@ from reference.status import Status
 
 from ..candidates.external import STEPS
 from ..methods import METHODS
-from ..truth import golden_of
+from ..truth import Progress, golden_of
 from . import users_program
 from .campaign import Counted, Measurement, campaign
 from .character import Character, character, reason_of
