@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from reference import InputError, Ranges, prove_ranges
@@ -241,12 +242,12 @@ class _Times:
         """The word for a passage: of its section, or "transit"."""
         return self.section or _TRANSIT
 
-    @property
+    @cached_property
     def rows_in_span(self) -> list[Fraction]:
         """The rows up to the end of the scene."""
         return [t for t in self.rows if t <= self.end]
 
-    @property
+    @cached_property
     def passages_in_span(self) -> list[Fraction]:
         """The passages after the release, up to the end of the scene."""
         return [t for t in self.passages if 0 < t <= self.end]
