@@ -52,7 +52,7 @@ from .verdict import Score
 # readings of the scene's numbers; auto: by the candidate's precision
 READINGS = ("auto", "decimal", "binary64")
 _ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
-_SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
+SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
 _DOUBT = 3  # times the reference's bound, which each of the three coordinates may be off by
 
 
@@ -330,7 +330,7 @@ def _amplitude(candidate: Candidate, errors: TrajectoryErrors) -> float:
         return errors.amplitude_m
     reach_m = _reach(candidate.columns["x"], candidate.columns["y"])
     true_reach_m = _reach(errors.truth.states[:, 0], errors.truth.states[:, 1])
-    if 0 < reach_m < _SMALL * true_reach_m:
+    if 0 < reach_m < SMALL * true_reach_m:
         return errors.amplitude_m * (reach_m / true_reach_m)
     return errors.amplitude_m
 

@@ -13,9 +13,9 @@ from ..candidates.clock import shown
 from ..candidates.names import LONG_NAMES, TIMES
 from .clock_start import SUBTRACT
 
-_FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
-_FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
-_SAME = 1e-3  # relative difference of ends that count as one
+FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
+FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
+SAME = 1e-3  # relative difference of ends that count as one
 
 
 def rows_until(candidate: Candidate, end_s: float) -> Candidate:
@@ -89,10 +89,10 @@ def _advice(candidate: Candidate, scene: Scene) -> str:
     span = last - first
 
     unit = _finer_unit(span, end_s)
-    if unit is not None and span > _FAR * end_s:
+    if unit is not None and span > FAR * end_s:
         last_s = last * float(TIMES[unit])
         first_s = first * float(TIMES[unit])
-        fits = last_s <= end_s * (1 + _SAME)
+        fits = last_s <= end_s * (1 + SAME)
         where = f"and they end at {last_s:.10g} s" if fits else f"from {shown(first_s)} on"
         return f"They look like {LONG_NAMES[unit]}: --units {unit} reads them so, {where}."
 
@@ -107,7 +107,7 @@ def _advice(candidate: Candidate, scene: Scene) -> str:
 
 def _finer_unit(span: float, end_s: float) -> str | None:
     """Return the coarsest unit finer than a second in which a span fits into a scene; None if none does."""
-    for unit in _FINER:
-        if span * float(TIMES[unit]) <= end_s * (1 + _SAME):
+    for unit in FINER:
+        if span * float(TIMES[unit]) <= end_s * (1 + SAME):
             return unit
     return None

@@ -151,7 +151,7 @@ def _solved(
     for count, (name, scene) in enumerate(scenes.items()):
         report = solving and partial(_report_time, solving, count, len(scenes), scene)
         try:
-            golden = golden_of(scene, TRUTH_DIGITS, report=report, grid=True)
+            golden = golden_of(scene, TRUTH_DIGITS, Progress(report=report), grid=True)
             times = GridTruth(golden, float(scene.exact.t_end)).times
             states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
             problems[name] = scene, golden.path, character(scene, times, states)
