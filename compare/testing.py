@@ -26,9 +26,9 @@ from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
 from .candidates.arrays import candidate_of, real_array
-from .candidates.candidate import COLUMNS
+from .candidates.candidate import COLUMNS, Candidate
 from .candidates.external import placeholders
-from .score.judge import judge
+from .score.judge import checked_options, judge_with
 from .score.verdict import Score, lines
 
 
@@ -68,28 +68,31 @@ def assert_agrees(
         InputError: an array has the wrong shape, or a number is not finite.
     """
     scene = as_scene(scene)
-    rows, times = real_array(states, "states"), real_array(t, "t")
-    if rows.ndim == 2 and 1 < rows.shape[0] != times.size == rows.shape[1]:
-        advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
-        raise InputError(
-            "states", f"shape {rows.shape} for {times.size} times", "shape (rows, columns)", advice
-        )
-    if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
-        raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
-    arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
-    result = judge(
-        candidate_of("states", arrays),
-        scene,
-        transits=transits,
-        tolerance=tolerance,
-        inputs=inputs,
-        covers=covers,
-        as_model=as_model,
-        baseline=baseline,
+    candidate = _candidate_of(real_array(states, "states"), real_array(t, "t"))
+    options = checked_options(
+        tolerance, inputs, t_end=None, covers=covers, as_model=as_model, explain=True
     )
-    if not result.accepted:
-        raise AssertionError(message(result))
-    return result
+    score = judge_with(options, candidate, scene, transits=transits, baseline=baseline)
+    if not score.accepted:
+        raise AssertionError(_message(score))
+    return score
+
+
+def _candidate_of(states: Array, times: Array) -> Candidate:
+    """Return the candidate of states, one row for each time.
+
+    Raises:
+        InputError: the states have another shape.
+    """
+    if states.ndim == 2 and 1 < states.shape[0] != times.size == states.shape[1]:
+        got = f"shape {states.shape} for {times.size} times"
+        advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
+        raise InputError("states", got, "shape (rows, columns)", advice)
+    if states.ndim != 2 or states.shape[1] not in (2, 3, 6):
+        expected = "shape (rows, 2), (rows, 3) or (rows, 6)"
+        raise InputError("states", f"shape {states.shape}", expected)
+    names = COLUMNS[: states.shape[1]]
+    return candidate_of("states", {"t": times, **dict(zip(names, states.T, strict=True))})
 
 
 @dataclass(frozen=True)
@@ -123,17 +126,19 @@ class SceneCase:
         return assert_agrees(self.scene, t, states, **{"tolerance": self.tolerance, **more})
 
 
-def message(result: Score) -> str:
+def _message(score: Score) -> str:
     """Return the message of a failed assertion: the worst number if it is off, and all that `foucault score` says."""
-    errors, worst = result.errors, result.worst
-    head = [
-        f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0] + 1}):",
-        f"  expected   {worst.expected!r}",
-        f"  got        {worst.got!r}",
-        f"  difference {worst.difference:+.3e} m",
-        f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
-    ]
-    within = [
-        f"{result.scene.id}: every position is within the {result.allowed_m:.3e} m that are allowed, and yet:"
-    ]
-    return "\n".join([*(head if result.off_path else within), *lines(result)])
+    if score.off_path:
+        worst = score.worst
+        head = [
+            f"{score.scene.id}: {worst.component} at t = {worst.t!r} s "
+            f"(row {score.errors.worst[0] + 1}):",
+            f"  expected   {worst.expected!r}",
+            f"  got        {worst.got!r}",
+            f"  difference {worst.difference:+.3e} m",
+            f"  position error {score.errors.max_m:.3e} m, allowed {score.allowed_m:.3e} m",
+        ]
+    else:
+        allowed = f"the {score.allowed_m:.3e} m that are allowed"
+        head = [f"{score.scene.id}: every position is within {allowed}, and yet:"]
+    return "\n".join([*head, *lines(score)])

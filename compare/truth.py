@@ -5,8 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -34,21 +35,37 @@ from reference.scenes.shipped import WITHOUT_FUNCTION, data_root
 from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-# changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
-DENSE_FORMAT = b"dense 6"
 # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 FINE = 2.0**-110
 
+# changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
+_DENSE_FORMAT = b"dense 6"
 _here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
 
 Report = Callable[[float], None]
 
 
+@dataclass(frozen=True)
+class Progress:
+    """What is called while a scene is solved, which may take long.
+
+    Attributes:
+        announce: called with a message before a scene is solved.
+        report: called with the simulated time reached, in s.
+    """
+
+    announce: Callable[[str], None] | None = None
+    report: Report | None = None
+
+
+SILENT = Progress()
+
+
 def golden_of(
     scene: Scene,
     digits: int = DIGITS,
-    announce: Callable[[str], None] | None = None,
-    report: Report | None = None,
+    progress: Progress = SILENT,
+    *,
     until: float | None = None,
     level: str = "confirmed",
     grid: bool = False,
@@ -58,42 +75,59 @@ def golden_of(
     Args:
         scene: the problem, with its reading of the inputs, its span, and whether transits are needed.
         digits: decimal digits needed at least.
-        announce: called with a message when the scene has to be solved.
-        report: called with the simulated time reached, in s.
-        until: end of the span that is needed, in s: a new dataset stops at the first grid time from there on.
+        progress: what is called when the scene has to be solved.
+        until: end of the span that is needed, in s: a new dataset stops at the first grid time from
+            there on.
         level: level of trust of a new dataset.
-        grid: whether the dataset's grid up to the scene's end must be the scene's; otherwise any grid will do.
+        grid: whether the dataset's grid up to the scene's end must be the scene's; otherwise any grid
+            will do.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
     """
     ships = shipping(scene)
-    if ships is not None and ships.manifest.digits >= digits and not ships.manifest.alone:
-        fits = {*(scene.run.sections or ())} <= ships.sections.keys()
-        if fits and not (
-            grid and ships.scene.exact.grid[: len(times := scene.exact.grid)] != times
-        ):
-            return ships
+    if ships is not None and _serves(ships, scene, digits, grid):
+        return ships
+
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
-    parts = problem.model_dump(
-        mode="json", include={"inputs", "pendulum", "site", "release", "run"}
-    )
-    name = (
-        f"{scene.id}-{hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]}"
-    )
-    if path := _here.get(name) or cache.entry("golden", name):
+    name = _entry_name(scene.id, problem)
+    path = _here.get(name) or cache.entry("golden", name)
+    if path is not None:
         with suppress(DatasetError, InputError, OSError):
             return _loaded(path)
         cache.discard(path)  # damaged: it is solved again
+    return _loaded(_solved(problem, name, progress))
+
+
+def _serves(golden: Golden, scene: Scene, digits: int, grid: bool) -> bool:
+    """Return whether a dataset that solves a scene has the digits, the sections and, if asked for, the grid."""
+    if golden.manifest.digits < digits or golden.manifest.alone:
+        return False
+    if not set(scene.run.sections or ()) <= golden.sections.keys():
+        return False
+    times = scene.exact.grid
+    return not grid or golden.scene.exact.grid[: len(times)] == times
+
+
+def _entry_name(scene_id: str, problem: Scene) -> str:
+    """Return the name in the cache of what solves a problem."""
+    inputs = {"inputs", "pendulum", "site", "release", "run"}
+    text = json.dumps(problem.model_dump(mode="json", include=inputs), sort_keys=True)
+    return f"{scene_id}-{hashlib.sha256(text.encode()).hexdigest()[:20]}"
+
+
+def _solved(problem: Scene, name: str, progress: Progress) -> Path:
+    """Solve a problem and return the folder of its dataset, in the cache if that can keep it."""
     from reference import solve, write
 
-    if announce is not None:
-        announce(f"{_why_solved(problem)}: solving it to {problem.run.digits} digits")
-    solution = solve(problem, report=report)
+    if progress.announce is not None:
+        progress.announce(f"{_why_solved(problem)}: solving it to {problem.run.digits} digits")
+    solution = solve(problem, report=progress.report)
     path = cache.store("golden", name, lambda path: write(solution, path))
     if path is None:
-        path = _here[name] = write(solution, cache.temporary() / name)
-    return _loaded(path)
+        path = write(solution, cache.temporary() / name)
+        _here[name] = path
+    return path
 
 
 def with_function(scene: Scene) -> Golden | None:
@@ -112,35 +146,47 @@ def by_function(golden: Golden, times: Array) -> Dense | None:
         return dense(golden, times)
     function = golden.function
     assert function is not None
-    at = function.at(np.minimum(times, function.times[-1]))
-    states, late = (
-        np.array([getattr(at, name) for name in STATE]),
-        np.maximum(times - function.times[-1], 0.0),
-    )
-    low, bound = np.zeros_like(states), dict(function.bound)
-    # how far it is above the lowest point is known far better than z in doubles
+    end_s = function.times[-1]
+    at = function.at(np.minimum(times, end_s))
+    states = np.array([getattr(at, name) for name in STATE])
+    low = np.zeros_like(states)
+    bounds = dict(function.bound)
     if function.square is not None:
-        exact, aside = golden.scene.exact.length, states[0] ** 2 + states[1] ** 2
-        near = float(exact)
-        height = aside / (near + np.sqrt(near**2 - aside))
-        states[2] = height - near
-        low[2] = (height - (states[2] + near)) + float(Fraction(near) - exact)
-        slope = float(np.abs(states[:2]).sum(axis=0).max() / np.abs(states[2]).min())
-        bound["z"] = slope * max(bound["x"], bound["y"]) + 2.0**-50 * float(height.max())
-    bound_m, bound_m_s = (max(bound[name] for name in kind) for kind in (POSITION, VELOCITY))
-    if late.any():
-        moved = np.array(rates([*states], constants_in_double(golden.scene.exact)))
-        length = float(golden.scene.exact.length)
-        speed, pull = (float(np.abs(part).max()) for part in np.vsplit(moved, 2))
-        left_out = float(late.max()) ** 2 * pull  # of the position
-        if left_out > bound_m:
+        states[2], low[2], bounds["z"] = _height(states, golden.scene.exact.length, bounds)
+    bound_m = max(bounds[name] for name in POSITION)
+    bound_m_s = max(bounds[name] for name in VELOCITY)
+
+    late_s = np.maximum(times - end_s, 0.0)
+    if late_s.any():
+        slopes = np.array(rates([*states], constants_in_double(golden.scene.exact)))
+        length_m = float(golden.scene.exact.length)
+        speed_m_s = float(np.abs(slopes[:3]).max())
+        pull_m_s2 = float(np.abs(slopes[3:]).max())
+        left_out_m = float(late_s.max()) ** 2 * pull_m_s2
+        if left_out_m > bound_m:
             return None
-        bound_m, bound_m_s = (
-            bound_m + left_out,
-            bound_m_s + left_out * (math.sqrt(pull / length) + speed / length),
-        )
-        states += late * moved
+        bound_m += left_out_m
+        bound_m_s += left_out_m * (math.sqrt(pull_m_s2 / length_m) + speed_m_s / length_m)
+        states += late_s * slopes
     return Dense(times, states.T, low.T, bound_m, bound_m_s)
+
+
+def _height(
+    states: Array, length_m: Fraction, bounds: Mapping[str, float]
+) -> tuple[Array, Array, float]:
+    """Return z, its low part and its bound in m from x and y of a bob below its suspension.
+
+    How far it is above the lowest point is known far better than z in doubles.
+    """
+    x, y = states[:2]
+    near_m = float(length_m)
+    aside = x**2 + y**2
+    above_lowest = aside / (near_m + np.sqrt(near_m**2 - aside))
+    z = above_lowest - near_m
+    low = (above_lowest - (z + near_m)) + float(Fraction(near_m) - length_m)
+    slope = float((np.abs(x) + np.abs(y)).max() / np.abs(z).min())
+    rounding_m = 2.0**-50 * float(above_lowest.max())
+    return z, low, slope * max(bounds["x"], bounds["y"]) + rounding_m
 
 
 def roughly_solved(
@@ -163,17 +209,18 @@ def roughly_solved(
         solution = roughly(problem, {*exact, *grid}, report)
     except (ArithmeticError, FoucaultError):
         return None
-    row = {t: i for i, t in enumerate(solution.times)} if solution else {}
-    return (solution, Dense.of(times, solution.grid, [row[t] for t in exact])) if solution else None
+    if solution is None:
+        return None
+    row = {t: i for i, t in enumerate(solution.times)}
+    return solution, Dense.of(times, solution.grid, [row[t] for t in exact])
 
 
 def _loaded(folder: Path) -> Golden:
     """Load a dataset; it is checked and read again only if a file has been touched since this process read it."""
-    stats = (path.stat() for path in [folder, *sorted(folder.iterdir())]) if folder.is_dir() else ()
-    return _read(
-        folder,
-        tuple((stat.st_ino, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns) for stat in stats),
-    )
+    paths = [folder, *sorted(folder.iterdir())] if folder.is_dir() else []
+    stats = [path.stat() for path in paths]
+    touched = [(stat.st_ino, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns) for stat in stats]
+    return _read(folder, tuple(touched))
 
 
 @lru_cache(maxsize=4)
@@ -225,7 +272,7 @@ def _same_problem(scene: Scene, other: Scene) -> bool:
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
     """Return the truth at a candidate's times; it is cached for the next candidate with the same times."""
-    recipe: Any = hashlib.sha256(DENSE_FORMAT + (golden.path / "manifest.json").read_bytes())
+    recipe: Any = hashlib.sha256(_DENSE_FORMAT + (golden.path / "manifest.json").read_bytes())
     recipe.update(np.ascontiguousarray(times).tobytes() + repr(within).encode())
 
     def make() -> dict[str, Array]:
@@ -233,5 +280,6 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
         return {name: np.array(part) for name, part in vars(truth).items()}
 
     stored = cache.arrays("dense", f"{recipe.hexdigest()[:32]}.npz", make)
-    bounds = float(stored["bound_m"]), float(stored["bound_m_s"])
-    return Dense(stored["t"], stored["states"], stored["low"], *bounds)
+    bound_m = float(stored["bound_m"])
+    bound_m_s = float(stored["bound_m_s"])
+    return Dense(stored["t"], stored["states"], stored["low"], bound_m, bound_m_s)

@@ -66,6 +66,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
     "compare/score: errors": f"{SCORE}errors.py",
     "compare/score: verdict judge": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING}",
+    "compare/score: remarks time_span": f"{SCORE}judge.py {NAMING}",
     "compare/score: document input_floor": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py",
     "compare/diagnosis: document since": f"{SCORE}verdict.py {SCORE}baseline.py",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",

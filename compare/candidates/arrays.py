@@ -37,16 +37,19 @@ def candidate_of(
     Raises:
         InputError: as in `Candidate.of`.
     """
-    columns = {
-        key: np.asarray(arrays[key], dtype=np.float64) for key in ("t", *COLUMNS) if key in arrays
-    }
-    # an empty column may be of text
-    wide = {key: arrays[key] for key in columns if arrays[key].dtype.kind == "f"}
-    with np.errstate(invalid="ignore"):  # of infinite numbers, which are refused
-        remainders = {
-            key: np.asarray(array - columns[key], dtype=np.float64) for key, array in wide.items()
-        }
-    low = {key: part for key, part in remainders.items() if part.any() and np.isfinite(part).all()}
+    columns: dict[str, Array] = {}
+    low: dict[str, Array] = {}
+    for key in ("t", *COLUMNS):
+        if key not in arrays:
+            continue
+        array = arrays[key]
+        columns[key] = np.asarray(array, dtype=np.float64)
+        if array.dtype.kind != "f":  # an empty column may be of text
+            continue
+        with np.errstate(invalid="ignore"):  # of infinite numbers, which are refused
+            remainder = np.asarray(array - columns[key], dtype=np.float64)
+        if remainder.any() and np.isfinite(remainder).all():
+            low[key] = remainder
     columns, low = made.converted(columns, low)
     return Candidate.of(
         name, columns.pop("t"), columns, low=low, transits=transits, conventions=made.conventions
@@ -61,9 +64,8 @@ def candidate_from(columns: Any) -> Candidate:
     """
     if not (hasattr(columns, "__getitem__") and hasattr(columns, "keys")):
         got = type(columns).__name__
-        raise InputError(
-            "candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE
-        )
+        expected = "a file, a Candidate, or columns by name with t, x and y"
+        raise InputError("candidate", got, expected, ADVICE)
     return _of_arrays({str(name): columns[name] for name in columns}, "candidate", Naming())
 
 
@@ -96,24 +98,21 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
                 for member in archive.infolist()[:MOST_ARRAYS]
             }
         if any(word.startswith("xl/") for word in members):
-            raise InputError(
-                name, "an Excel workbook", "text with named columns", "Save the sheet as CSV."
-            )
+            advice = "Save the sheet as CSV."
+            raise InputError(name, "an Excel workbook", "text with named columns", advice)
         chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
         chosen = chosen or [word for word in members if word == TABLE]
         size = sum(members[word].file_size for word in chosen)
         if size > MAX_UNPACKED:
-            raise InputError(
-                name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out."
-            )
+            got = f"{size} bytes unpacked"
+            raise InputError(name, got, f"at most {MAX_UNPACKED}", "Thin the output out.")
         stream.seek(0)
         with np.load(stream, allow_pickle=False) as arrays:
             loaded = {word: arrays[word] for word in chosen}
     except InputError:
         raise
-    except (
-        Exception
-    ) as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
+    # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
+    except Exception as error:
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
     return _of_arrays(loaded, name, naming)
 
@@ -127,9 +126,8 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     try:
         array = np.load(stream, allow_pickle=False)
     except Exception as error:  # numpy raises several kinds of errors for a damaged file
-        raise InputError(
-            name, "a damaged .npy file", "a table of real numbers", f"{error}."
-        ) from None
+        expected = "a table of real numbers"
+        raise InputError(name, "a damaged .npy file", expected, f"{error}.") from None
     words = array.dtype.names  # of which none means transits: there is one for each row
     records = {word: array[word] for word in words or () if word != TRANSITS}
     return _of_arrays(records or {TABLE: array}, name, naming)
@@ -141,23 +139,27 @@ def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidat
         raise InputError(name, "none of them", _EXPECTED)
     if [*arrays] != [TABLE]:
         if naming.columns:
-            raise InputError(
-                "--columns", ",".join(naming.columns), "no such option for arrays with names"
-            )
-        times, field = arrays.pop(TRANSITS, None), f"{name}: {TRANSITS}"
-        transits = None if times is None else checked_transits(real_array(times, field), field)
-        return _candidate(
-            name, [*arrays.values()], layout([*arrays], NEEDED, naming, name), transits
-        )
+            expected = "no such option for arrays with names"
+            raise InputError("--columns", ",".join(naming.columns), expected)
+        times = arrays.pop(TRANSITS, None)
+        transits = None
+        if times is not None:
+            field = f"{name}: {TRANSITS}"
+            transits = checked_transits(real_array(times, field), field)
+        by_names = layout([*arrays], NEEDED, naming, name)
+        return _candidate(name, [*arrays.values()], by_names, transits)
+
     table = real_array(arrays[TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
-    made = given(count, naming) if naming.columns and count else by_number(count, NEEDED, naming)
-    if made is None:
+    if naming.columns and count:
+        columns: Layout | None = given(count, naming)
+    else:
+        columns = by_number(count, NEEDED, naming)
+    if columns is None:
+        expected = "a table of 3, 4 or 7 columns, t, x, y first"
         advice = "One row for each time; --columns names the columns."
-        raise InputError(
-            name, f"shape {table.shape}", "a table of 3, 4 or 7 columns, t, x, y first", advice
-        )
-    return _candidate(name, [*table.T], made)
+        raise InputError(name, f"shape {table.shape}", expected, advice)
+    return _candidate(name, [*table.T], columns)
 
 
 def _candidate(

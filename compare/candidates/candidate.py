@@ -92,12 +92,8 @@ class Candidate:
         """
         t = np.unique(times[times > 0])
         if not len(t):
-            raise InputError(
-                f"{name}: t",
-                "no transit after t = 0",
-                "at least one",
-                "Did the program stop early?",
-            )
+            advice = "Did the program stop early?"
+            raise InputError(f"{name}: t", "no transit after t = 0", "at least one", advice)
         return cls(name, t, {"vx": np.zeros(len(t))}, transits=times)
 
     @classmethod
@@ -107,32 +103,13 @@ class Candidate:
         Raises:
             InputError: a column is missing, lengths differ, a number is not finite, or times do not increase.
         """
-        for required in ("x", "y"):
-            if required not in columns:
-                raise InputError(
-                    name, f"columns t, {', '.join(columns)}", f"a column {required}", ADVICE
-                )
-        for word, column in (("t", t), *columns.items()):
-            if column.ndim != 1 or len(column) != t.size:
-                expected = "a one-dimensional array" + (
-                    "" if word == "t" else f" of {t.size} numbers, as t"
-                )
-                raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
+        _check_columns(name, t, columns)
         lost = _lost_frames(columns)
-        for word, column in (("t", t), *columns.items()):
-            invalid = ~(np.abs(column) <= LARGEST) & ~lost  # true for NaN as well
-            if invalid.any():
-                row, expected = (
-                    int(np.argmax(invalid)),
-                    f"a finite number below {LARGEST:g} in size",
-                )
-                advice = "The run failed there: score the rows before it, or correct it."
-                raise NotFiniteError(
-                    f"{name}: {word}", f"{column[row]} in row {row + 1}", expected, advice
-                )
+        _check_finite(name, {"t": t, **columns}, ~lost)
         if lost.any():
+            rows = counted(int(lost.sum()), "row")
             first = float(t[int(np.argmax(lost))])
-            note = f"{counted(int(lost.sum()), 'row')} of NaN left out, the first at t = {first:.10g} s"
+            note = f"{rows} of NaN left out, the first at t = {first:.10g} s"
             more["notes"] = (*more.get("notes", ()), note)  # type: ignore[misc]
             more["low"] = {word: part[~lost] for word, part in (more.get("low") or {}).items()}  # type: ignore[attr-defined]
             t = t[~lost]
@@ -143,6 +120,55 @@ class Candidate:
             t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True
         )
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class Passages:
+    """Times at which a bob passed, measured or computed.
+
+    Attributes:
+        name: the file that they came from.
+        times: in s, in order.
+        section: the word of the section that was passed, such as "gate 30"; None for transits, xdot = 0.
+    """
+
+    name: str
+    times: Array
+    section: str | None = None
+
+
+def _check_columns(name: str, t: Array, columns: dict[str, Array]) -> None:
+    """Refuse arrays without x or y, or of other shapes than (rows,).
+
+    Raises:
+        InputError: they are such.
+    """
+    for required in ("x", "y"):
+        if required not in columns:
+            got = f"columns t, {', '.join(columns)}"
+            raise InputError(name, got, f"a column {required}", ADVICE)
+    if t.ndim != 1:
+        raise InputError(f"{name}: t", f"shape {t.shape}", "a one-dimensional array")
+    for word, column in columns.items():
+        if column.shape != t.shape:
+            expected = f"a one-dimensional array of {t.size} numbers, as t"
+            raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
+
+
+def _check_finite(name: str, columns: dict[str, Array], rows: npt.NDArray[np.bool_]) -> None:
+    """Refuse numbers that are not finite or too large, in the rows that count.
+
+    Raises:
+        NotFiniteError: there is one.
+    """
+    for word, column in columns.items():
+        invalid = ~(np.abs(column) <= LARGEST) & rows  # true for NaN as well
+        if invalid.any():
+            row = int(np.argmax(invalid))
+            got = f"{column[row]} in row {row + 1}"
+            expected = f"a finite number below {LARGEST:g} in size"
+            advice = "The run failed there: score the rows before it, or correct it."
+            raise NotFiniteError(f"{name}: {word}", got, expected, advice)
 
 
 def _lost_frames(columns: dict[str, Array]) -> npt.NDArray[np.bool_]:
@@ -179,17 +205,18 @@ def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: boo
         raise InputError(name, f"{times[0]:.17g} {at} 1", "times from 0 on, in s", count)
     unordered = np.diff(times) <= 0 if strictly else np.diff(times) < 0
     if unordered.any():
-        row, expected = int(np.argmax(unordered)), f"{'strictly ' * strictly}increasing times, in s"
-        raise InputError(
-            name, f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}", expected, advice
-        )
+        row = int(np.argmax(unordered))
+        got = f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}"
+        expected = f"{'strictly ' * strictly}increasing times, in s"
+        raise InputError(name, got, expected, advice)
 
 
 def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:
     """Multiply doubles with low parts; what is not finite, and will be refused, stays as it is."""
-    scaled, rest = near.copy(), np.zeros_like(low)
+    scaled = near.copy()
+    scaled_low = np.zeros_like(low)
     for i in np.flatnonzero(np.isfinite(near)).tolist():
         exact = (Fraction(float(near[i])) + Fraction(float(low[i]))) * factor
         scaled[i] = float(exact)
-        rest[i] = float(exact - Fraction(float(scaled[i])))
-    return scaled, rest
+        scaled_low[i] = float(exact - Fraction(float(scaled[i])))
+    return scaled, scaled_low

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from datetime import UTC, date, datetime, timedelta
 from fractions import Fraction
@@ -21,27 +22,36 @@ def seconds_of(text: str, where: str) -> Fraction:
     Raises:
         InputError: it is no clock's text, or two numbers alone, which may be hours and minutes.
     """
-    if moment := MOMENT.fullmatch(text):
-        year, month, day, hours, minutes, seconds, sign, zone_hours, zone_minutes = moment.groups()
-        try:
-            days = (date(int(year), int(month), int(day)) - date(1970, 1, 1)).days
-        except ValueError:
-            raise InputError(where, text[:40], "a date of the calendar", HOW) from None
-        zone = (int(zone_hours) * 60 + int(zone_minutes)) * 60 if sign else 0
-        midnight = days * DAY_S - (-zone if sign == "-" else zone)
-        return midnight + _of_day(hours, minutes, seconds)
+    moment = MOMENT.fullmatch(text)
+    if moment is not None:
+        return _since_1970(moment, where)
     clock = CLOCK.fullmatch(text)
     if clock is None:
         raise InputError(where, text[:40], "a time as in the first row", HOW)
     hours, minutes, seconds = clock.groups()
     if hours is None and not {".", ","} & {*seconds}:
-        raise InputError(
-            where,
-            text[:40],
-            "hours:minutes:seconds",
-            "Are these hours and minutes, or minutes and seconds?",
-        )
+        advice = "Are these hours and minutes, or minutes and seconds?"
+        raise InputError(where, text[:40], "hours:minutes:seconds", advice)
     return _of_day(hours or "0", minutes, seconds)
+
+
+def _since_1970(moment: re.Match[str], where: str) -> Fraction:
+    """Return the time of a date and hours:minutes:seconds, in s since 1970.
+
+    Raises:
+        InputError: there is no such date.
+    """
+    year, month, day, hours, minutes, seconds, sign, zone_hours, zone_minutes = moment.groups()
+    try:
+        days = (date(int(year), int(month), int(day)) - date(1970, 1, 1)).days
+    except ValueError:
+        raise InputError(where, moment[0][:40], "a date of the calendar", HOW) from None
+    zone_s = 0
+    if sign:
+        zone_s = (int(zone_hours) * 60 + int(zone_minutes)) * 60
+    if sign == "-":
+        zone_s = -zone_s
+    return days * DAY_S - zone_s + _of_day(hours, minutes, seconds)
 
 
 def _of_day(hours: str, minutes: str, seconds: str) -> Fraction:

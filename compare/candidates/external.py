@@ -92,15 +92,13 @@ def placeholders(scene: Scene) -> dict[str, str]:
     """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
     start = Start.of(scene.exact, PLACEHOLDER_BITS)
     names = ("x0", "y0", "z0", "vx0", "vy0", "vz0")
-    words = {
-        name: repr(float(value))
-        for name, value in zip(names, (*start.position, *start.velocity), strict=True)
-    }
-    fields = scene.release.model_dump(exclude_none=True)
-    words |= {f"{name}0": text for name, text in fields.items() if f"{name}0" in words}
-    words |= {
-        name: fields.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")
-    }
+    words = {}
+    for name, value in zip(names, (*start.position, *start.velocity), strict=True):
+        words[name] = repr(float(value))
+    release = scene.release.model_dump(exclude_none=True)
+    words |= {f"{name}0": text for name, text in release.items() if f"{name}0" in words}
+    for name in ("angle", "azimuth", "angle_rate", "azimuth_rate"):
+        words[name] = release.get(name, "0")
     words |= scene.pendulum.model_dump() | scene.site.model_dump()
     return words | {"t_end": scene.run.t_end, "grid_step": scene.run.grid_step}
 
@@ -122,19 +120,17 @@ def arguments(command: str, scene: Scene) -> list[str]:
     with contextlib.suppress(ValueError):
         for word in shlex.split(command, posix=False):
             if _FOR_A_SHELL.fullmatch(word):
-                raise InputError(
-                    "--run", command, f"a program and its arguments, without {word}", _NO_SHELL
-                )
+                expected = f"a program and its arguments, without {word}"
+                raise InputError("--run", command, expected, _NO_SHELL)
 
     def value(match: re.Match[str]) -> str:
         if match[1]:
             return match[1]
         if match[2] not in values:
-            words = ", ".join(f"{{{word}}}" for word in (*values, "setting"))
-            advice = (
-                f"{did_you_mean(match[2], values, '')} Write {{{match[0]}}} for {match[0]} itself."
-            )
-            raise InputError("--run", match[0], f"one of {words}", advice.lstrip())
+            names = ", ".join(f"{{{name}}}" for name in (*values, "setting"))
+            nearest = did_you_mean(match[2], values, "")
+            advice = f"{nearest} Write {{{match[0]}}} for {match[0]} itself."
+            raise InputError("--run", match[0], f"one of {names}", advice.lstrip())
         return values[match[2]]
 
     return [_PLACEHOLDER.sub(value, word) for word in words]
@@ -146,7 +142,8 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     Raises:
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
     """
-    start, mark = time.monotonic(), secrets.token_hex(16)
+    start = time.monotonic()
+    mark = secrets.token_hex(16)
     with (
         tempfile.TemporaryFile() as errors,
         contextlib.ExitStack() as meanwhile,
@@ -154,19 +151,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     ):
         output = stack.enter_context(tempfile.TemporaryFile())
         guard = meanwhile.enter_context(_guarded(mark))
-        try:
-            env = {**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()}
-            process = Popen(
-                words, stdin=DEVNULL, stdout=output, stderr=errors, env=env, start_new_session=True
-            )
-        except (
-            OSError,
-            ValueError,
-        ) as error:  # ValueError: a word with a zero byte, or that is no text
-            why = error.strerror if isinstance(error, OSError) else error
-            raise InputError(
-                "--run", words[0], "a program that can be started", f"{why}."
-            ) from None
+        process = _started(words, mark, output, errors)
         try:
             guard(process.pid)
             with terminable():
@@ -177,12 +162,34 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
             process.wait()
         if process.returncode:
             got = f"exit status {process.returncode} of {shlex.join(words)}"
-            raise (CrashedError if process.returncode < 0 else InputError)(
-                "--run", got, "exit status 0", _tail(errors)
-            )
+            error = CrashedError if process.returncode < 0 else InputError
+            raise error("--run", got, "exit status 0", _tail(errors))
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
+
+
+def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) -> Popen[bytes]:
+    """Start a program in a session of its own, with a mark in its environment.
+
+    Raises:
+        InputError: it cannot be started.
+    """
+    marks = f"{os.environ.get(MARK, '')} {mark}".strip()
+    try:
+        return Popen(
+            words,
+            stdin=DEVNULL,
+            stdout=output,
+            stderr=errors,
+            env={**os.environ, MARK: marks},
+            start_new_session=True,
+        )
+    # ValueError: a word with a zero byte, or that is no text
+    except (OSError, ValueError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        expected = "a program that can be started"
+        raise InputError("--run", words[0], expected, f"{why}.") from None
 
 
 @contextlib.contextmanager
@@ -229,9 +236,8 @@ def _end_of(
             expected = f"a program that ends within {timeout_s:g} s (--timeout)"
             raise OutOfTimeError("--run", shlex.join(words), expected, _tail(errors))
         if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
-            raise InputError(
-                "--run", shlex.join(words), f"at most {MAX_BYTES} bytes of output", _tail(errors)
-            )
+            expected = f"at most {MAX_BYTES} bytes of output"
+            raise InputError("--run", shlex.join(words), expected, _tail(errors))
         time.sleep(min(0.02, waited / 50))
 
 
@@ -242,13 +248,13 @@ def _end_all(leader: int, mark: str) -> None:
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(leader, signal.SIGKILL)
     for _ in range(ROUNDS):
-        left = list(_marked(mark))
-        for process in left:
+        processes = list(_marked(mark))
+        if not processes:
+            return
+        for process in processes:
             with contextlib.suppress(psutil.Error):
                 process.kill()
-        if not left:
-            return
-        psutil.wait_procs(left, timeout=0.1)
+        psutil.wait_procs(processes, timeout=0.1)
 
 
 def _marked(mark: str) -> Iterator[Process]:
@@ -275,14 +281,13 @@ def timed(
     output, cpu, wall = run_program(words, timeout_s)
     if wall > LONG_S or repeats == 0:
         return output, Timing(cpu, wall, 1, 0.0, warm=False)
-    runs = []
+    cpus_s = []
+    walls_s = []
     for _ in range(repeats):
-        repeated, *seconds = run_program(words, timeout_s)
+        repeated, cpu_s, wall_s = run_program(words, timeout_s)
         repeated.close()
-        runs.append(seconds)
-    cpus = [seconds[0] for seconds in runs]
-    median = statistics.median(cpus)
-    spread = (max(cpus) - min(cpus)) / median if median else 0.0
-    return output, Timing(
-        median, statistics.median(seconds[1] for seconds in runs), len(runs), spread
-    )
+        cpus_s.append(cpu_s)
+        walls_s.append(wall_s)
+    median_s = statistics.median(cpus_s)
+    spread = (max(cpus_s) - min(cpus_s)) / median_s if median_s else 0.0
+    return output, Timing(median_s, statistics.median(walls_s), repeats, spread)

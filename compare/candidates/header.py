@@ -54,14 +54,15 @@ class Header:
         """Return whether a line names the columns between separators other than white space, as many as in a row."""
         if not separator or separator not in row:
             return False
-        most = len(split(row, separator))
-        least = len(without_end(split(row, separator)))
-        ways = [
-            without_end(split(line.text, separator))
-            for line in self.lines
-            if separator in line.text
-        ]
-        return any(least <= len(way) <= most and set(self.needed) <= _columns(way) for way in ways)
+        fields = split(row, separator)
+        least = len(without_end(fields))
+        for line in self.lines:
+            if separator not in line.text:
+                continue
+            way = without_end(split(line.text, separator))
+            if least <= len(way) <= len(fields) and self._is_complete(way):
+                return True
+        return False
 
     def add(self, number: int, text: str, comment: bool) -> None:
         """Take a line that is no row.
@@ -74,7 +75,8 @@ class Header:
         self.lines.append(HeaderLine(number, text, comment))
         if len(self.lines) > MOST:
             if not comment:
-                where, expected = f"{self.name}: line {number}", "a row of numbers before it"
+                where = f"{self.name}: line {number}"
+                expected = "a row of numbers before it"
                 raise InputError(where, text[:80], expected, advice(self.needed))
             del self.lines[0]
 
@@ -91,47 +93,46 @@ class Header:
             count = len(self.naming.columns)
             fits = least <= count <= len(fields)
             return given(count if fits else least, self.naming), count
-        found = self._header(least, len(fields))
-        if found is not None:
-            i, header = found
+        place = self._header(least, len(fields))
+        if place is not None:
+            i, header = place
             if not least <= len(header) <= len(fields):
                 raise self._unequal(number, least, self.lines[i], len(header), separator)
-            if not set(self.needed) <= _columns(header):
+            if not self._is_complete(header):
                 self._refuse_line_below_header(i, header)
             units = self._units_beside(i, len(header))
-            return layout(header, self.needed, self.naming, f"{self.name}: header", units), len(
-                header
-            )
-        made = by_number(least, self.needed, self.naming)
-        if made is None or (len(self.needed) == 1 and self.lines):
+            by_header = layout(header, self.needed, self.naming, f"{self.name}: header", units)
+            return by_header, len(header)
+
+        without_header = by_number(least, self.needed, self.naming)
+        if without_header is None or (len(self.needed) == 1 and self.lines):
             expected = "a header that names the columns"
             raise InputError(f"{self.name}: first line", row[:80], expected, advice(self.needed))
-        self._refuse_other_comment([*made.places], least, number)
-        return made, least
+        self._refuse_other_comment([*without_header.places], least, number)
+        return without_header, least
 
     def _refuse_other_comment(self, columns: Sequence[str], count: int, number: int) -> None:
         """Refuse a comment that names columns, but not as many as there are, or in another order or unit than taken."""
         for line in self.lines:
             for way in words(line.text):
-                meanings = [
-                    meant for meant in (meaning(word, {}) for word in way) if meant is not None
-                ]
+                meanings = [meant for word in way if (meant := meaning(word, {})) is not None]
                 named = [meant.column for meant in meanings]
-                if not set(self.needed) <= {*named} or 2 * len(named) < len(way):
+                if not set(self.needed) <= set(named) or 2 * len(named) < len(way):
                     continue
-                separated = any(
-                    without_end(split(line.text, mark)) == way
+                is_separated = any(
+                    mark and mark in line.text and without_end(split(line.text, mark)) == way
                     for mark in SEPARATORS
-                    if mark in line.text and mark
-                )
-                taken = meanings[: len(columns)]
-                same = [meant.column for meant in taken] == [*columns] and all(
-                    meant.factor == 1 for meant in taken
                 )
                 # as "columns: t x y …", with further columns behind
-                labelled = way[0].endswith(":")
-                same = same and (len(named) == len(columns) or (labelled and len(way) == count + 1))
-                if separated or not same:
+                is_labelled = way[0].endswith(":") and len(way) == count + 1
+                has_all = len(named) == len(columns) or is_labelled
+                taken = meanings[: len(columns)]
+                is_same = (
+                    has_all
+                    and [meant.column for meant in taken] == [*columns]
+                    and all(meant.factor == 1 for meant in taken)
+                )
+                if is_separated or not is_same:
                     raise self._unequal(number, count, line, len(way), "")
 
     def _header(self, least: int, most: int) -> tuple[int, list[str]] | None:
@@ -143,21 +144,22 @@ class Header:
             least: the number of fields of the first row, empty ones at its end left out.
             most: the number with them.
         """
-        lengths = [{len(way) for way in self._ways(line)} for line in self.lines]
-        headers = {i: counts for i in range(len(self.lines)) if (counts := self._complete(i))}
-        first = min(headers, default=len(self.lines))
+        complete = [self._complete(line) for line in self.lines]
+        first = next((i for i, counts in enumerate(complete) if counts), len(self.lines))
         for i in reversed(range(len(self.lines))):
-            fitting = sorted(count for count in lengths[i] | {least} if least <= count <= most)
+            line = self.lines[i]
+            counts = {len(way) for way in self._ways(line)} | {least}
+            fitting = sorted((count for count in counts if least <= count <= most), reverse=True)
             if i > first and any(
-                self._units(i, count) is not None for count in fitting if count in headers[first]
+                count in complete[first] and self._units(i, count) is not None for count in fitting
             ):
                 continue
-            for count in reversed(fitting):
-                if count in headers.get(i, ()):
-                    header = self._named(self.lines[i], count)
+            for count in fitting:
+                if count in complete[i]:
+                    header = self._named(line, count)
                     assert header is not None
                     return i, header
-            header = self._named(self.lines[i], least)
+            header = self._named(line, least)
             if header is not None:
                 return i, header
         return None
@@ -166,56 +168,59 @@ class Header:
         """Refuse a line that names nothing, below a header that is no comment: it may hold units that nobody knows."""
         for line in self.lines[:i]:
             ways = [way for way in words(line.text) if len(way) == len(words_of_line)]
-            if not line.comment and any(set(self.needed) <= _columns(way) for way in ways):
-                where, got = (
-                    f"{self.name}: line {self.lines[i].number}",
-                    ", ".join(words_of_line)[:80],
-                )
+            if not line.comment and any(map(self._is_complete, ways)):
+                where = f"{self.name}: line {self.lines[i].number}"
+                got = ", ".join(words_of_line)[:80]
                 expected = f"units below the header of line {line.number}, or a row of numbers"
-                raise InputError(
-                    where,
-                    got,
-                    expected,
-                    "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark.",
-                )
+                what_to_do = "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark."
+                raise InputError(where, got, expected, what_to_do)
 
     def _unequal(
         self, number: int, count: int, line: HeaderLine, named: int, separator: str
     ) -> InputError:
         """Return the error for a first row with another number of fields than the header."""
         expected = f"{named} as in the header, line {line.number}"
-        what_to_do = (
-            "Is the line cut off?" if count < named else "Name each column, or say --columns."
-        )
+        what_to_do = "Name each column, or say --columns."
+        if count < named:
+            what_to_do = "Is the line cut off?"
         if separator == "," and named < count < 2 * named + 1:
             what_to_do = f"{what_to_do} {COMMAS}"
         return InputError(f"{self.name}: line {number}", f"{count} fields", expected, what_to_do)
 
     def _named(self, line: HeaderLine, count: int) -> list[str] | None:
         """Return the words of a line that names the columns, or is meant to; None for another."""
-        ways = [(way, _columns(way)) for way in self._ways(line)]
-        fitting = [(way, named) for way, named in ways if len(way) == count]
-        for way, named in fitting:
-            if set(self.needed) <= named:
+        ways = self._ways(line)
+        fitting = [way for way in ways if len(way) == count]
+        for way in fitting:
+            if self._is_complete(way):
                 return way
-        for way, named in ways:  # of another number of columns
-            if set(self.needed) <= named and (not line.comment or len(named) == len(way)):
+        for way in ways:  # of another number of columns
+            if self._is_complete(way) and (not line.comment or len(_columns(way)) == len(way)):
                 return way
         enough = max(min(FEW, len(self.needed)), count // 2) if line.comment else 0
-        return next((way for way, named in fitting if len(named) >= enough), None)
+        for way in fitting:
+            if len(_columns(way)) >= enough:
+                return way
+        return None
 
-    def _complete(self, i: int) -> set[int]:
+    def _is_complete(self, way: Sequence[str]) -> bool:
+        """Return whether words name all columns that are needed."""
+        return set(self.needed) <= _columns(way)
+
+    def _complete(self, line: HeaderLine) -> set[int]:
         """Return into how many words a line can be taken apart so that they name all columns that are needed."""
-        return {len(way) for way in self._ways(self.lines[i]) if set(self.needed) <= _columns(way)}
+        return {len(way) for way in self._ways(line) if self._is_complete(way)}
 
     def _ways(self, line: HeaderLine) -> list[list[str]]:
         """Return the ways to take a line apart; where one names all columns that are needed, no less likely one."""
         ways = words(line.text)
         separators = [separator for separator in SEPARATORS if separator and separator in line.text]
         explicit = ways[: len(separators)]
-        for likely in (explicit, *([way] for way in ways[len(separators) :])):
-            if any(set(self.needed) <= _columns(way) for way in likely):
-                return likely
+        if any(map(self._is_complete, explicit)):
+            return explicit
+        for way in ways[len(separators) :]:
+            if self._is_complete(way):
+                return [way]
         return ways
 
     def _units(self, i: int, count: int) -> list[str] | None:
@@ -235,56 +240,57 @@ class Header:
         Raises:
             InputError: both have some, and they differ.
         """
-        beside = [self._units(k, count) for k in range(len(self.lines)) if k > i or k == i - 1]
-        found = [units for units in beside if units is not None]
-        for units in found[1:]:
-            if units != found[0]:
-                where, got = (
-                    f"{self.name}: lines of units",
-                    f"{', '.join(found[0])} and {', '.join(units)}",
+        beside = [k for k in range(len(self.lines)) if k > i or k == i - 1]
+        lines = [units for k in beside if (units := self._units(k, count)) is not None]
+        if not lines:
+            if not self.naming.units:
+                self._refuse_loose_units()
+            return []
+        first = lines[0]
+        for units in lines[1:]:
+            if units != first:
+                got = f"{', '.join(first)} and {', '.join(units)}"
+                raise InputError(
+                    f"{self.name}: lines of units", got, "one of them", "Leave one out."
                 )
-                raise InputError(where, got, "one of them", "Leave one out.")
-        if not found and not self.naming.units:
-            self._refuse_loose_units()
-        return found[0] if found else []
+        return first
 
     def _refuse_loose_units(self) -> None:
         """Refuse a line that says units but not of which column, unless it says SI units anyway."""
         for line in self.lines:
             label = UNITS_LABEL.match(line.text)
-            rest = line.text[label.end() :] if label else line.text
-            found = re.split(r"[\s,;|]+", rest.strip(" \t,;|"))
-            units = units_of(found) if label or not line.comment or len(found) > 1 else None
-            if units and not {*units} <= {*SI_UNITS}:
-                where, expected = f"{self.name}: line {line.number}", "a unit for each column"
-                raise InputError(
-                    where,
-                    line.text[:80],
-                    expected,
-                    "Write units into the header, or say --units ms,cm.",
-                )
+            text = line.text[label.end() :] if label else line.text
+            fields = re.split(r"[\s,;|]+", text.strip(" \t,;|"))
+            if line.comment and not label and len(fields) == 1:
+                continue
+            units = units_of(fields)
+            if units and not set(units) <= set(SI_UNITS):
+                where = f"{self.name}: line {line.number}"
+                what_to_do = "Write units into the header, or say --units ms,cm."
+                raise InputError(where, line.text[:80], "a unit for each column", what_to_do)
 
     def refuse(self, expected: str) -> InputError:
         """Return the error for a text without rows."""
         for i, line in enumerate(self.lines):
-            if any(set(self.needed) <= _columns(way) for way in words(line.text)):
-                later = [below for below in self.lines[i + 1 :] if not below.comment]
-                if later:
-                    return InputError(
-                        f"{self.name}: line {later[0].number}",
-                        later[0].text[:80],
-                        "a row of numbers",
-                    )
-                why = "All lines are comments." if self.lines[i + 1 :] else "Is the output empty?"
-                return InputError(self.name, "no rows", "at least one row", why)
-        first = next((line for line in self.lines if not line.comment), None)
-        if first is not None:
-            return InputError(
-                f"{self.name}: line {first.number}", first.text[:80], expected, advice(self.needed)
-            )
+            if any(map(self._is_complete, words(line.text))):
+                return self._no_row_below(self.lines[i + 1 :])
+        for line in self.lines:
+            if not line.comment:
+                where = f"{self.name}: line {line.number}"
+                return InputError(where, line.text[:80], expected, advice(self.needed))
         return InputError(self.name, "no header and no rows", expected, advice(self.needed))
+
+    def _no_row_below(self, lines: Sequence[HeaderLine]) -> InputError:
+        """Return the error for a header below which no line is a row."""
+        for line in lines:
+            if not line.comment:
+                where = f"{self.name}: line {line.number}"
+                return InputError(where, line.text[:80], "a row of numbers")
+        why = "All lines are comments." if lines else "Is the output empty?"
+        return InputError(self.name, "no rows", "at least one row", why)
 
 
 def _columns(way: Sequence[str]) -> set[str]:
+    """Return the columns that words name."""
     meanings = [meaning(word, {}) for word in way]
     return {meant.column for meant in meanings if meant is not None}

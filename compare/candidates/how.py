@@ -41,12 +41,8 @@ def how(language: str) -> str:
     word = language.strip().lower()
     snippet = next((lines for name, lines in SNIPPETS.items() if word in (name, *lines.also)), None)
     if snippet is None:
-        raise InputError(
-            "--how",
-            language,
-            in_words([*SNIPPETS]),
-            did_you_mean(word, [*SNIPPETS], "Any text will do."),
-        )
+        advice = did_you_mean(word, [*SNIPPETS], "Any text will do.")
+        raise InputError("--how", language, in_words([*SNIPPETS]), advice)
     width = max(len(snippet.once), len(snippet.each)) + 2
     return (
         f"{snippet.once:{width}}{snippet.comment} once, before the loop over time\n"

@@ -44,8 +44,12 @@ LABEL = re.compile(
     r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?",
     re.IGNORECASE,
 )
-TIMES = {unit: Fraction(size) for unit, size in vocabulary["times"].items()}  # in s
-LENGTHS = {unit: Fraction(size) for unit, size in vocabulary["lengths"].items()}  # in m
+TIMES: dict[str, Fraction] = {
+    unit: Fraction(size) for unit, size in vocabulary["times"].items()
+}  # in s
+LENGTHS: dict[str, Fraction] = {
+    unit: Fraction(size) for unit, size in vocabulary["lengths"].items()
+}  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
 OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
@@ -103,15 +107,17 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         named = _column(name)
         if named is None:
             continue
-        (column, sign, rank), unit = named, suffix
-        rank = 2 if suffix == text else rank  # it is called by its unit
+        column, sign, rank = named
+        if suffix == text:
+            rank = 2  # it is called by its unit
         if direction:
             if column == "t":
                 continue
-            turned, sign = DIRECTIONS[direction.lower()]
-            column, rank = f"{column[:-1]}{turned}", 2
-        if suffix.lower() in ("t", "time") and column != "t":
-            unit = ""  # x(t)
+            axis, sign = DIRECTIONS[direction.lower()]
+            column = f"{column[:-1]}{axis}"
+            rank = 2
+        is_function_of_time = suffix.lower() in ("t", "time") and column != "t"
+        unit = "" if is_function_of_time else suffix
         default = units.get(column, "")
         size = size_of(unit or default, column) if unit or default else Fraction(1)
         if size is None:
@@ -119,9 +125,8 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
         if unit and default and size not in (1, size_of(default, column)):
-            raise InputError(
-                "--units", default, f"no other unit of {column} than {unit}, as its header says"
-            )
+            expected = f"no other unit of {column} than {unit}, as its header says"
+            raise InputError("--units", default, expected)
         return Meaning(column, size * sign, unit or default, rank)
     return None
 
@@ -129,9 +134,8 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
 def unquoted(word: str) -> str:
     """Return a word without white space around it and without a pair of quotes."""
     text = word.strip()
-    return (
-        text[1:-1].strip() if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`" else text
-    )
+    is_quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`"
+    return text[1:-1].strip() if is_quoted else text
 
 
 def _parts(text: str) -> list[tuple[str, str, str]]:
@@ -199,9 +203,9 @@ def size_of(unit: str, column: str) -> Fraction | None:
     parts = PER.fullmatch(word)
     if parts is None:
         return None
-    length, time = (parts[1], parts[2]) if parts[1] else (parts[3], parts[4])
-    above, below = LENGTHS.get(plain_unit(length)), TIMES.get(plain_unit(time))
-    return None if above is None or below is None else above / below
+    length = LENGTHS.get(plain_unit(parts[1] or parts[3]))
+    time = TIMES.get(plain_unit(parts[2] or parts[4]))
+    return None if length is None or time is None else length / time
 
 
 def defaults(words: tuple[str, ...]) -> dict[str, str]:
@@ -213,15 +217,16 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
     units: dict[str, str] = {}
     for word in words:
         unit = plain_unit(word)
-        columns = ("t",) if unit in TIMES else COLUMNS if unit in LENGTHS else ()
-        if not columns:
+        if unit not in TIMES and unit not in LENGTHS:
             expected = f"units of time or length: {', '.join([*TIMES, *LENGTHS])}"
             raise InputError("--units", word, expected, "Separate two with a comma.")
-        if columns[0] in units:
-            raise InputError(
-                "--units", ",".join(words), "one unit of time and one of length at most"
-            )
-        units |= {column: f"{unit}/s" if column.startswith("v") else unit for column in columns}
+        if ("t" if unit in TIMES else "x") in units:
+            expected = "one unit of time and one of length at most"
+            raise InputError("--units", ",".join(words), expected)
+        if unit in TIMES:
+            units["t"] = unit
+        else:
+            units |= dict.fromkeys(COLUMNS[:3], unit) | dict.fromkeys(COLUMNS[3:], f"{unit}/s")
     return units
 
 
@@ -260,7 +265,8 @@ class Layout:
         self, columns: dict[str, Array], low: dict[str, Array]
     ) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return columns and their low parts in SI units."""
-        columns, low = dict(columns), dict(low)
+        columns = dict(columns)
+        low = dict(low)
         for name, factor in self.factors.items():
             if name in low:
                 columns[name], low[name] = multiplied(columns[name], low[name], factor)
@@ -288,55 +294,69 @@ def layout(
     Raises:
         InputError: a column is missing or there twice, or its unit is not known.
     """
-    of_units = defaults(naming.units)
-    meanings = [meaning(word, of_units) for word in words]
+    default_units = defaults(naming.units)
+    meanings = [meaning(word, default_units) for word in words]
     if units:
         meanings = [
-            _with_line_of_units(*each, of_units, where)
-            for each in zip(meanings, words, units, strict=True)
+            _with_line_of_units(meant, word, unit, default_units, where)
+            for meant, word, unit in zip(meanings, words, units, strict=True)
         ]
     places: dict[str, int] = {}
     factors: dict[str, Fraction] = {}
-    conventions, renamed, converted = [], [], []
+    renamed = []
+    converted = []
     for name in ("t", *COLUMNS) if len(needed) > 1 else needed:
-        ranked = [
-            (meant.rank, i, meant)
-            for i, meant in enumerate(meanings)
-            if meant and meant.column == name
-        ]
-        best = [(i, meant) for rank, i, meant in ranked if rank == min(ranked)[0]]
-        if len(best) > 1:
-            same = ", ".join(words[i].strip() for i, _ in best)
-            raise InputError(
-                where, same, f"one column {name}", "Say with --columns which one it is."
-            )
-        if not best and name in needed:
-            got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
-            what_to_do = "" if where == "--columns" else advice(needed)
-            raise InputError(where, got, f"one column {name}", what_to_do)
-        for i, meant in best:
-            if meant.factor is None:
-                column = f"{where}: {words[i].strip()}"
-                raise InputError(
-                    column, meant.unit, f"a unit of {name} that is known", "Write s, m or m/s."
-                )
-            places[name], factors[name] = i, meant.factor
-            if meant.rank == 2:
-                renamed.append(f"{unquoted(words[i])} as {'-' if meant.factor < 0 else ''}{name}")
-            if abs(meant.factor) != 1:
-                converted.append(f"{name} from {meant.unit}")
+        place = _place_of(name, meanings, words, needed, where)
+        if place is None:
+            continue
+        meant = meanings[place]
+        assert meant is not None
+        word = words[place]
+        if meant.factor is None:
+            expected = f"a unit of {name} that is known"
+            raise InputError(f"{where}: {word.strip()}", meant.unit, expected, "Write s, m or m/s.")
+        places[name] = place
+        if meant.factor != 1:
+            factors[name] = meant.factor
+        if meant.rank == 2:
+            renamed.append(f"{unquoted(word)} as {'-' if meant.factor < 0 else ''}{name}")
+        if abs(meant.factor) != 1:
+            converted.append(f"{name} from {meant.unit}")
+
+    conventions = []
     if renamed:
         unread = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
         unread = [word for word in unread if word not in SKIPPED]
         remark = f"; not read: {', '.join(unread)}" if unread else ""
         conventions.append(Deviation("columns", f"{', '.join(renamed)}{remark}"))
     if converted:
-        conventions.append(Deviation("units", f"{', '.join(converted)}, converted to SI units"))
-    return Layout(
-        places,
-        {name: factor for name, factor in factors.items() if factor != 1},
-        tuple(conventions),
-    )
+        text = f"{', '.join(converted)}, converted to SI units"
+        conventions.append(Deviation("units", text))
+    return Layout(places, factors, tuple(conventions))
+
+
+def _place_of(
+    name: str,
+    meanings: Sequence[Meaning | None],
+    words: Sequence[str],
+    needed: Sequence[str],
+    where: str,
+) -> int | None:
+    """Return the index of the word that means a column; None if there is none and it is not needed.
+
+    Raises:
+        InputError: two words mean it equally well, or it is missing.
+    """
+    ranks = {i: meant.rank for i, meant in enumerate(meanings) if meant and meant.column == name}
+    best = [i for i, rank in ranks.items() if rank == min(ranks.values())]
+    if len(best) > 1:
+        same = ", ".join(words[i].strip() for i in best)
+        raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
+    if not best and name in needed:
+        got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
+        what_to_do = "" if where == "--columns" else advice(needed)
+        raise InputError(where, got, f"one column {name}", what_to_do)
+    return best[0] if best else None
 
 
 def _with_line_of_units(
@@ -350,25 +370,19 @@ def _with_line_of_units(
     unit = bare_unit(printed)
     if meant is None or not unit:
         return meant
-    said = meaning(word, {})
-    assert said is not None
+    by_header = meaning(word, {})
+    assert by_header is not None
     size = size_of(unit, meant.column)
     if size is None:
         return replace(meant, factor=None, unit=unit)
-    if said.unit and said.factor is not None and abs(said.factor) != size:
-        raise InputError(
-            f"{where}: {word.strip()}",
-            unit,
-            f"{said.unit}, as the header says",
-            "Leave one of them out.",
-        )
+
+    if by_header.unit and by_header.factor is not None and abs(by_header.factor) != size:
+        expected = f"{by_header.unit}, as the header says"
+        raise InputError(f"{where}: {word.strip()}", unit, expected, "Leave one of them out.")
     default = of_units.get(meant.column)
     if default and size != size_of(default, meant.column):
-        raise InputError(
-            "--units",
-            default,
-            f"no other unit of {meant.column} than {unit}, as its line of units says",
-        )
+        expected = f"no other unit of {meant.column} than {unit}, as its line of units says"
+        raise InputError("--units", default, expected)
     sign = 1 if meant.factor is None or meant.factor > 0 else -1
     return replace(meant, factor=size * sign, unit=unit)
 
@@ -376,8 +390,8 @@ def _with_line_of_units(
 def bare_unit(printed: str) -> str:
     """Return a unit without brackets and quotes; nothing for a word that stands for none."""
     text = unquoted(printed)
-    bracketed = len(text) > 1 and text[0] in "([{<" and text[-1] in ")]}>"
-    text = text[1:-1].strip() if bracketed else text
+    if len(text) > 1 and text[0] in "([{<" and text[-1] in ")]}>":
+        text = text[1:-1].strip()
     return "" if text in SKIPPED or text.lower() in TYPES else text
 
 
@@ -386,14 +400,14 @@ def units_of(words: Sequence[str]) -> list[str] | None:
 
     Names of types, such as double, stand for no unit, and so does an empty word.
     """
-    found = [bare_unit(word) for word in words]
-    known = [
-        any(size_of(unit, column) is not None for column in ("t", "x", "vx")) for unit in found
-    ]
-    other = [not unit or plain_unit(unit) in OTHER_UNITS for unit in found]
-    typed = any(unquoted(word).lower() in TYPES for word in words)
-    all_known = all(one or another for one, another in zip(known, other, strict=True))
-    return found if all_known and (any(known) or typed) else None
+    units = [bare_unit(word) for word in words]
+    has_unit = any(unquoted(word).lower() in TYPES for word in words)
+    for unit in units:
+        if any(size_of(unit, column) is not None for column in ("t", "x", "vx")):
+            has_unit = True
+        elif unit and plain_unit(unit) not in OTHER_UNITS:
+            return None
+    return units if has_unit else None
 
 
 def given(count: int, naming: Naming) -> Layout:
@@ -402,28 +416,31 @@ def given(count: int, naming: Naming) -> Layout:
     Raises:
         InputError: there are more or fewer names, one is not known, or one that is needed is missing.
     """
-    names, option = naming.columns, "--columns"
+    names = naming.columns
+    option = "--columns"
     if len(names) != count:
         expected = f"a name for each of the {count} columns, - for one that is not read"
         raise InputError(option, ",".join(names), expected)
     unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
     if unknown:
         expected = f"names of {', '.join(['t', *COLUMNS])}"
-        raise InputError(
-            option, ", ".join(unknown), expected, "Write - for a column that is not read."
-        )
+        what_to_do = "Write - for a column that is not read."
+        raise InputError(option, ", ".join(unknown), expected, what_to_do)
     return layout(names, NEEDED, naming, option)
 
 
 def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | None:
     """Return the layout of a file without a header, by the number of its columns; None if that does not tell it."""
-    names = UNNAMED.get(count) if len(needed) > 1 else ("t",) if count == 1 else None
+    if len(needed) == 1:
+        return layout(["t"], needed, naming, "--columns") if count == 1 else None
+    names = UNNAMED.get(count)
     if names is None:
         return None
-    made = layout([*names, *["-"] * (count - len(names))], needed, naming, "--columns")
+    unread = ["-"] * (count - len(names))
+    by_names = layout([*names, *unread], needed, naming, "--columns")
     text = f"no header: the columns are taken as {', '.join(names)} (--columns names others)"
-    no_header = (Deviation("no_header", text),) if len(needed) > 1 else ()
-    return replace(made, conventions=(*no_header, *made.conventions))
+    no_header = Deviation("no_header", text)
+    return replace(by_names, conventions=(no_header, *by_names.conventions))
 
 
 def advice(needed: Sequence[str]) -> str:

@@ -67,11 +67,11 @@ from .text import (
 )
 
 _TELLING = 6  # bytes that tell an archive from text
-CHUNK = 1 << 22
-SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
+_CHUNK = 1 << 22
+_SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
 DOUBLE_DIGITS = 17  # decimal digits that identify a double
 # decimals of up to this many digits survive a double, so a precise program means the decimal itself
-SURE_DIGITS = 15
+_SURE_DIGITS = 15
 _EXACT = Context(prec=40)  # rounds a difference to 40 digits, far more than a low part holds
 DECIMAL_COMMA = Deviation("decimal_comma", "numbers have a comma for the decimal point")
 
@@ -108,14 +108,12 @@ def read_stream(stream: IO[bytes], name: str, naming: Naming | None = None) -> C
     """Read a candidate in any of the formats from a stream of bytes that can be read twice, as no pipe can."""
     head = stream.read(_TELLING)
     stream.seek(-len(head), os.SEEK_CUR)
-    reader = (
-        read_archive
-        if head.startswith(b"PK")
-        else read_array
-        if head.startswith(b"\x93NUMPY")
-        else read_text
-    )
-    return reader(stream, name, naming or Naming())
+    naming = naming or Naming()
+    if head.startswith(b"PK"):
+        return read_archive(stream, name, naming)
+    if head.startswith(b"\x93NUMPY"):
+        return read_array(stream, name, naming)
+    return _read_text(stream, name, naming)
 
 
 def read_transits(source: str | Path, units: Sequence[str] = ()) -> Array:
@@ -125,88 +123,112 @@ def read_transits(source: str | Path, units: Sequence[str] = ()) -> Array:
         InputError: the file cannot be read; the message names the line.
     """
     with _opened(source, "--transits", "a readable CSV file") as (stream, name):
-        columns, _ = ColumnReader(name, ("t",), Naming((), tuple(units))).columns(stream)
+        reader = _ColumnReader(name, ("t",), Naming((), tuple(units)))
+        columns, _ = reader.columns(stream)
         return checked_transits(columns["t"], name)
 
 
 @contextmanager
 def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[bytes], str]]:
     """Yield a file, or standard input if `source` is "-", and its name for messages; of a pipe a copy."""
-    stream: IO[bytes]
     with ExitStack() as stack:
         try:
             if str(source) == "-":
-                if sys.stdin is None:
-                    raise OSError(errno.EBADF, "Standard input is closed")
-                stream, name = sys.stdin.buffer, "standard input"
+                name = "standard input"
+                stream = _standard_input()
             else:
-                path, name = checked_path(field, source, expected), printable(str(source))
-                stream = stack.enter_context(open_at_once(path))
+                name = printable(str(source))
+                stream = stack.enter_context(open_at_once(checked_path(field, source, expected)))
                 os.set_blocking(stream.fileno(), True)
             if not stream.seekable():
-                pipe, stream = stream, stack.enter_context(SpooledTemporaryFile(CHUNK))
-                while stream.tell() <= MAX_BYTES and (data := pipe.read(CHUNK)):
-                    stream.write(data)
-                if not stream.tell() and str(source) != "-":
+                copy = stack.enter_context(SpooledTemporaryFile(_CHUNK))
+                _copy_pipe(stream, copy)
+                if not copy.tell() and str(source) != "-":
                     advice = (
                         "Nobody writes to this pipe: start the program first, or let --run start it"
                     )
                     raise OSError(errno.EPIPE, advice)
-                stream.seek(0)
-            start = stream.tell()
-            if stream.seek(0, os.SEEK_END) > MAX_BYTES:
-                raise InputError(
-                    name,
-                    f"more than {MAX_BYTES} bytes",
-                    f"at most {MAX_BYTES}",
-                    "Thin the output out.",
-                )
-            stream.seek(start)
+                copy.seek(0)
+                stream = copy
+            _check_size(stream, name)
             yield stream, name
         except OSError as error:
             raise InputError(field, str(source), expected, f"{error.strerror}.") from None
 
 
-def read_text(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
+def _standard_input() -> IO[bytes]:
+    if sys.stdin is None:
+        raise OSError(errno.EBADF, "Standard input is closed")
+    return sys.stdin.buffer
+
+
+def _copy_pipe(pipe: IO[bytes], copy: IO[bytes]) -> None:
+    """Copy what a pipe holds, up to a little more than is allowed."""
+    while copy.tell() <= MAX_BYTES:
+        data = pipe.read(_CHUNK)
+        if not data:
+            return
+        copy.write(data)
+
+
+def _check_size(stream: IO[bytes], name: str) -> None:
+    """Refuse a stream that is too long; its position stays."""
+    start = stream.tell()
+    if stream.seek(0, os.SEEK_END) > MAX_BYTES:
+        got = f"more than {MAX_BYTES} bytes"
+        raise InputError(name, got, f"at most {MAX_BYTES}", "Thin the output out.")
+    stream.seek(start)
+
+
+def _read_text(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     """Read a candidate from a stream of bytes.
 
     Raises:
         InputError: the text cannot be read; the message names the line.
     """
-    reader = ColumnReader(name, NEEDED, naming)
+    reader = _ColumnReader(name, NEEDED, naming)
     columns, low = reader.columns(stream)
-    times = checked_transits(np.array(reader.transits), f"{name}: # P") if reader.transits else None
+    transits = None
+    if reader.transits:
+        transits = checked_transits(np.array(reader.transits), f"{name}: # P")
     return Candidate.of(
         name,
         columns.pop("t"),
         columns,
         low=low,
-        transits=times,
+        transits=transits,
         notes=tuple(reader.notes),
         conventions=tuple(reader.conventions),
         clock_s=reader.clock_s,
     )
 
 
+_UNPACK = "Unpack it first."
+_RECODE = "Write it in UTF-8; PowerShell does by `| Out-File -Encoding utf8`."
+# how files begin that are no text in UTF-8, what they are, and what to do; the mark of UTF-32 begins as that of UTF-16
+_BINARY_MARKS = (
+    (b"\x1f\x8b", "gzip", _UNPACK),
+    (b"\xfd7zXZ", "xz", _UNPACK),
+    (b"BZh", "bzip2", _UNPACK),
+    (codecs.BOM_UTF32_LE, "UTF-32", _RECODE),
+    (codecs.BOM_UTF32_BE, "UTF-32", _RECODE),
+    (codecs.BOM_UTF16_LE, "UTF-16", _RECODE),
+    (codecs.BOM_UTF16_BE, "UTF-16", _RECODE),
+)
+
+
 def _binary(data: bytes) -> tuple[str, str] | None:
     """Return what the first bytes of a file are, and what to do; None if they may be text in UTF-8."""
-    packed = {b"\x1f\x8b": "gzip", b"\xfd7zXZ": "xz", b"BZh": "bzip2"}
-    # the longer marks first: that of UTF-32 begins as that of UTF-16
-    encodings = {codecs.BOM_UTF32_LE: "UTF-32", codecs.BOM_UTF32_BE: "UTF-32"}
-    encodings |= {codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16"}
-    for begins, kind in packed.items():
-        if data.startswith(begins):
-            return kind, "Unpack it first."
-    for begins, kind in encodings.items():
-        if data.startswith(begins):
-            return kind, "Write it in UTF-8; PowerShell does by `| Out-File -Encoding utf8`."
-    return (
-        ("a zero byte", "Binary data is read from .npy and .npz only.") if b"\0" in data else None
-    )
+    for mark, kind, advice in _BINARY_MARKS:
+        if data.startswith(mark):
+            return kind, advice
+    if b"\0" in data:
+        return "a zero byte", "Binary data is read from .npy and .npz only."
+    return None
 
 
 @dataclass(frozen=True)
-class TextReading:
+class _TextReading:
     """A way to read the rows of a text.
 
     Attributes:
@@ -231,16 +253,15 @@ class TextReading:
 
     def fits(self, row: str) -> bool:
         """Return whether every field that is read is a number, or a mark for a missing one."""
+        if not self.counts(row):
+            return False
         time, *others = self.fields(row) or [""]
-        readable = is_number(time) or is_clock(time) or is_missing(time)
-        return (
-            self.counts(row)
-            and readable
-            and all(is_number(field) or is_missing(field) for field in others)
-        )
+        if not (is_number(time) or is_clock(time) or is_missing(time)):
+            return False
+        return all(is_number(field) or is_missing(field) for field in others)
 
 
-class ColumnReader:
+class _ColumnReader:
     """A reader of one text; `columns` reads it.
 
     Args:
@@ -250,11 +271,12 @@ class ColumnReader:
     """
 
     def __init__(self, name: str, needed: tuple[str, ...], naming: Naming) -> None:
-        self.name, self.alone = name, len(needed) == 1
+        self.name = name
+        self.alone = len(needed) == 1
         self.header = Header(name, needed, naming)
         self.rows: list[str] = []
         self.lines = array("l")  # the number of each row's line
-        self.readings: list[TextReading] = []  # ways to read the first row
+        self.readings: list[_TextReading] = []  # ways to read the first row
         self.conventions: list[Deviation] = []
         self.notes: list[str] = []
         self.transits: list[float] = []  # that comments of foucPend name
@@ -275,73 +297,94 @@ class ColumnReader:
             formats = " with a column t" if self.alone else ", foucPend's output, .npy or .npz"
             raise self.header.refuse(f"a CSV file{formats}")
         reading = self._only_reading()
-        places = reading.layout.places
         self.conventions = [*reading.layout.conventions]
-        indices, separator = [*places.values()], reading.separator
-        try:
-            mark = self._sure_mark(reading)
-            if mark is None:
-                raise ValueError
-            plain_rows = (self._counted(reading, i, mark) for i in range(len(self.rows)))
-            table = np.loadtxt(
-                plain_rows, delimiter=separator or None, usecols=indices, comments=None, ndmin=2
-            )
-            if mark == ",":
-                self.conventions.append(DECIMAL_COMMA)
-                self.rows = [row.replace(",", ".") for row in self.rows]
-        except ValueError:
-            self._spell_plainly(reading)
-            indices, separator = [*range(len(indices))], ""
-            table = np.loadtxt(self.rows, comments=None, ndmin=2)
-        low = _low_parts(self.rows, separator or None, indices, table)
-        columns, rest = (
-            dict(zip(places, np.ascontiguousarray(part.T), strict=True)) for part in (table, low)
-        )
-        return reading.layout.converted(columns, rest if low.any() else {})
+        table, low = self._numbers(reading)
+        names = reading.layout.places
+        columns = dict(zip(names, np.ascontiguousarray(table.T), strict=True))
+        low_columns: dict[str, Array] = {}
+        if low.any():
+            low_columns = dict(zip(names, np.ascontiguousarray(low.T), strict=True))
+        return reading.layout.converted(columns, low_columns)
+
+    def _numbers(self, reading: _TextReading) -> tuple[Array, Array]:
+        """Return the numbers of the columns that are read, shape (rows, columns), and their low parts."""
+        places = [*reading.layout.places.values()]
+        mark = self._sure_mark(reading)
+        if mark is not None:
+            try:
+                table = self._loaded(reading, mark, places)
+            except ValueError:
+                pass  # some row takes a closer look
+            else:
+                return table, _low_parts(self.rows, reading.separator or None, places, table)
+
+        self._spell_plainly(reading)
+        table = np.loadtxt(self.rows, comments=None, ndmin=2)
+        return table, _low_parts(self.rows, None, range(len(places)), table)
+
+    def _loaded(self, reading: _TextReading, mark: str, places: Sequence[int]) -> Array:
+        """Return the numbers of rows that need no closer look: all have one decimal mark.
+
+        Raises:
+            ValueError: they do need one.
+            InputError: a row has more or fewer fields than there are columns.
+        """
+        rows = (self._counted(reading, i, mark) for i in range(len(self.rows)))
+        separator = reading.separator or None
+        table = np.loadtxt(rows, delimiter=separator, usecols=places, comments=None, ndmin=2)
+        if mark == ",":
+            self.conventions.append(DECIMAL_COMMA)
+            self.rows = [row.replace(",", ".") for row in self.rows]
+        return table
 
     def _take_lines(self, stream: IO[bytes]) -> None:
         """Take the rows, and from the first of them and the lines above it the ways to read them."""
         for line, data in enumerate(iter(partial(stream.readline, MAX_LINE + 1), b""), 1):
-            if len(data) > MAX_LINE:
-                got = f"a line of more than {MAX_LINE} bytes"
-                raise InputError(self.name, got, "lines of numbers", "Is it text?")
-            if line > MAX_LINES:
-                got, most = (
-                    f"more than {MAX_LINES} lines",
-                    f"at most {MAX_LINES}, comments and empty ones included",
-                )
-                raise InputError(self.name, got, most, "Thin the output out.")
-            if not self.rows and (binary := _binary(data)):
-                got, advice = binary
-                raise InputError(self.name, got, "text in UTF-8", advice)
-            text = data.decode("utf-8", "replace").strip(" \r\n\v\f")
-            text = text.removeprefix("\ufeff") if line == 1 else text
+            text = self._decoded(data, line)
             if says_nothing(text):
                 continue
             if "\r" in text:
-                raise InputError(
-                    self.name,
-                    "lines that end with CR alone",
-                    "LF or CR LF",
-                    "Save it with other line ends.",
-                )
-            cut_off = data[-1:] != b"\n"
+                got = "lines that end with CR alone"
+                raise InputError(self.name, got, "LF or CR LF", "Save it with other line ends.")
+
             begins = text.lstrip()
-            if begins[0] in MARKS and (remark := COMMENT.match(begins)):
+            remark = COMMENT.match(begins) if begins[0] in MARKS else None
+            if remark is not None:
                 if not self.rows:
                     self.header.add(line, remark[1], True)
                 if remark[1].split()[:1] == ["P"] and not self.alone:
                     self._take_transit(remark[1], line)
             elif self.rows or self._begins(text, line):
-                if len(self.rows) == MAX_ROWS:
-                    most = f"at most {MAX_ROWS}"
-                    raise InputError(
-                        self.name, f"more than {MAX_ROWS} rows", most, "Thin the output out."
-                    )
-                self.rows.append(text)
-                self.lines.append(line)
-            if cut_off:
+                self._take_row(text, line)
+            if data[-1:] != b"\n":
                 self.notes.append("the last line does not end with a newline: it may be cut off")
+
+    def _decoded(self, data: bytes, line: int) -> str:
+        """Return a line as text without blanks at its ends.
+
+        Raises:
+            InputError: it is too long, or one too many, or the file is binary.
+        """
+        if len(data) > MAX_LINE:
+            got = f"a line of more than {MAX_LINE} bytes"
+            raise InputError(self.name, got, "lines of numbers", "Is it text?")
+        if line > MAX_LINES:
+            got = f"more than {MAX_LINES} lines"
+            expected = f"at most {MAX_LINES}, comments and empty ones included"
+            raise InputError(self.name, got, expected, "Thin the output out.")
+        binary = None if self.rows else _binary(data)
+        if binary is not None:
+            kind, advice = binary
+            raise InputError(self.name, kind, "text in UTF-8", advice)
+        text = data.decode("utf-8", "replace").strip(" \r\n\v\f")
+        return text.removeprefix("\ufeff") if line == 1 else text
+
+    def _take_row(self, text: str, line: int) -> None:
+        if len(self.rows) == MAX_ROWS:
+            got = f"more than {MAX_ROWS} rows"
+            raise InputError(self.name, got, f"at most {MAX_ROWS}", "Thin the output out.")
+        self.rows.append(text)
+        self.lines.append(line)
 
     def _take_transit(self, remark: str, line: int) -> None:
         try:
@@ -356,30 +399,28 @@ class ColumnReader:
         if not separators:
             self.header.add(line, text, False)
             return False
-        of_header = [
-            (separator, 0.0) for separator in SEPARATORS if self.header.uses(separator, text)
-        ]
-        separators = of_header or separators
-        refusals, readings = [], []
-        for separator, share in separators:
+        # of a header without doubt, the separators that it uses
+        by_header = [(mark, 0.0) for mark in SEPARATORS if self.header.uses(mark, text)]
+        refusals = []
+        readings = []
+        for separator, share in by_header or separators:
             try:
-                readings.append(TextReading(separator, *self.header.layout(text, separator, line)))
+                layout, width = self.header.layout(text, separator, line)
             except InputError as error:
                 refusals.append((share, error))
+            else:
+                readings.append(_TextReading(separator, layout, width))
         if not readings:
             raise refusals[0][1]
         if not self.header.decides and any(share == 1 for share, _ in refusals):
             got = f"{text[:40]}, which may be one number or two"
-            raise InputError(
-                f"{self.name}: line {line}",
-                got,
-                "a first line that names the columns",
-                f"Write {','.join(self.header.needed)} above it.",
-            )
+            expected = "a first line that names the columns"
+            advice = f"Write {','.join(self.header.needed)} above it."
+            raise InputError(f"{self.name}: line {line}", got, expected, advice)
         self.readings = [reading for reading in readings if reading.fits(text)] or readings[:1]
         return True
 
-    def _only_reading(self) -> TextReading:
+    def _only_reading(self) -> _TextReading:
         """Return the one way to read all rows.
 
         Raises:
@@ -388,46 +429,51 @@ class ColumnReader:
         if len(self.readings) == 1:
             return self.readings[0]
         possible = [reading for reading in self.readings if all(map(reading.fits, self.rows))]
+        if not possible:
+            return self.readings[0]
         for other in possible[1:]:
-            same_columns = [*possible[0].layout.places] == [*other.layout.places]
-            for row, line in zip(self.rows, self.lines, strict=True):
-                first, second = ([*map(_value, way.fields(row))] for way in (possible[0], other))
-                if not same_columns or first != second:
-                    got, expected = (
-                        f"{', '.join(first)} or {', '.join(second)} from {row!r}",
-                        "one way to read it",
-                    )
-                    advice = "Name the columns in a first line, and separate them by semicolons."
-                    raise InputError(f"{self.name}: line {line}", got[:80], expected, advice)
-        return (possible or self.readings)[0]
+            self._check_equal(possible[0], other)
+        return possible[0]
 
-    def _sure_mark(self, reading: TextReading) -> str | None:
+    def _check_equal(self, reading: _TextReading, other: _TextReading) -> None:
+        """Refuse rows of which two ways to read them give other numbers."""
+        same_columns = [*reading.layout.places] == [*other.layout.places]
+        for row, line in zip(self.rows, self.lines, strict=True):
+            first = [_value(field) for field in reading.fields(row)]
+            second = [_value(field) for field in other.fields(row)]
+            if not same_columns or first != second:
+                got = f"{', '.join(first)} or {', '.join(second)} from {row!r}"
+                advice = "Name the columns in a first line, and separate them by semicolons."
+                where = f"{self.name}: line {line}"
+                raise InputError(where, got[:80], "one way to read it", advice)
+
+    def _sure_mark(self, reading: _TextReading) -> str | None:
         """Return the decimal mark of all numbers if a look at the rows shows it; None if each has to be looked at."""
-        marks = [
-            mark
-            for mark in ',."'
-            if mark != reading.separator and any(mark in row for row in self.rows)
-        ]
-        if len(marks) != 1 or marks == ['"']:
+        possible = [mark for mark in ',."' if mark != reading.separator]
+        marks = [mark for mark in possible if any(mark in row for row in self.rows)]
+        if marks not in ([","], ["."]):
             return None
         mark = marks[0]
-        some = [number for row in self.rows[:SAMPLE] for number in reading.fields(row)]
-        proven = any(mark in number and not GROUPED.fullmatch(number) for number in some)
-        return mark if proven else None
+        for row in self.rows[:_SAMPLE]:
+            for number in reading.fields(row):
+                if mark in number and not GROUPED.fullmatch(number):
+                    return mark
+        return None
 
-    def _counted(self, reading: TextReading, i: int, mark: str) -> str:
+    def _counted(self, reading: _TextReading, i: int, mark: str) -> str:
         """Return a row, with points for commas if the decimal mark is a comma.
 
         Raises:
             InputError: it has more or fewer fields than there are columns.
         """
-        row, separator = self.rows[i], reading.separator
+        row = self.rows[i]
+        separator = reading.separator
         count = row.count(separator) + 1 if separator else len(row.split())
         if count != reading.width and not reading.counts(row):
             self._refuse_count(reading, i)
         return row.replace(",", ".") if mark == "," else row
 
-    def _refuse_count(self, reading: TextReading, i: int) -> None:
+    def _refuse_count(self, reading: _TextReading, i: int) -> None:
         count = len(without_end(split(self.rows[i], reading.separator)))
         expected = f"{reading.width} as in the first row"
         advice = "Is the line cut off?"
@@ -435,7 +481,7 @@ class ColumnReader:
             advice = COMMAS if reading.separator == "," else "Are there two numbers in one field?"
         raise InputError(f"{self.name}: line {self.lines[i]}", f"{count} fields", expected, advice)
 
-    def _spell_plainly(self, reading: TextReading) -> None:
+    def _spell_plainly(self, reading: _TextReading) -> None:
         """Put the numbers of the columns that are read in place of the rows, with points and separated by blanks.
 
         Rows in which a position is missing are left out.
@@ -443,102 +489,108 @@ class ColumnReader:
         Raises:
             InputError: a row or a number cannot be read, or in two ways.
         """
+        columns = self._fields_without_lost_rows(reading)
+        times = columns[0]
+        clocks = [is_clock(text) for text in times]
+        numbers = columns
+        if clocks[0]:
+            numbers = columns[1:]
+            columns[0] = self._clock(times, reading)
+        elif any(clocks):
+            i = clocks.index(True)
+            raise self._no_number(self.lines[i], "t", times[i])
+        self._check_marks(numbers, reading)
+        if any("," in number for column in numbers for number in column):
+            self.conventions.append(DECIMAL_COMMA)
+        self.rows = [" ".join(map(plain, fields)) for fields in zip(*columns, strict=True)]
+
+    def _fields_without_lost_rows(self, reading: _TextReading) -> list[list[str]]:
+        """Return the fields by column; rows without a position are left out, and their lines with them.
+
+        Raises:
+            InputError: a field is no number, or no row has a position.
+        """
         names = [*reading.layout.places]
         columns: list[list[str]] = [[] for _ in names]
-        lines, lost = array("l"), []
+        lines = array("l")
+        lost_times = []
         for i, row in enumerate(self.rows):
             if not reading.counts(row):
                 self._refuse_count(reading, i)
             fields = reading.fields(row)
             missing = [is_missing(field) for field in fields]
             if any(missing) and not self.alone and (all(missing) or not missing[0]):
-                lost.append(fields[0])
+                lost_times.append(fields[0])
                 continue
-            for name, field in zip(names, fields, strict=True):
+            for name, column, field in zip(names, columns, fields, strict=True):
                 if not (is_number(field) or (name == "t" and is_clock(field))):
                     raise self._no_number(self.lines[i], name, field)
-            for column, field in zip(columns, fields, strict=True):
                 column.append(field)
             lines.append(self.lines[i])
+
         if not lines:
-            raise InputError(
-                self.name, f"no number of {' or '.join(names[1:])} in any row", "rows of numbers"
-            )
-        if lost:
-            self.notes.append(
-                f"{counted(len(lost), 'row')} without a position left out, the first at t = {lost[0] or '?'}"
-            )
+            got = f"no number of {' or '.join(names[1:])} in any row"
+            raise InputError(self.name, got, "rows of numbers")
+        if lost_times:
+            rows = counted(len(lost_times), "row")
+            first = lost_times[0] or "?"
+            self.notes.append(f"{rows} without a position left out, the first at t = {first}")
         self.lines = lines
-        written = columns
-        if is_clock(columns[0][0]):
-            written = columns[1:]
-            columns[0] = self._clock(columns[0], reading)
-        elif any(is_clock(text) for text in columns[0]):
-            i = next(i for i, text in enumerate(columns[0]) if is_clock(text))
-            raise self._no_number(lines[i], "t", columns[0][i])
-        self._check_marks(written, reading)
-        if any("," in number for column in written for number in column):
-            self.conventions.append(DECIMAL_COMMA)
-        self.rows = [" ".join(map(plain, fields)) for fields in zip(*columns, strict=True)]
+        return columns
 
     def _no_number(self, line: int, name: str, field: str) -> InputError:
         advice = ""
         if THOUSANDS.fullmatch(field):
             advice = "Write numbers without marks between thousands."
+        elif name == "t" and re.search(r"\d[:/-]\d", field):
+            advice = HOW
         elif name == "t":
-            advice = (
-                HOW if re.search(r"\d[:/-]\d", field) else "Write # before lines that are no rows."
-            )
+            advice = "Write # before lines that are no rows."
         return InputError(f"{self.name}: line {line}: {name}", field[:40], "a number", advice)
 
-    def _clock(self, texts: Sequence[str], reading: TextReading) -> list[str]:
+    def _clock(self, texts: Sequence[str], reading: _TextReading) -> list[str]:
         """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
 
         Raises:
             InputError: a text is not a time of day, or its column has a unit that no time of day has.
         """
         if "t" in reading.layout.factors:
-            raise InputError(
-                f"{self.name}: t", texts[0], "a number, as its unit says", "Leave the unit out."
-            )
-        places = [f"{self.name}: line {line}: t" for line in self.lines]
-        times = [seconds_of(text, place) for text, place in zip(texts, places, strict=True)]
-        kind = (
-            "dates with hours:minutes:seconds"
-            if MOMENT.fullmatch(texts[0])
-            else "hours:minutes:seconds"
-        )
+            expected = "a number, as its unit says"
+            raise InputError(f"{self.name}: t", texts[0], expected, "Leave the unit out.")
+        times = []
+        for text, line in zip(texts, self.lines, strict=True):
+            times.append(seconds_of(text, f"{self.name}: line {line}: t"))
+        kind = "hours:minutes:seconds"
+        if MOMENT.fullmatch(texts[0]):
+            kind = f"dates with {kind}"
         self.conventions.append(Deviation("clock_text", f"times are {kind}, converted to seconds"))
         if self.alone or not times[0]:
             return [decimal(time) for time in times]
         self.clock_s = float(times[0])
         return counted_from(times[0], times)
 
-    def _check_marks(self, columns: Sequence[Sequence[str]], reading: TextReading) -> None:
+    def _check_marks(self, columns: Sequence[Sequence[str]], reading: _TextReading) -> None:
         """Refuse numbers whose marks may be decimal or not."""
         commas_separate = reading.separator == ","
         doubtful = doubtful_number(columns, commas_separate)
         if doubtful is not None:
             mark = "comma" if "," in doubtful else "point"
-            got, expected = (
-                doubtful,
-                f"a {mark} that is decimal or one between thousands, and some number that shows which",
+            expected = (
+                f"a {mark} that is decimal or one between thousands, "
+                "and some number that shows which"
             )
             advice = f"Write {doubtful.replace(',', '.')}0 or {re.sub('[,.]', '', doubtful)}."
-            raise InputError(self.name, got, expected, advice)
-        fractions = any("." in number or "," in number for column in columns for number in column)
-        needless = (
-            None
-            if fractions or not commas_separate
-            else padded([number for column in columns for number in column])
-        )
+            raise InputError(self.name, doubtful, expected, advice)
+
+        if not commas_separate:
+            return
+        numbers = [number for column in columns for number in column]
+        if any("." in number or "," in number for number in numbers):
+            return
+        needless = padded(numbers)
         if needless is not None:
-            raise InputError(
-                self.name,
-                f"{needless} between commas",
-                "whole numbers without needless zeros",
-                COMMAS,
-            )
+            got = f"{needless} between commas"
+            raise InputError(self.name, got, "whole numbers without needless zeros", COMMAS)
 
 
 def _value(field: str) -> str:
@@ -546,31 +598,39 @@ def _value(field: str) -> str:
     return repr(float(plain(field))) if is_number(field) else field
 
 
-def _low_parts(lines: list[str], separator: str | None, indices: list[int], table: Array) -> Array:
+def _low_parts(
+    rows: Sequence[str], separator: str | None, places: Sequence[int], table: Array
+) -> Array:
     """Return the printed numbers minus their doubles; zeros if a sample of rows holds nothing but doubles."""
 
-    def of_row(line: str, row: Array) -> list[float]:
-        fields = line.split(separator)
-        return [low_part(fields[k], float(row[i]), of_time=i == 0) for i, k in enumerate(indices)]
+    def of_row(row: str, numbers: Array) -> list[float]:
+        fields = row.split(separator)
+        low = []
+        for column, place in enumerate(places):
+            low.append(_low_part(fields[place], float(numbers[column]), of_time=column == 0))
+        return low
 
-    sample = range(0, len(lines), 1 + len(lines) // SAMPLE)
-    if not any(any(of_row(lines[i], table[i])[1:]) for i in sample):
+    sample = range(0, len(rows), 1 + len(rows) // _SAMPLE)
+    if not any(any(of_row(rows[i], table[i])[1:]) for i in sample):
         return np.broadcast_to(0.0, table.shape)
-    return np.array([of_row(line, row) for line, row in zip(lines, table, strict=True)])
+    return np.array([of_row(row, numbers) for row, numbers in zip(rows, table, strict=True)])
 
 
-def low_part(text: str, near: float, of_time: bool = False) -> float:
+def _low_part(text: str, near: float, of_time: bool = False) -> float:
     """Return the printed number minus `near`, its nearest double; 0 if it may be just that double, printed.
 
-    A time beside numbers more precise than doubles is the decimal itself where it has few digits, as 0.1 has.
+    A time beside numbers more precise than doubles is the decimal itself where it has few digits, as
+    0.1 has.
     """
-    # that are significant
-    digits = sum(map(str.isdigit, text.lower().partition("e")[0].strip().lstrip("+-0.")))
-    sure = of_time and digits <= SURE_DIGITS
     # a number that underflows to 0 is below every scale here
-    if near == 0 or not math.isfinite(near) or (digits <= DOUBLE_DIGITS and not sure):
+    if near == 0 or not math.isfinite(near):
+        return 0.0
+    mantissa = text.lower().partition("e")[0]
+    significant_digits = sum(map(str.isdigit, mantissa.strip().lstrip("+-0.")))
+    is_decimal = of_time and significant_digits <= _SURE_DIGITS
+    if significant_digits <= DOUBLE_DIGITS and not is_decimal:
         return 0.0
     printed = Decimal(text.strip())
     difference = _EXACT.subtract(printed, Decimal(near))
     half_a_unit = Decimal((0, (5,), int(printed.as_tuple().exponent) - 1))
-    return float(difference) if sure or abs(difference) > half_a_unit else 0.0
+    return float(difference) if is_decimal or abs(difference) > half_a_unit else 0.0

@@ -22,7 +22,8 @@ from ..diagnosis import MOST_RUNS, Experiment, experiment, possible
 from ..report.folder import json_text, write_file
 from ..score.verdict import Score
 
-DOCUMENT, GIVEN = "experiments.json", "as_given"  # in the folder
+GIVEN = "as_given"  # the file, in the folder, of what the program prints for the scene itself
+_DOCUMENT = "experiments.json"
 
 
 @dataclass(frozen=True)
@@ -56,18 +57,18 @@ class Runnable:
             self.out.mkdir(parents=True, exist_ok=True)
             if any(self.out.iterdir()) and not (self.out / f"{GIVEN}.txt").exists():
                 expected = "a new folder, or one of earlier experiments"
-                raise InputError(
-                    "--out", str(self.out), expected, "It has other files: choose another name."
-                )
+                advice = "It has other files: choose another name."
+                raise InputError("--out", str(self.out), expected, advice)
 
     @property
     def step(self) -> float:
-        """The value of {setting}, if none is given a step in s, whole ones to a grid step, at least 200 a period."""
-        grid, rate = (
-            float(self.scene.exact.grid_step),
-            Start.of(self.scene.exact, DOUBLE.prec).fastest_rate,
-        )
-        return self.setting or grid / math.ceil(grid * rate * STEPS / (2 * math.pi))
+        """The value of {setting}; by default a step in s: a whole part of a grid step, at least 200 a period."""
+        if self.setting is not None:
+            return self.setting
+        grid_step_s = float(self.scene.exact.grid_step)
+        rate = Start.of(self.scene.exact, DOUBLE.prec).fastest_rate
+        steps = math.ceil(grid_step_s * rate * STEPS / (2 * math.pi))
+        return grid_step_s / steps
 
     def words(self, scene: Scene, command: str = "", finer: int = 1) -> list[str]:
         """Return the words of a run in a scene, {setting} divided by a number; of another version's command."""
@@ -80,19 +81,17 @@ class Runnable:
             output.seek(0)
 
     def experimented(self, score: Score, naming: Naming) -> Score:
-        """Return a score with what experiments measure, which are made now."""
+        """Make the experiments that the command allows, and return the score with what they measured."""
         assert score.explanation is not None
-        made, kept = (
-            0,
-            "what the program has printed is kept" if self.out else "nothing was written",
-        )
+        count = 0
+        kept = "what the program has printed is kept" if self.out else "nothing was written"
         with stoppable(kept), progress() as show:
             move = show("experiments", MOST_RUNS, "runs")
 
             def run(chosen: Experiment, scene: Scene) -> Candidate:
-                nonlocal made
-                move(made, item=chosen.title)
-                made += 1
+                nonlocal count
+                move(count, item=chosen.title)
+                count += 1
                 output, *_ = run_program(self.words(scene, finer=chosen.finer), self.timeout)
                 with output:
                     self.keep(output, chosen.id)
@@ -107,5 +106,5 @@ class Runnable:
             experiments, explanation = measured
             move(MOST_RUNS)
         if self.out is not None:
-            write_file(self.out / DOCUMENT, json_text(experiments.document()), "--out")
+            write_file(self.out / _DOCUMENT, json_text(experiments.document()), "--out")
         return replace(score, experiments=experiments, explanation=explanation)

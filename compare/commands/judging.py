@@ -1,27 +1,21 @@
-"""How `foucault score` judges: files, a program, an approximation, a suite, passages; uncertain inputs too."""
+"""How `foucault score` judges: files, transits, a program, an approximation, or a suite of files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import typer
 
-from reference import FoucaultError, InputError, Ranges, Scene, load_ranges, load_scene
+from reference import FoucaultError, InputError, Scene, load_scene
 from reference.commands.progress import progress
-from reference.commands.terminal import emit, refuse, stoppable
-from reference.dataset.place import RANGES, golden_folder
+from reference.commands.terminal import stoppable
 from reference.errors import Stopped
 from reference.numbers.precision import Array
 from reference.plain_text import plain
-from reference.solver.ranges import Intervals
-from reference.solver.uncertain import exact_texts, widths_of
 
-from .. import judge
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.arrays import candidate_of
 from ..candidates.candidate import COLUMNS, Candidate
@@ -31,60 +25,17 @@ from ..candidates.read import named, read, read_stream, read_transits
 from ..report import suite
 from ..score.baseline import FILE, document_of, rows_of
 from ..score.document import of_outcome
-from ..score.measured import APART, Measured, measured
-from ..score.passages import PassageScore, score_passages
+from ..score.judge import JudgeOptions, judge_with
 from ..score.verdict import Outcome, Score
+from ..truth import Progress
 from .experimenting import GIVEN, Runnable
 from .options import announce
+from .suite_files import SuiteFiles, suite_files
 
-SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
-TRANSITS = ".transits"
-DOCUMENT = ".json"  # of a baseline that is no trajectory
+_DOCUMENT = ".json"  # of a baseline that is no trajectory
 
-
-def suite_files(
-    folder: Path, option: str = "--suite"
-) -> dict[str, tuple[Path | None, Path | None]]:
-    """Return the candidates of a folder by their scenes, sorted, such as paris.csv, with paris.transits.csv beside it.
-
-    Returns:
-        The candidate's file and that of its transits, one of which may be None; by the id of a scene that ships, or by
-        the path of a TOML file of the same name beside them.
-
-    Raises:
-        InputError: it is no folder, holds no candidates, or two for one scene.
-    """
-    if not folder.is_dir():
-        raise InputError(
-            option,
-            str(folder),
-            "a folder",
-            "Its files are named by their scenes: paris.csv, hard.npz.",
-        )
-    by_scene: dict[str, dict[bool, Path]] = {}
-    for path in sorted(folder.iterdir()):
-        if path.suffix.lower() not in SUFFIXES or not path.is_file():
-            continue
-        of_transits = path.stem.endswith(TRANSITS)
-        files = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
-        if of_transits in files:
-            raise InputError(
-                option, f"{files[of_transits].name} and {path.name}", "one file for a scene"
-            )
-        files[of_transits] = path
-    if not by_scene:
-        expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
-        raise InputError(
-            option,
-            str(folder),
-            expected,
-            "For paris: paris.csv, and paris.transits.csv if you like.",
-        )
-    suite = {}
-    for scene, paths in sorted(by_scene.items()):
-        described = folder / f"{scene}.toml"
-        suite[str(described) if described.is_file() else scene] = paths.get(False), paths.get(True)
-    return suite
+# an earlier version: a score, a trajectory, or a document of `foucault score --json`
+Earlier = Score | Candidate | dict[str, Any] | None
 
 
 @dataclass(frozen=True)
@@ -93,232 +44,187 @@ class Judging:
 
     Attributes:
         naming: what the user says of the columns of files.
-        options: further arguments of `judge`.
-        baseline: a file, a document (.json), a command for that of --run, a folder for a suite; None for none.
+        options: what counts as agreement.
+        baseline: a file, a document (.json), a command for that of --run, or a folder for a suite; None
+            if there is no earlier version.
     """
 
     naming: Naming
-    options: dict[str, Any]
+    options: JudgeOptions
     baseline: str | None = None
-
-    def outcome(self, name: str, scene_id: str, trial: Callable[[], Score]) -> Outcome:
-        """Make a score; an error in it becomes the outcome and does not stop others, an interruption ends all."""
-        try:
-            score = trial()
-        except Stopped:
-            raise
-        except FoucaultError as error:
-            return Outcome(plain(name), plain(scene_id), error=error)
-        return Outcome(score.candidate.name, score.scene.id, score)
-
-    def score(
-        self, scene: Scene, candidate: Candidate | None, times: Array | None, baseline: Any = None
-    ) -> Score:
-        """Judge a candidate, with its transits or transits alone, beside a baseline if there is one."""
-        with stoppable("nothing was written"), progress() as show, named("--baseline"):
-            options = self.options | {"baseline": baseline, "announce": announce}
-            report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-            return judge(candidate, scene, transits=times, report=report, **options)
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(
-            name, scene.id, lambda: self.score(scene, self._read(name), times, self._earlier())
+        return _outcome_of(
+            name,
+            scene.id,
+            lambda: self._score(scene, self._rows(name), times, self._baseline_of_file()),
         )
-
-    def _earlier(self) -> Candidate | dict[str, Any] | None:
-        """Read the baseline, a trajectory or a document, if there is one."""
-        with named("--baseline"):
-            document = str(self.baseline).endswith(DOCUMENT)
-            return document_of(Path(str(self.baseline))) if document else self._read(self.baseline)
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
-        return self.outcome(name, scene.id, lambda: self.score(scene, None, self.times(name)))
+        return _outcome_of(name, scene.id, lambda: self._score(scene, None, self.times(name)))
 
     def program(
         self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool
     ) -> Outcome:
-        """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
-        scene = program.scene
-
-        def trial() -> Score:
-            times = self.times(transits)
-            candidate, timing = printed(program.command, name, repeats)
-            command = self.baseline is not None and not Path(self.baseline).is_file()
-            with named("--baseline"):
-                earlier = (
-                    printed(str(self.baseline), str(self.baseline), 0)[0]
-                    if command
-                    else self._earlier()
-                )
-            return replace(self.score(scene, candidate, times, earlier), timing=timing)
-
-        def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
-            with stoppable("the program was ended"):
-                output, timing = timed(program.words(scene, command), program.timeout, repeats)
-            with output:
-                if command == program.command:
-                    program.keep(output, GIVEN)
-                return read_stream(output, plain(name), naming=self.naming), timing
-
-        outcome = self.outcome(name, scene.id, trial)
+        """Run a program and judge its output; with experiments, run it again if its positions are off."""
+        outcome = _outcome_of(
+            name,
+            program.scene.id,
+            lambda: self._score_of_program(program, name, transits, repeats),
+        )
         score = outcome.score
         if not experiments or score is None or score.explanation is None:
             return outcome
         explanation = score.explanation
-        off = explanation.causes or explanation.corrected_m > explanation.allowed_m
-        return replace(outcome, score=program.experimented(score, self.naming)) if off else outcome
+        if not explanation.causes and explanation.corrected_m <= explanation.allowed_m:
+            return outcome
+        return replace(outcome, score=program.experimented(score, self.naming))
 
     def approximation(self, scene: Scene, word: str, transits: str | None) -> Outcome:
-        """Judge the motion of an approximation at the scene's grid times."""
+        """Judge the motion of an approximation at the scene's grid times.
+
+        Raises:
+            InputError: it gives no motion.
+        """
         motion = APPROXIMATIONS[word]
         if not isinstance(motion, Motion):
             expected = "an approximation of the motion"
-            raise InputError(
-                "--approximation", word, expected, "This one gives a number, not a motion."
-            )
-
-        def trial() -> Score:
-            times = [float(t) for t in scene.exact.grid]
-            columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-            return self.score(
-                scene, candidate_of(word, {"t": np.array(times), **columns}), self.times(transits)
-            )
-
-        return self.outcome(word, scene.id, trial)
+            advice = "This one gives a number, not a motion."
+            raise InputError("--approximation", word, expected, advice)
+        return _outcome_of(
+            word, scene.id, lambda: self._score_of_motion(motion, scene, word, transits)
+        )
 
     def suite(self, folder: Path, out: Path | None, option: str = "--suite") -> list[Outcome]:
         """Judge the files of a folder by the scenes that they are named after, and write the page."""
         if out is not None:
             suite.check(out)
-        outcomes, earlier = [], self._earlier_suite()
-        for scene, files in suite_files(folder, option).items():
-            name = Path(scene).stem
-            before: object = earlier.pop(name, None if self.baseline is None else {"rows": []})
-            outcomes.append(
-                self.outcome(
-                    str(files[0] or files[1]), name, partial(self._trial, scene, *files, before)
-                )
-            )
+        earlier = self._baseline_of_suite()
+        without_earlier: Earlier = None if self.baseline is None else {"rows": []}
+
+        outcomes = []
+        for files in suite_files(folder, option):
+            before = earlier.pop(files.name, without_earlier)
+            outcomes.append(self._outcome_of_files(files, before))
         for name in earlier:
             error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
             outcomes.append(Outcome(name, name, error=error))
+
         if out is not None:
             suite.write(outcomes, out)
         return outcomes
-
-    def _earlier_suite(self) -> dict[str, Score | dict[str, Any]]:
-        """Return the baseline of a suite by scene: the scores of a folder, or rows of a document."""
-        if self.baseline is None:
-            return {}
-        path = Path(self.baseline)
-        if path.suffix == DOCUMENT:
-            with named("--baseline"):
-                return {
-                    str(row["scene"]): {"rows": [row], FILE: str(path)}
-                    for row in rows_of(document_of(path))
-                }
-        outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
-        return {outcome.scene: outcome.score or of_outcome(outcome) for outcome in outcomes}
-
-    def _trial(
-        self, word: str, candidate: Path | None, transits: Path | None, earlier: object
-    ) -> Score:
-        return self.score(load_scene(word), self._read(candidate), self.times(transits), earlier)
-
-    def hold(
-        self,
-        files: list[str] | None,
-        transits: str | None,
-        section: str | None,
-        truth: Ranges | Scene,
-        as_json: bool,
-    ) -> None:
-        """Hold files, or transits alone, against ranges, or passages of a section against a scene; print the outcome.
-
-        Exit status 1 where one disagrees.
-        """
-        scene = truth.scene if isinstance(truth, Ranges) else truth
-        word = "" if section is None else _section_word(section, transits, scene)
-        if not files and transits is None:
-            raise InputError(
-                "CANDIDATE",
-                "nothing",
-                "a file, - for stdin, or --transits",
-                "Name what was measured.",
-            )
-        times, tolerance = self.times(transits), self.options["tolerance"]
-        scores: list[Measured | PassageScore] = []
-        for rows in [self._read(file) for file in files or ()] or [None]:
-            with stoppable("nothing was written"), progress() as show:
-                label = "the truth" if truth is scene else "the proof"
-                report: Any = show(f"{label} of {scene.id}", float(scene.exact.t_end))
-                if isinstance(truth, Ranges):
-                    scores.append(
-                        measured(
-                            rows,
-                            times,
-                            truth,
-                            tolerance or 0.0,
-                            str(transits),
-                            report,
-                            word or None,
-                        )
-                    )
-                else:
-                    assert times is not None
-                    scores.append(
-                        score_passages(
-                            str(transits), times, scene, word, tolerance, announce, report
-                        )
-                    )
-        if as_json:
-            emit(
-                scores[0].document()
-                if len(scores) == 1
-                else {"rows": [score.document() for score in scores]}
-            )
-        else:
-            for line in (line for score in scores for line in score.lines()):
-                typer.echo(line)
-        if any(score.verdict == APART for score in scores):
-            raise typer.Exit(1)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""
         return None if name is None else read_transits(name, self.naming.units)
 
-    def _read(self, name: str | Path | None) -> Candidate | None:
-        return (
-            None
-            if name is None
-            else read(name, columns=self.naming.columns, units=self.naming.units)
-        )
+    def _rows(self, name: str | Path | None) -> Candidate | None:
+        """Read a trajectory from a file, if there is one."""
+        if name is None:
+            return None
+        return read(name, columns=self.naming.columns, units=self.naming.units)
+
+    def _score(
+        self,
+        scene: Scene,
+        candidate: Candidate | None,
+        times: Array | None,
+        baseline: Earlier = None,
+    ) -> Score:
+        """Judge a candidate, with its transits or transits alone, beside a baseline if there is one."""
+        with stoppable("nothing was written"), progress() as show, named("--baseline"):
+            report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
+            return judge_with(
+                self.options,
+                candidate,
+                scene,
+                transits=times,
+                baseline=baseline,
+                progress=Progress(announce, report),
+            )
+
+    def _baseline_of_file(self) -> Earlier:
+        """Read the baseline, a trajectory or a document, if there is one."""
+        if self.baseline is None:
+            return None
+        with named("--baseline"):
+            if self.baseline.endswith(_DOCUMENT):
+                return document_of(Path(self.baseline))
+            return self._rows(self.baseline)
+
+    def _score_of_program(
+        self, program: Runnable, name: str, transits: str | None, repeats: int
+    ) -> Score:
+        """Run a program, and its earlier version if the baseline is a command; judge its output."""
+        times = self.times(transits)
+        candidate, timing = self._run(program, program.command, name, repeats)
+        if self.baseline is None or Path(self.baseline).is_file():
+            earlier = self._baseline_of_file()
+        else:
+            with named("--baseline"):
+                earlier, _ = self._run(program, self.baseline, self.baseline, repeats=0)
+        return replace(self._score(program.scene, candidate, times, earlier), timing=timing)
+
+    def _run(
+        self, program: Runnable, command: str, name: str, repeats: int
+    ) -> tuple[Candidate, Timing]:
+        """Return what a program, or another version of it, prints, and its run time."""
+        with stoppable("the program was ended"):
+            words = program.words(program.scene, command)
+            output, timing = timed(words, program.timeout, repeats)
+        with output:
+            if command == program.command:
+                program.keep(output, GIVEN)
+            return read_stream(output, plain(name), naming=self.naming), timing
+
+    def _score_of_motion(
+        self, motion: Motion, scene: Scene, word: str, transits: str | None
+    ) -> Score:
+        """Judge an approximation of the motion."""
+        times = [float(t) for t in scene.exact.grid]
+        states = motion.trajectory(scene, times)
+        columns = dict(zip(COLUMNS, states.T, strict=True))
+        candidate = candidate_of(word, {"t": np.array(times), **columns})
+        return self._score(scene, candidate, self.times(transits))
+
+    def _outcome_of_files(self, files: SuiteFiles, earlier: Earlier) -> Outcome:
+        """Judge the files of one scene of a suite."""
+
+        def trial() -> Score:
+            scene = load_scene(files.scene)
+            return self._score(scene, self._rows(files.rows), self.times(files.transits), earlier)
+
+        return _outcome_of(str(files.rows or files.transits), files.name, trial)
+
+    def _baseline_of_suite(self) -> dict[str, Earlier]:
+        """Return the baseline of a suite by scene: the scores of a folder, or rows of a document."""
+        if self.baseline is None:
+            return {}
+        path = Path(self.baseline)
+        by_scene: dict[str, Earlier] = {}
+        if path.suffix == _DOCUMENT:
+            with named("--baseline"):
+                for row in rows_of(document_of(path)):
+                    by_scene[str(row["scene"])] = {"rows": [row], FILE: str(path)}
+            return by_scene
+
+        for outcome in replace(self, baseline=None).suite(path, None, "--baseline"):
+            by_scene[outcome.scene] = outcome.score or of_outcome(outcome)
+        return by_scene
 
 
-def ranges_named(word: str | None) -> Ranges | None:
-    """Return the ranges that a word names, an id or a folder; None if it names none."""
-    folder = None if word is None else golden_folder(word)
-    return load_ranges(folder) if folder is not None and (folder / RANGES).is_file() else None
-
-
-def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
-    """Return ranges that have no times yet.
+def _outcome_of(name: str, scene_id: str, trial: Callable[[], Score]) -> Outcome:
+    """Return the outcome of a trial: its score, or its error, which does not stop others.
 
     Raises:
-        InputError: an input, or a width.
+        Stopped: the user interrupted it.
     """
-    return Ranges(scene, exact_texts(widths_of(scene, widths)), (), Intervals((), ()), {}, "")
-
-
-def _section_word(section: str, transits: str | None, scene: Scene) -> str:
-    """Return the word of the one section that transits are passages of, as scenes write it."""
-    if transits is None:
-        refuse({"--section": section}, "without --transits")
-    words = scene.with_values({"run.sections": section}).run.sections or ()
-    if len(words) != 1:
-        raise InputError(
-            "--section", section, "one section", "Score the passages of each by themselves."
-        )
-    return words[0]
+    try:
+        score = trial()
+    except Stopped:
+        raise
+    except FoucaultError as error:
+        return Outcome(plain(name), plain(scene_id), error=error)
+    return Outcome(score.candidate.name, score.scene.id, score)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from secrets import token_hex
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from reference import InputError, load_scene
+from reference.commands.options import Conflict, as_command, refuse_conflicts
 from reference.commands.terminal import (
     BESIDE_RANGES,
     AsJson,
@@ -18,7 +22,6 @@ from reference.commands.terminal import (
     completion,
     emit,
     option,
-    refuse,
     replacements,
     scene_argument,
     widths_by_name,
@@ -27,11 +30,17 @@ from reference.commands.terminal import (
 from .options import announce, check_positive, listed
 
 if TYPE_CHECKING:
+    from reference import Ranges, Scene
+
+    from ..candidates.names import Naming
     from ..score.verdict import Outcome
+    from .judging import Judging
 
 MAX_REPEATS = 1000
-TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats
-UNUSED = {  # fields of a scene that make no difference to a score
+TIMEOUT_S = 600.0  # default of --timeout
+REPEATS = 3  # default of --repeats
+
+_UNUSED = {  # fields of a scene that make no difference to a score
     "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
 }
@@ -58,252 +67,480 @@ def _how(language: str | None) -> None:
         raise typer.Exit
 
 
-SCENE = scene_argument("A scene's id, or the path of a TOML file; with --suite none.")
-CANDIDATES = typer.Argument(
-    metavar="CANDIDATE", help="Files: text with named columns, .npy, .npz; - is stdin."
-)
-SUITE = option("--suite", "Score a folder of files named after scenes: paris.csv.", "DIR")
-HOW = option(
-    "--how",
-    "Print how to write such a file in c, fortran, python …",
-    "LANGUAGE",
-    callback=_how,
-    is_eager=True,
-)
-COLUMNS = option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…")
-UNITS = option("--units", "Units of times and lengths: ms,cm (default: s,m).", "A,B")
-TRANSITS = option("--transits", "Score times of xdot = 0 too, or alone: in its column t.", "FILE")
-SECTION = option("--section", "--transits are passages of this section: 'gate 30'.", "WORD")
-RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
-NAME = option("--name", "Name of the program of --run (default: the program).", "WORD", hidden=True)
-SETTING = option("--setting", "{setting} in --run, in s (default: 200 a period, or more).", "S")
-EXPERIMENTS = option("--experiments", "Run it up to eight times more, to measure why it is off.")
-APPROXIMATION = option(
-    "--approximation",
-    "Score one of the source papers' approximations, which `foucault methods` lists.",
-    "ID",
-    completion(_approximation_ids),
-    hidden=True,
-)
-BASELINE = option(
-    "--baseline",
-    "Say what changed since a file, --json document, command or suite of an earlier version.",
-    "FILE",
-)
-TOLERANCE = option(
-    "--tolerance", "Allow errors up to this, in m (default: 1e-6 of the amplitude).", "M"
-)
-COVERS = option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE")
-T_END = option("--t-end", "Ignore rows after this time, in s (default: the scene's).", "S")
-INPUTS = option(
-    "--inputs",
-    "Read the scene as decimal or binary64; auto: by the file.",
-    "READING",
-    completion(_readings),
-)
-PLOT = option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE")
-TIMEOUT = option("--timeout", f"Stop --run after this many seconds (default: {TIMEOUT_S:g}).", "S")
-TIMINGS = option(
-    "--repeats",
-    f"Time the program of --run this often after a warm-up (default: {REPEATS}).",
-    "N",
-    hidden=True,
-)
-AS_MODEL = option("--as-model", "Count agreement with a named simpler model.")
-NO_DIAGNOSIS = option("--no-diagnosis", "Do not look for the reasons of an error.")
-OUT = option(
-    "--out",
-    "With --suite: write a page and tables into this folder; with --experiments: the outputs.",
-    "DIR",
-)
-JUNIT = option("--junit", "Write the outcome as JUnit XML, a test for each.", "FILE")
-GITHUB = option("--github", "Annotate for GitHub Actions; write the job's summary.")
+@dataclass(frozen=True)
+class ScoreOptions:
+    """What a user typed after `foucault score`, and the scene or ranges that it names."""
 
+    scene_word: Annotated[
+        str | None,
+        scene_argument("A scene's id, or the path of a TOML file; with --suite none."),
+    ] = None
+    candidates: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="CANDIDATE",
+            help="Files: text with named columns, .npy, .npz; - is stdin.",
+        ),
+    ] = None
+    suite: Annotated[
+        Path | None,
+        option("--suite", "Score a folder of files named after scenes: paris.csv.", "DIR"),
+    ] = None
+    how: Annotated[
+        str | None,
+        option(
+            "--how",
+            "Print how to write such a file in c, fortran, python …",
+            "LANGUAGE",
+            callback=_how,
+            is_eager=True,
+        ),
+    ] = None
+    columns: Annotated[
+        str | None,
+        option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…"),
+    ] = None
+    units: Annotated[
+        str | None,
+        option("--units", "Units of times and lengths: ms,cm (default: s,m).", "A,B"),
+    ] = None
+    transits: Annotated[
+        str | None,
+        option("--transits", "Score times of xdot = 0 too, or alone: in its column t.", "FILE"),
+    ] = None
+    section: Annotated[
+        str | None,
+        option("--section", "--transits are passages of this section: 'gate 30'.", "WORD"),
+    ] = None
+    run: Annotated[
+        str | None,
+        option("--run", "Run this program and score its output.", "'COMMAND'"),
+    ] = None
+    name: Annotated[
+        str | None,
+        option(
+            "--name",
+            "Name of the program of --run (default: the program).",
+            "WORD",
+            hidden=True,
+        ),
+    ] = None
+    setting: Annotated[
+        float | None,
+        option("--setting", "{setting} in --run, in s (default: 200 a period, or more).", "S"),
+    ] = None
+    experiments: Annotated[
+        bool,
+        option("--experiments", "Run it up to eight times more, to measure why it is off."),
+    ] = False
+    approximation: Annotated[
+        str | None,
+        option(
+            "--approximation",
+            "Score one of the source papers' approximations, which `foucault methods` lists.",
+            "ID",
+            completion(_approximation_ids),
+            hidden=True,
+        ),
+    ] = None
+    baseline: Annotated[
+        str | None,
+        option(
+            "--baseline",
+            "Say what changed since a file, --json document, command or suite of an earlier version.",
+            "FILE",
+        ),
+    ] = None
+    tolerance: Annotated[
+        float | None,
+        option(
+            "--tolerance",
+            "Allow errors up to this, in m (default: 1e-6 of the amplitude).",
+            "M",
+        ),
+    ] = None
+    covers: Annotated[
+        float | None,
+        option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE"),
+    ] = None
+    t_end: Annotated[
+        str | None,
+        option("--t-end", "Ignore rows after this time, in s (default: the scene's).", "S"),
+    ] = None
+    inputs: Annotated[
+        str,
+        option(
+            "--inputs",
+            "Read the scene as decimal or binary64; auto: by the file.",
+            "READING",
+            completion(_readings),
+        ),
+    ] = "auto"
+    plot: Annotated[
+        Path | None,
+        option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE"),
+    ] = None
+    timeout: Annotated[
+        float | None,
+        option("--timeout", f"Stop --run after this many seconds (default: {TIMEOUT_S:g}).", "S"),
+    ] = None
+    repeats: Annotated[
+        int | None,
+        option(
+            "--repeats",
+            f"Time the program of --run this often after a warm-up (default: {REPEATS}).",
+            "N",
+            hidden=True,
+        ),
+    ] = None
+    as_model: Annotated[
+        bool,
+        option("--as-model", "Count agreement with a named simpler model."),
+    ] = False
+    no_diagnosis: Annotated[
+        bool,
+        option("--no-diagnosis", "Do not look for the reasons of an error."),
+    ] = False
+    set_: Assignments = None
+    uncertain: Uncertain = None
+    out: Annotated[
+        Path | None,
+        option(
+            "--out",
+            "With --suite: write a page and tables into this folder; with --experiments: the outputs.",
+            "DIR",
+        ),
+    ] = None
+    junit: Annotated[
+        Path | None,
+        option("--junit", "Write the outcome as JUnit XML, a test for each.", "FILE"),
+    ] = None
+    github: Annotated[
+        bool,
+        option("--github", "Annotate for GitHub Actions; write the job's summary."),
+    ] = False
+    as_json: AsJson = False
 
-def command(
-    scene_word: Annotated[str | None, SCENE] = None,
-    candidates: Annotated[list[str] | None, CANDIDATES] = None,
-    suite: Annotated[Path | None, SUITE] = None,
-    how: Annotated[str | None, HOW] = None,
-    columns: Annotated[str | None, COLUMNS] = None,
-    units: Annotated[str | None, UNITS] = None,
-    transits: Annotated[str | None, TRANSITS] = None,
-    section: Annotated[str | None, SECTION] = None,
-    run: Annotated[str | None, RUN] = None,
-    name: Annotated[str | None, NAME] = None,
-    setting: Annotated[float | None, SETTING] = None,
-    experiments: Annotated[bool, EXPERIMENTS] = False,
-    approximation: Annotated[str | None, APPROXIMATION] = None,
-    baseline: Annotated[str | None, BASELINE] = None,
-    tolerance: Annotated[float | None, TOLERANCE] = None,
-    covers: Annotated[float | None, COVERS] = None,
-    t_end: Annotated[str | None, T_END] = None,
-    inputs: Annotated[str, INPUTS] = "auto",
-    plot: Annotated[Path | None, PLOT] = None,
-    timeout: Annotated[float | None, TIMEOUT] = None,
-    repeats: Annotated[int | None, TIMINGS] = None,
-    as_model: Annotated[bool, AS_MODEL] = False,
-    no_diagnosis: Annotated[bool, NO_DIAGNOSIS] = False,
-    set_: Assignments = None,
-    uncertain: Uncertain = None,
-    out: Annotated[Path | None, OUT] = None,
-    junit: Annotated[Path | None, JUNIT] = None,
-    github: Annotated[bool, GITHUB] = False,
-    as_json: AsJson = False,
-) -> None:
-    """Score a program's output against the truth.
+    @property
+    def reading(self) -> str | None:
+        """How the inputs of the scene are read; None if the candidate decides."""
+        return None if self.inputs == "auto" else self.inputs
 
-    --run fills in {x0}, {latitude}, {t_end} … of the scene: see docs/commands.md, also on --approximation, --name,
-    --repeats and ranges. Exit status 0: agrees (with --baseline: no worse), 1: disagrees, 2: cannot be judged.
-    """
-    from ..candidates.names import Naming
-    from .judging import Judging, ranges_named, ranges_to_prove
+    @cached_property
+    def named_ranges(self) -> Ranges | None:
+        """The ranges that SCENE names; None if it names a scene, or with --suite.
 
-    naming = Naming(
-        tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ())
-    )
-    reading = None if chosen("--inputs", inputs, _readings()) == "auto" else inputs
-    check_positive("--tolerance", tolerance, "metres")
-    if no_diagnosis:
-        refuse(
-            {"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis"
-        )
-    if as_json:
-        refuse({"--github": github}, "together with --json")
-    if run is None:
-        alone = {"--timeout": timeout, "--repeats": repeats, "--name": name, "--setting": setting}
-        refuse({**alone, "--experiments": experiments}, "without --run")
-    if not (candidates or run or suite):
-        refuse({"--baseline": baseline}, "without a file, --run or --suite")
-    if suite is None:
-        refuse({"--out": None if experiments else out}, "without --suite or --experiments")
-        options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
-        if scene_word is None:
+        Raises:
+            InputError: they cannot be read.
+        """
+        from .measuring import ranges_named
+
+        return ranges_named(self.scene_word) if self.suite is None else None
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that SCENE names, with the values of --set, --t-end and --inputs.
+
+        Raises:
+            InputError: none is named, it cannot be read, or a value does not fit.
+        """
+        if self.scene_word is None:
             raise InputError(
                 "SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them."
             )
-        if (ranges := ranges_named(scene_word)) is not None:
-            refuse(
-                {"--uncertain": uncertain, "--set": set_, "--t-end": t_end, "--inputs": reading},
-                "with ranges",
-            )
-        scene = (
-            ranges.scene
-            if ranges
-            else load_scene(scene_word, replacements(set_, options, UNUSED, announce))
-        )
-        if ranges is None and (widths := widths_by_name(uncertain, scene)):
-            ranges = ranges_to_prove(scene, widths)
-        if ranges is not None or section is not None:
-            unused: dict[str, object] = {
-                "--run": run,
-                "--approximation": approximation,
-                "--covers": covers,
-            }
-            unused |= {"--baseline": baseline, "--plot": plot, "--junit": junit, "--github": github}
-            unused |= {"--as-model": as_model, "--no-diagnosis": no_diagnosis}
-            refuse(unused, "together with --section" if ranges is None else BESIDE_RANGES)
-            if ranges is None and candidates:
-                advice = "Its passages stand in one file: `foucault score SCENE --transits FILE --section WORD`."
-                raise InputError(
-                    "CANDIDATE", candidates[0], "no file beside that of --transits", advice
-                )
-            # as programs in double have them
-            read_as = scene if reading else scene.with_values(["inputs=binary64"])
-            Judging(naming, {"tolerance": tolerance}).hold(
-                candidates, transits, section, ranges or read_as, as_json
-            )
-            return
-    else:
-        unused = {
-            "SCENE": scene_word,
-            "--run": run,
-            "--transits": transits,
-            "--approximation": approximation,
-        }
-        unused |= {"--section": section, "--t-end": t_end, "--columns": columns}
-        refuse(unused | {"--uncertain": uncertain, "--set": set_ or None}, "together with --suite")
-    if covers is not None and not 0 < covers <= 1:
-        raise InputError(
-            "--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1"
-        )
-    if [*(candidates or ()), transits].count("-") > 1:
-        raise InputError(
-            "CANDIDATE", "- more than once", "standard input once", "It can be read only once."
-        )
-    timeout, repeats = (
-        TIMEOUT_S if timeout is None else timeout,
-        REPEATS if repeats is None else repeats,
-    )
-    check_positive("--timeout", timeout)
-    check_positive("--setting", setting)
-    if not 0 <= repeats <= MAX_REPEATS:
-        raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
-    if plot is not None:
-        from ..report.drawing import check_target
+        if self.named_ranges is not None:
+            return self.named_ranges.scene
+        fields = {"--t-end": ("run.t_end", self.t_end), "--inputs": ("inputs", self.reading)}
+        return load_scene(self.scene_word, replacements(self.set_, fields, _UNUSED, announce))
 
-        check_target(plot)
-    from .experimenting import Runnable
+    @cached_property
+    def ranges(self) -> Ranges | None:
+        """The ranges that SCENE names, or that --uncertain or the scene asks for; None if all inputs are exact.
 
-    end = None if t_end is None else float(scene.exact.t_end)
-    limits: dict[str, Any] = {"tolerance": tolerance, "covers": covers or 0.0, "t_end": end}
-    judging = Judging(
-        naming,
-        limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis},
-        baseline,
-    )
-    if suite is not None:
-        outcomes = judging.suite(suite, out)
+        Raises:
+            InputError: the scene cannot be read, or a width.
+        """
+        from .measuring import ranges_to_prove
+
+        if self.suite is not None or self.named_ranges is not None:
+            return self.named_ranges
+        widths = widths_by_name(self.uncertain, self.scene)
+        return ranges_to_prove(self.scene, widths) if widths else None
+
+
+# in the order in which they are reported
+_CONFLICTS = [
+    Conflict(
+        "--as-model --experiments",
+        "together with --no-diagnosis",
+        lambda typed: typed.no_diagnosis,
+    ),
+    Conflict("--github", "together with --json", lambda typed: typed.as_json),
+    Conflict(
+        "--timeout --repeats --name --setting --experiments",
+        "without --run",
+        lambda typed: typed.run is None,
+    ),
+    Conflict(
+        "--baseline",
+        "without a file, --run or --suite",
+        lambda typed: not (typed.candidates or typed.run or typed.suite),
+    ),
+    Conflict(
+        "SCENE --run --transits --approximation --section --t-end --columns --uncertain --set",
+        "together with --suite",
+        lambda typed: typed.suite is not None,
+    ),
+    Conflict(
+        "--out",
+        "without --suite or --experiments",
+        lambda typed: typed.suite is None and not typed.experiments,
+    ),
+    Conflict(
+        "--uncertain --set --t-end --inputs",
+        "with ranges",
+        lambda typed: typed.named_ranges is not None,
+    ),
+    Conflict(
+        "--run --approximation --covers --baseline --plot --junit --github --as-model --no-diagnosis",
+        BESIDE_RANGES,
+        lambda typed: typed.ranges is not None,
+    ),
+    Conflict(
+        "--run --approximation --covers --baseline --plot --junit --github --as-model --no-diagnosis",
+        "together with --section",
+        lambda typed: typed.section is not None,
+    ),
+    Conflict(
+        "--section",
+        "without --transits",
+        # beside a file of rows, `_compare_passages` says how passages are scored
+        lambda typed: typed.transits is None and (typed.ranges is not None or not typed.candidates),
+    ),
+]
+
+
+def _score(options: ScoreOptions) -> None:
+    """Score a program's output against the truth.
+
+    --run fills in {x0}, {latitude}, {t_end} … of the scene: see docs/commands.md, also on
+    --approximation, --name, --repeats and ranges. Exit status 0: agrees (with --baseline: no worse),
+    1: disagrees, 2: cannot be judged.
+    """
+    naming = _naming(options)
+    chosen("--inputs", options.inputs, _readings())
+    check_positive("--tolerance", options.tolerance, "metres")
+    refuse_conflicts(options, _CONFLICTS)
+    if options.ranges is not None:
+        _compare_with_ranges(options, options.ranges, naming)
+        return
+    if options.section is not None:
+        _compare_passages(options, naming)
+        return
+
+    _check_values(options)
+    judging = _judging(options, naming)
+    if options.suite is not None:
+        outcomes = judging.suite(options.suite, options.out)
     else:
-        times = judging.times(transits) if candidates else None
-        outcomes = [judging.file(scene, file, times) for file in candidates or ()]
-        if run is not None:
-            program = Runnable(scene, run, setting, timeout, out)
-            if experiments:
-                program.check()
-            outcomes.append(
-                judging.program(program, name or "the program", transits, repeats, experiments)
-            )
-        if approximation is not None:
-            outcomes.append(judging.approximation(scene, approximation, transits))
-        if not outcomes and transits is not None:
-            outcomes.append(judging.transits(scene, transits))
-        if not outcomes:
-            expected = "a file, - for stdin, --run, --transits or --approximation"
-            raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
-        if len(outcomes) == 1 and outcomes[0].error is not None and not (github or junit):
-            raise outcomes[0].error
-    _show(outcomes, as_json, plot, junit, github)
-    if suite is not None and out is not None and not as_json:
-        typer.echo(f"{out / 'index.html'}: the page; badge.svg is beside it")
+        outcomes = _outcomes_of_scene(options, judging)
+    _show(outcomes, options)
+
     status = max(outcome.exit_status for outcome in outcomes)
     if status:
         raise typer.Exit(status)
 
 
-def _show(
-    outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool
-) -> None:
+command = as_command(ScoreOptions, _score)
+
+
+def _naming(options: ScoreOptions) -> Naming:
+    """Return what --columns and --units say of a file's columns."""
+    from ..candidates.names import Naming
+
+    columns = listed(options.columns, "--columns") or ()
+    units = listed(options.units, "--units") or ()
+    return Naming(tuple(columns), tuple(units))
+
+
+def _check_values(options: ScoreOptions) -> None:
+    """Refuse values that are out of range, a second use of stdin, and a picture that cannot be written."""
+    covers = options.covers
+    if covers is not None and not 0 < covers <= 1:
+        expected = "a share of the scene's span, above 0 and up to 1"
+        raise InputError("--covers", f"{covers:g}", expected)
+
+    files = [*(options.candidates or ()), options.transits]
+    if files.count("-") > 1:
+        raise InputError(
+            "CANDIDATE", "- more than once", "standard input once", "It can be read only once."
+        )
+
+    check_positive("--timeout", options.timeout)
+    check_positive("--setting", options.setting)
+    if options.repeats is not None and not 0 <= options.repeats <= MAX_REPEATS:
+        raise InputError("--repeats", options.repeats, f"a whole number from 0 to {MAX_REPEATS}")
+
+    if options.plot is not None:
+        from ..report.drawing import check_target
+
+        check_target(options.plot)
+
+
+def _judging(options: ScoreOptions, naming: Naming) -> Judging:
+    """Return what judges every candidate of the command."""
+    from ..score.judge import JudgeOptions
+    from .judging import Judging
+
+    limits = JudgeOptions(
+        tolerance_m=options.tolerance,
+        inputs=options.inputs,
+        t_end_s=None if options.t_end is None else float(options.scene.exact.t_end),
+        covers=options.covers or 0.0,
+        as_model=options.as_model,
+        explain=not options.no_diagnosis,
+    )
+    return Judging(naming, limits, options.baseline)
+
+
+def _outcomes_of_scene(options: ScoreOptions, judging: Judging) -> list[Outcome]:
+    """Judge the files, the program and the approximation that are given for one scene.
+
+    Raises:
+        InputError: none is given.
+        FoucaultError: the only one cannot be judged, and no report has to say so.
+    """
+    outcomes = list(_trials(options, judging))
+    if not outcomes:
+        expected = "a file, - for stdin, --run, --transits or --approximation"
+        raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
+
+    error = outcomes[0].error
+    is_reported = options.github or options.junit
+    if len(outcomes) == 1 and error is not None and not is_reported:
+        raise error
+    return outcomes
+
+
+def _trials(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
+    """Judge one candidate after the other; transits are one of their own only if they are alone."""
+    scene = options.scene
+    transits = options.transits
+    if options.candidates:
+        times = judging.times(transits)
+        for file in options.candidates:
+            yield judging.file(scene, file, times)
+
+    if options.run is not None:
+        yield _trial_of_program(options, judging, options.run)
+
+    if options.approximation is not None:
+        yield judging.approximation(scene, options.approximation, transits)
+
+    is_alone = not options.candidates and options.run is None and options.approximation is None
+    if is_alone and transits is not None:
+        yield judging.transits(scene, transits)
+
+
+def _trial_of_program(options: ScoreOptions, judging: Judging, command: str) -> Outcome:
+    """Run a program and judge its output."""
+    from .experimenting import Runnable
+
+    timeout_s = TIMEOUT_S if options.timeout is None else options.timeout
+    repeats = REPEATS if options.repeats is None else options.repeats
+    program = Runnable(options.scene, command, options.setting, timeout_s, options.out)
+    if options.experiments:
+        program.check()
+    name = options.name or "the program"
+    return judging.program(program, name, options.transits, repeats, options.experiments)
+
+
+def _show(outcomes: list[Outcome], options: ScoreOptions) -> None:
     """Print and write outcomes in the forms that were asked for."""
-    from ..report.suite import annotation, append_summary, suite_document, summary, write_junit
+    from ..report.suite import suite_document, write_junit
     from ..score.document import of_outcome
 
-    scores = [outcome.score for outcome in outcomes if outcome.score is not None]
-    if plot is not None and scores:
-        from ..report.folder import write_file
-        from ..report.plot import error_picture
+    if options.plot is not None:
+        _draw(outcomes, options.plot)
+    if options.junit is not None:
+        write_junit(outcomes, options.junit)
 
-        write_file(plot, error_picture(scores, plot), "--plot")
-    if junit is not None:
-        write_junit(outcomes, junit)
-    if as_json:
+    if options.as_json:
         emit(of_outcome(outcomes[0]) if len(outcomes) == 1 else suite_document(outcomes))
         return
+    _print_lines(outcomes, options.github)
+    if options.suite is not None and options.out is not None:
+        typer.echo(f"{options.out / 'index.html'}: the page; badge.svg is beside it")
+
+
+def _draw(outcomes: list[Outcome], target: Path) -> None:
+    """Draw the errors of the candidates that were judged, if any was."""
+    from ..report.folder import write_file
+    from ..report.plot import error_picture
+
+    scores = [outcome.score for outcome in outcomes if outcome.score is not None]
+    if scores:
+        write_file(target, error_picture(scores, target), "--plot")
+
+
+def _print_lines(outcomes: list[Outcome], github: bool) -> None:
+    """Print the lines for people; for GitHub Actions with annotations, and a summary of the job."""
+    from ..report.suite import annotation, append_summary, summary
+
     lines = [line for outcome in outcomes for line in outcome.lines]
-    if github:  # nothing in them is a command to it; the annotations are
+    if github:
+        # GitHub takes no line between these marks for a command; the annotations after them are
         token = token_hex()
-        lines = [f"::stop-commands::{token}", *lines, f"::{token}::", *map(annotation, outcomes)]
+        annotations = map(annotation, outcomes)
+        lines = [f"::stop-commands::{token}", *lines, f"::{token}::", *annotations]
     for line in lines:
         typer.echo(line)
     if github:
         append_summary(summary(outcomes))
+
+
+def _compare_with_ranges(options: ScoreOptions, ranges: Ranges, naming: Naming) -> None:
+    """Compare files, or times alone, with what is proved for uncertain inputs, and print the scores.
+
+    Raises:
+        InputError: there is nothing to compare.
+    """
+    from .measuring import compare_with_ranges, passages_of, print_scores
+
+    files = options.candidates or []
+    if not files and options.transits is None:
+        expected = "a file, - for stdin, or --transits"
+        raise InputError("CANDIDATE", "nothing", expected, "Name what was measured.")
+
+    passages = None
+    if options.transits is not None:
+        passages = passages_of(options.transits, options.section, ranges.scene, naming)
+    tolerance_m = options.tolerance or 0.0
+    scores = compare_with_ranges(files, passages, ranges, tolerance_m, naming)
+    print_scores(scores, options.as_json)
+
+
+def _compare_passages(options: ScoreOptions, naming: Naming) -> None:
+    """Compare passages of a section with those of the scene, and print the score.
+
+    Raises:
+        InputError: there is a file of rows as well.
+    """
+    from .measuring import compare_passages, passages_of, print_scores
+
+    if options.candidates:
+        raise InputError(
+            "CANDIDATE",
+            options.candidates[0],
+            "no file beside that of --transits",
+            "Its passages stand in one file: "
+            "`foucault score SCENE --transits FILE --section WORD`.",
+        )
+    scene = options.scene
+    if options.reading is None:
+        # the program that printed the passages most likely took the inputs as doubles
+        scene = scene.with_values(["inputs=binary64"])
+
+    assert options.transits is not None  # else --section was refused
+    passages = passages_of(options.transits, options.section, scene, naming)
+    print_scores([compare_passages(passages, scene, options.tolerance)], options.as_json)

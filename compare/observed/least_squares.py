@@ -60,10 +60,11 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
 
     def model(numbers: Numbers) -> tuple[Numbers, Callable[[], Numbers]]:
         base = rows_of(numbers)
-        return (
-            rows - base,
-            lambda: np.array([(rows_of(numbers + move) - base) / nudge for move, nudge in moves]).T,
-        )
+
+        def slopes() -> Numbers:
+            return np.array([(rows_of(numbers + move) - base) / nudge for move, nudge in moves]).T
+
+        return rows - base, slopes
 
     return model
 
@@ -81,9 +82,11 @@ def gauss_newton(
         gain: share of what was left that a step has to come below, or it is not taken and the search ends.
         strays: whether another step may follow one that leaves plainly more, as one along a bent valley does.
     """
-    best = numbers = start
+    best = start
+    numbers = start
     left, slopes = model(start)
-    least, strayed = float(np.linalg.norm(left)), False
+    least = float(np.linalg.norm(left))
+    strayed = False
     if not math.isfinite(least):
         return start, math.inf
     for _ in range(steps):
@@ -96,7 +99,9 @@ def gauss_newton(
         left, slopes = model(numbers)
         size = float(np.linalg.norm(left))
         if size < gain * least:
-            best, least, strayed = numbers, size, False
+            best = numbers
+            least = size
+            strayed = False
             # the slopes hold: another step would gain nothing
             if abs(size - foreseen) < (1 - gain) * size:
                 break
@@ -144,23 +149,19 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     if len({u for u, _ in points}) < 2 or len(points) < LEAST_POINTS:
         got = f"{len(points)} with x > 0 and y > 0"
         raise InputError("points", got, f"at least {LEAST_POINTS}, not all at the same x")
-    at, values = zip(*points, strict=True)
-    exponent, constant = statistics.linear_regression(at, values)
-    off = [v - constant - exponent * u for u, v in points]
-    spread = len(points) * statistics.pvariance(at)
-    error, within = (
-        math.sqrt(sum(residual**2 for residual in off) / (len(points) - 2) / spread),
-        max(map(abs, off)),
-    )
-    low, high = min(at), max(at)
+    logs_x, logs_y = zip(*points, strict=True)
+    exponent, constant = statistics.linear_regression(logs_x, logs_y)
+    residuals = [v - constant - exponent * u for u, v in points]
+    variance = sum(residual**2 for residual in residuals) / (len(points) - 2)
+    spread = len(points) * statistics.pvariance(logs_x)
     return PowerLaw(
-        math.exp(constant),
-        exponent,
-        error,
-        math.exp(within),
-        len(points),
-        math.exp(low),
-        math.exp(high),
+        factor=math.exp(constant),
+        exponent=exponent,
+        standard_error=math.sqrt(variance / spread),
+        within=math.exp(max(map(abs, residuals))),
+        points=len(points),
+        low=math.exp(min(logs_x)),
+        high=math.exp(max(logs_x)),
     )
 
 
@@ -183,6 +184,6 @@ def power_of_time(t: Array, error: Array, parts: int) -> float | None:
     The arguments are those of `largest_so_far`; errors are above zero.
     """
     times, largest = largest_so_far(t, error, parts)
-    return (
-        power_law(times.tolist(), largest.tolist()).exponent if len(times) >= LEAST_POINTS else None
-    )
+    if len(times) < LEAST_POINTS:
+        return None
+    return power_law(times.tolist(), largest.tolist()).exponent

@@ -17,7 +17,7 @@ from reference.scenes.scene import AnyScene, as_scene
 
 from ..candidates.candidate import Candidate
 from ..score.verdict import Score
-from ..truth import golden_of
+from ..truth import Progress, golden_of
 from .drawing import (
     COLOURS,
     GUIDE,
@@ -104,9 +104,8 @@ def motion_of(
     if isinstance(source, Golden | Solution):
         return PicturedMotion.of_golden(source)
     scene = as_scene(source)
-    return PicturedMotion.of_golden(
-        golden_of(scene, announce=announce, report=report, grid=True), float(scene.exact.t_end)
-    )
+    golden = golden_of(scene, progress=Progress(announce, report), grid=True)
+    return PicturedMotion.of_golden(golden, float(scene.exact.t_end))
 
 
 def error_picture(scores: Sequence[Score], target: Path) -> bytes:

@@ -22,54 +22,61 @@ from ..candidates.clock import shown
 
 Ends = tuple[Fraction, Fraction]
 
-MOST_PLACES = 9  # of a time in s
+_MOST_PLACES = 9  # of a time in s
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 SUBTRACT = "Subtract what the clock showed at the release."
 
 
 def counted_from_release(
-    candidate: Candidate, transits: Array | None, scene: Scene, tolerance: float | None
-) -> tuple[Candidate, Array | None]:
-    """Return a candidate and its transits with times since the release.
+    candidate: Candidate, scene: Scene, tolerance_m: float | None
+) -> Candidate:
+    """Return a candidate of which all times, also of transits, are since the release.
 
-    No row is changed whose times may be since the release already. Times from beyond the scene's end on, or of a
-    clock's text, are counted from the first row: this is the release if it has its position.
+    No row is changed whose times may be since the release already. Times from beyond the scene's end
+    on, or of a clock's text, are counted from the first row: this is the release if it has its position.
 
     Args:
         candidate: rows of positions.
-        transits: times by the same clock, in s, or None.
         scene: the problem.
-        tolerance: how far the first row may be off the release, in m; None for `TOLERANCE` of its distance from the
-            vertical.
+        tolerance_m: how far the first row may be off the release; None for `TOLERANCE` of its distance
+            from the vertical.
 
     Raises:
-        InputError: the first row is elsewhere, so that nobody can tell when the release was.
+        InputError: the first row is elsewhere, so that the time of the release is not known.
     """
     clock_s = candidate.clock_s
-    if clock_s is None and started_elsewhere(candidate.t, scene):
+    if clock_s is None and _started_elsewhere(candidate.t, scene):
         clock_s = float(candidate.t[0])
-        candidate = replace(candidate, t=since(clock_s, candidate.t), clock_s=clock_s)
+        candidate = replace(candidate, t=_since(clock_s, candidate.t), clock_s=clock_s)
     if clock_s is None:
-        return candidate, transits
+        return candidate
+
     release = [float(place) for place in Start.of(scene.exact, DOUBLE_BITS).position[:2]]
-    allowed_m = TOLERANCE * math.hypot(*release) if tolerance is None else tolerance
+    allowed_m = TOLERANCE * math.hypot(*release) if tolerance_m is None else tolerance_m
     distance_m = math.dist((candidate.columns["x"][0], candidate.columns["y"][0]), release)
     if distance_m > allowed_m:
         got = f"{shown(clock_s)} in the first row, {distance_m:.3g} m off the release"
         raise InputError(f"{candidate.name}: t", got, "times since the release", SUBTRACT)
-    text = f"the clock showed {shown(clock_s)} in the first row, which is at the release: times are counted from it"
-    conventions = (*candidate.conventions, Deviation("clock_start", text))
-    shifted = None if transits is None else since(clock_s, transits)
-    return replace(candidate, conventions=conventions), shifted
+
+    text = (
+        f"the clock showed {shown(clock_s)} in the first row, which is at the release: "
+        "times are counted from it"
+    )
+    transits = candidate.transits
+    return replace(
+        candidate,
+        transits=None if transits is None else _since(clock_s, transits),
+        conventions=(*candidate.conventions, Deviation("clock_start", text)),
+    )
 
 
-def started_elsewhere(times: Array, scene: Scene) -> bool:
+def _started_elsewhere(times: Array, scene: Scene) -> bool:
     """Return whether no time is in the scene's span, though all would fit into it; one time alone tells nothing."""
     end = float(scene.exact.t_end + scene.exact.grid_step)
     return bool(len(times) > 1 and times[0] > end and times[-1] - times[0] <= end)
 
 
-def since(clock_s: float, times: Array) -> Array:
+def _since(clock_s: float, times: Array) -> Array:
     """Return times in s since another, each the nearest double to the difference of the decimals."""
     start = Fraction(repr(clock_s))
     return np.array([float(Fraction(repr(float(time))) - start) for time in times])
@@ -87,10 +94,13 @@ def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[E
     true = _merged(intervals)
     if len(times) < 2 or not true:
         return []
-    possible = [(times[0] - high, times[0] - low) for low, high in reversed(true)]
+
+    def starts_by(time: Fraction) -> list[Ends]:
+        return [(time - high, time - low) for low, high in reversed(true)]
+
+    possible = starts_by(times[0])
     for time in times[1:]:
-        shifted = [(time - high, time - low) for low, high in reversed(true)]
-        possible = [*_common(possible, shifted)]
+        possible = list(_common(possible, starts_by(time)))
     return sorted(possible, key=lambda start: abs(start[0] + start[1]))
 
 
@@ -101,13 +111,14 @@ def starts_in_words(starts: Iterable[Ends]) -> str:
 
 def _outward(low: Fraction, high: Fraction) -> str:
     """Return the ends of an interval with two digits of its width, each rounded away from it."""
-    places = (
-        MOST_PLACES
-        if high == low
-        else min(MOST_PLACES, max(0, 1 - math.floor(math.log10(high - low))))
-    )
+    places = _MOST_PLACES
+    if high > low:
+        needed = 1 - math.floor(math.log10(high - low))
+        places = min(_MOST_PLACES, max(0, needed))
     unit = Fraction(1, 10**places)
-    return f"{float(math.floor(low / unit) * unit):.{places}f} to {float(math.ceil(high / unit) * unit):.{places}f}"
+    below = float(math.floor(low / unit) * unit)
+    above = float(math.ceil(high / unit) * unit)
+    return f"{below:.{places}f} to {above:.{places}f}"
 
 
 def _merged(intervals: Iterable[Ends]) -> list[Ends]:
@@ -115,7 +126,8 @@ def _merged(intervals: Iterable[Ends]) -> list[Ends]:
     merged: list[Ends] = []
     for low, high in sorted(intervals):
         if merged and low <= merged[-1][1]:
-            merged[-1] = (merged[-1][0], max(high, merged[-1][1]))
+            first, last = merged.pop()
+            merged.append((first, max(high, last)))
         else:
             merged.append((low, high))
     return merged

@@ -23,8 +23,10 @@ def of_outcome(outcome: Outcome) -> dict[str, Any]:
 
 def document(score: Score) -> dict[str, Any]:
     """Return a score as a JSON document."""
-    errors, transits = score.errors, score.transits
+    errors = score.errors
+    transits = score.transits
     turn = score.swing.largest_turn
+    floor_m = score.input_floor_m
     readings = [
         {"id": convention.id, "text": convention.text} for convention in score.candidate.conventions
     ]
@@ -46,8 +48,8 @@ def document(score: Score) -> dict[str, Any]:
         "mescd": errors.mescd,
         "scale_m": errors.amplitude_m,
         "tolerance_m": score.tolerance_m,
-        "input_floor_m": score.input_floor_m,
-        "error_over_floor": errors.max_m / score.input_floor_m if score.input_floor_m else None,
+        "input_floor_m": floor_m,
+        "error_over_floor": errors.max_m / floor_m if floor_m else None,
         "growth_exponent": errors.growth_exponent,
         "swing_plane_error_deg": None if turn is None else math.degrees(turn),
         "phase_error_s": score.swing.largest_delay,

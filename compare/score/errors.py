@@ -26,21 +26,22 @@ from reference.dataset.golden import Dense
 from reference.errors import counted
 from reference.model.constants import constants_in_double
 from reference.model.force import energy, rates
+from reference.numbers.columns import POSITION, VELOCITY
 from reference.numbers.precision import Array
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.least_squares import gauss_newton, power_of_time
 
-BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
+_BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
 # rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit
-FEWEST = 3
-ROWS = 12  # rows of a part at least
-MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
+_FEWEST = 3
+_ROWS = 12  # rows of a part at least
+_MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
 # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
-TURNS = 4
-EPSILON = 2.0**-52  # of a double: twice the largest rounding
+_TURNS = 4
+_EPSILON = 2.0**-52  # of a double: twice the largest rounding
 # parts of the run; the largest error up to the end of each is a point of the fitted power of time
-ENVELOPES = 40
+_ENVELOPES = 40
 
 
 class Worst(NamedTuple):
@@ -139,18 +140,27 @@ class TrajectoryErrors:
         """
         return self._digits_at_the_end(self.amplitude_m, self.speed_m_s)
 
-    def _digits_at_the_end(self, of_position: float, of_velocity: float) -> float | None:
-        ratios: list[float] = []
+    def _digits_at_the_end(self, added_m: float, added_m_s: float) -> float | None:
+        """Return -log10 of the largest |error| / (added + |truth|) of any component at the last row.
+
+        A truth within its bound counts as 0, and a smaller error than the bound as the bound.
+        """
         if "x" not in self.components:
             return None
+        ratios: list[float] = []
         for i, name in enumerate(COLUMNS):
-            known = self.bound_m * (1.0 if i < 3 else self.speed_m_s / self.amplitude_m)
-            truth = abs(float(self.truth.states[-1, i]))
-            size = (truth if truth > known else 0.0) + (of_position if i < 3 else of_velocity)
-            if name not in self.components or not size:
+            if name not in self.components:
                 continue
-            error = max(abs(float(self.components[name][-1])), known)
-            if error:
+            is_position = i < 3
+            bound = self.bound_m
+            if not is_position:
+                bound *= self.speed_m_s / self.amplitude_m
+            size = added_m if is_position else added_m_s
+            truth = abs(float(self.truth.states[-1, i]))
+            if truth > bound:
+                size += truth
+            error = max(abs(float(self.components[name][-1])), bound)
+            if size and error:
                 ratios.append(error / size)
         return -math.log10(max(ratios)) if ratios else None
 
@@ -158,7 +168,7 @@ class TrajectoryErrors:
     def worst(self) -> tuple[int, str]:
         """Row and component of the largest error in position."""
         row = int(np.argmax(self.position))
-        names = [name for name in self.components if name in ("x", "y", "z")] or [*self.components]
+        names = [name for name in self.components if name in POSITION] or [*self.components]
         return row, max(names, key=lambda name: abs(float(self.components[name][row])))
 
     @property
@@ -167,7 +177,7 @@ class TrajectoryErrors:
         above = (self.t > 0) & (self.position > self.bound_m)
         if above.sum() < 4 or self.t[above][-1] < 4 * self.t[above][0]:
             return None
-        return power_of_time(self.t[above], self.position[above], ENVELOPES)
+        return power_of_time(self.t[above], self.position[above], _ENVELOPES)
 
     def swing(self, rest: tuple[float, float]) -> SwingErrors:
         """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
@@ -190,31 +200,49 @@ def trajectory_errors(
     # the truth is known at the double t; the candidate's row belongs to t + t_low
     t_low = candidate.low.get("t", np.zeros(1))
     slopes = np.column_stack(rates([*truth.states.T], constants_in_double(golden.scene.exact)))
-    later = slopes * t_low[:, None]
-    # which leaves out a t_low²/2 (doubled, as a changes meanwhile), and rounds v, v t_low and two sums with it
-    speeds, pulls = (np.linalg.norm(half, axis=1) for half in np.hsplit(slopes, 2))
-    left_out = float((pulls * t_low**2 + 2 * EPSILON * speeds * np.abs(t_low)).max())
+    components = _components(candidate, truth, slopes * t_low[:, None])
+    bound_m = truth.bound_m + _linearization_bound_m(slopes, t_low)
+
+    reach_m = max(_reach(golden.x, golden.y), _reach(truth.states[:, 0], truth.states[:, 1]))
+    amplitude_m = reach_m or float(golden.scene.exact.length)
+    speed_m_s = max(
+        float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max()),
+        float(np.linalg.norm(truth.states.T[3:], axis=0).max()),
+    )
+    if candidate.positions:
+        offsets = [components[name] for name in POSITION if name in components]
+        position = np.linalg.norm(offsets, axis=0)
+    else:
+        position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed_m_s) or math.inf)
+    return TrajectoryErrors(
+        candidate.t, components, position, truth, bound_m, amplitude_m, speed_m_s
+    )
+
+
+def _components(candidate: Candidate, truth: Dense, later: Array) -> dict[str, Array]:
+    """Return candidate minus truth of each column; `later` is what the truth changes by up to the candidate's times."""
     components = {}
     for i, name in enumerate(COLUMNS):
         if name in candidate.columns:
             low = candidate.low.get(name, 0.0) - truth.low[:, i] - later[:, i]
             # the difference of doubles that agree so far is exact
             components[name] = candidate.columns[name] - truth.states[:, i] + low
-    amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
-    amplitude = max(float(distances.max()) for distances in amplitudes) or float(
-        golden.scene.exact.length
-    )
-    velocities = (golden.vx, golden.vy, golden.vz), truth.states.T[3:]
-    speed = max(float(np.linalg.norm(velocity, axis=0).max()) for velocity in velocities)
-    if candidate.positions:
-        position = np.linalg.norm(
-            [components[name] for name in "xyz" if name in components], axis=0
-        )
-    else:
-        position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed) or math.inf)
-    return TrajectoryErrors(
-        candidate.t, components, position, truth, truth.bound_m + left_out, amplitude, speed
-    )
+    return components
+
+
+def _linearization_bound_m(slopes: Array, t_low: Array) -> float:
+    """Return a bound of what taking the truth as linear over t_low leaves out, in m.
+
+    This is a t_low²/2 (doubled, as a changes meanwhile), and the rounding of v, v t_low and two sums with it.
+    """
+    speeds = np.linalg.norm(slopes[:, :3], axis=1)
+    pulls = np.linalg.norm(slopes[:, 3:], axis=1)
+    return float((pulls * t_low**2 + 2 * _EPSILON * speeds * np.abs(t_low)).max())
+
+
+def _reach(x: Array, y: Array) -> float:
+    """Return the largest distance from the vertical in m."""
+    return float(np.hypot(x, y).max())
 
 
 def swing_rate(scene: Scene, speed_m_s: float) -> float:
@@ -225,14 +253,17 @@ def swing_rate(scene: Scene, speed_m_s: float) -> float:
 
 def drifts(candidate: Candidate, scene: Scene) -> dict[str, float]:
     """Return the largest |h - h(first row)| (m²/s²; needs velocities and no drag) and the largest ||r| - l| (m)."""
-    columns, k = candidate.columns, constants_in_double(scene.exact)
+    columns = candidate.columns
+    k = constants_in_double(scene.exact)
     if "z" not in columns:
         return {}
-    n = tuple(columns[name] / k.length for name in ("x", "y", "z"))
+    n = tuple(columns[name] / k.length for name in POSITION)
     square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
-    largest = {"length_m": float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())}
-    if all(name in columns for name in ("vx", "vy", "vz")) and not scene.exact.drag:
-        v = tuple(columns[name] / k.length for name in ("vx", "vy", "vz"))
+    # |n| - 1 without cancellation
+    stretch = (square - 1) / (np.sqrt(square) + 1)
+    largest = {"length_m": float(np.abs(stretch * k.length).max())}
+    if all(name in columns for name in VELOCITY) and not scene.exact.drag:
+        v = tuple(columns[name] / k.length for name in VELOCITY)
         h = energy(n, v, k)
         largest["h_m2_s2"] = float(np.abs(h - h[0]).max())
     return largest
@@ -246,33 +277,36 @@ def swing_errors(truth: Array, error: Array, rest: tuple[float, float]) -> Swing
         error: candidate minus truth in x and y, shape (rows, 2), in m.
         rest: x and y of the rest position in m.
     """
-    if len(truth) < FEWEST:
+    if len(truth) < _FEWEST:
         return SwingErrors(*np.empty((2, 0)))
-    parts = np.array_split(np.arange(len(truth)), max(1, min(BLOCKS, len(truth) // ROWS)))
-    samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
-    fits = [_fit(truth[sample], error[sample], rest) for sample in samples]
+    count = max(1, min(_BLOCKS, len(truth) // _ROWS))
+    fits = []
+    for part in np.array_split(np.arange(len(truth)), count):
+        stride = math.ceil(len(part) / _MOST_ROWS)
+        sample = part[::stride]
+        fits.append(_fit(truth[sample], error[sample], rest))
     return SwingErrors(*np.array(fits).T)
 
 
 def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, float]:
-    """Return turn and delay of one part."""
+    """Return turn in radians and delay in s of one part."""
     u = truth[:, :2] - np.array(rest)
     rate = truth[:, 3:5]
 
-    def left(numbers: Array) -> tuple[Array, Callable[[], Array]]:
-        turn, delay = numbers.tolist()
+    def residuals(unknowns: Array) -> tuple[Array, Callable[[], Array]]:
+        turn, delay = unknowns.tolist()
         # written so that nothing cancels
-        sin, cos_minus_1 = np.sin(turn), -2 * np.sin(turn / 2) ** 2
+        sin = np.sin(turn)
+        cos_minus_1 = -2 * np.sin(turn / 2) ** 2
         change = np.column_stack(
             [cos_minus_1 * u[:, 0] - sin * u[:, 1], sin * u[:, 0] + cos_minus_1 * u[:, 1]]
         )
         turned = u + change
-        slopes = np.stack(
-            [np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1
-        )
+        by_turn = np.column_stack([-turned[:, 1], turned[:, 0]])
+        slopes = np.stack([by_turn.ravel(), -rate.ravel()], axis=1)
         return (error - change + delay * rate).ravel(), lambda: slopes
 
-    (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
+    (turn, delay), _ = gauss_newton(residuals, np.zeros(2), steps=_TURNS, gain=1.0)
     return float(turn), float(delay)
 
 

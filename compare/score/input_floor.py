@@ -15,17 +15,17 @@ from reference.system.cache import arrays
 from ..truth import by_function, shipping, with_function
 
 # in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
-TIMES = 577
+_TIMES = 577
 # changes with the content of the cached entries, so that older ones are computed again
 _FORMAT = "floor 3"
-STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
+_STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
 
 
 def input_floor(scene: Scene, until: float) -> float:
     """Return how far, in m, rounding the decimal inputs to binary64 moves the bob up to a time in s.
 
-    It depends on the scene alone and is the same for every candidate. Where both motions ship it is their distance;
-    else one cached run serves all ends within a factor of two.
+    It depends on the scene alone and is the same for every candidate. If both motions ship it is their
+    distance; otherwise it is an estimate, and one cached run serves all ends within a factor of two.
     """
     ships = floor_of_what_ships(scene, until)
     if ships is not None:
@@ -33,44 +33,55 @@ def input_floor(scene: Scene, until: float) -> float:
     from reference.solver.sensitivity import Sensitivity
 
     decimal = scene.with_values(["inputs=decimal"])
-    document = decimal.model_dump(mode="json")
-    parts = [document[key] for key in ("pendulum", "site", "release")]
-    times = (
-        np.linspace(0.0, _span(float(scene.exact.t_end), until), TIMES)
-        if until > 0
-        else np.zeros(1)
-    )
-    recipe = json.dumps([_FORMAT, parts, float(times[-1])], sort_keys=True).encode()
+    times = np.zeros(1)
+    if until > 0:
+        times = np.linspace(0.0, _span(float(scene.exact.t_end), until), _TIMES)
 
     def make() -> dict[str, Array]:
         moved = Sensitivity(decimal, times).rounding()[:, :3]
-        return {"largest": np.maximum.accumulate(np.sqrt((moved**2).sum(axis=1)))}
+        distances = np.sqrt((moved**2).sum(axis=1))
+        return {"largest": np.maximum.accumulate(distances)}
 
-    largest = arrays("floor", f"{hashlib.sha256(recipe).hexdigest()[:32]}.npz", make)["largest"]
+    largest = arrays("floor", _entry_name(decimal, float(times[-1])), make)["largest"]
     return float(largest[np.searchsorted(times, until)])
+
+
+def _entry_name(decimal: Scene, end_s: float) -> str:
+    """Return the name of the cached run of a scene up to a time."""
+    document = decimal.model_dump(mode="json")
+    inputs = [document[key] for key in ("pendulum", "site", "release")]
+    recipe = json.dumps([_FORMAT, inputs, end_s], sort_keys=True).encode()
+    return f"{hashlib.sha256(recipe).hexdigest()[:32]}.npz"
 
 
 def floor_of_what_ships(scene: Scene, until: float) -> float | None:
     """Return how far, in m, rounding the inputs to binary64 moves the bob up to a row of the grid that is not before.
 
-    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the latter's x and
-    y; z follows from the sphere. None where they do not ship.
+    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the
+    latter's x and y; z follows from the sphere. None if they do not ship.
     """
-    decimal, binary64 = (
-        scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64")
-    )
-    golden, rounded = shipping(decimal), with_function(binary64)
+    decimal = scene.with_values(["inputs=decimal"])
+    binary64 = scene.with_values(["inputs=binary64"])
+    golden = shipping(decimal)
+    rounded = with_function(binary64)
     if golden is None or rounded is None:
         return None
+
     rows = slice(0, int(np.searchsorted(golden.t, until)) + 1)
-    later = np.array([float(t - Fraction(float(t))) for t in golden.times[rows]])
     truth = by_function(rounded, golden.t[rows])
     assert truth is not None
-    x, y, z = truth.states.T[:3] + later * truth.states.T[3:]
-    dx, dy, length = golden.x[rows] - x, golden.y[rows] - y, float(decimal.exact.length)
+    # from the double to the exact time of each row
+    later_s = np.array([float(t - Fraction(float(t))) for t in golden.times[rows]])
+    x, y, z = truth.states.T[:3] + later_s * truth.states.T[3:]
+    dx = golden.x[rows] - x
+    dy = golden.y[rows] - y
+
+    # from x² + y² + z² = l², to first order, or from z itself where that is ill-conditioned
+    length = float(decimal.exact.length)
+    dlength = float(decimal.exact.length - binary64.exact.length)
     with np.errstate(divide="ignore", invalid="ignore"):
-        dz = (length * float(decimal.exact.length - binary64.exact.length) - x * dx - y * dy) / z
-    dz = np.where(np.abs(z) > STEEP * length, dz, golden.z[rows] - z)
+        dz = (length * dlength - x * dx - y * dy) / z
+    dz = np.where(np.abs(z) > _STEEP * length, dz, golden.z[rows] - z)
     return float(np.sqrt(dx**2 + dy**2 + dz**2).max())
 
 

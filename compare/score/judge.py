@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from numbers import Real
 from pathlib import Path
 from typing import Any
@@ -21,24 +20,20 @@ import numpy.typing as npt
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
 from reference.dataset.golden import WITHIN, Dense
-from reference.errors import counted, did_you_mean, in_words
-from reference.model.constants import constants_in_double
-from reference.model.start import Start
-from reference.numbers.columns import POSITION
+from reference.errors import did_you_mean, in_words
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
 from ..candidates.arrays import candidate_from, real_array
-from ..candidates.candidate import Candidate, Deviation, checked_transits
-from ..candidates.clock import shown
-from ..candidates.external import PLACEHOLDER_BITS
-from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
+from ..candidates.candidate import Candidate, checked_transits
 from ..candidates.read import named, read
 from ..diagnosis import diagnose
 from ..observed.swing_plane import rest_in_metres
 from ..truth import (
     DIGITS,
     FINE,
+    SILENT,
+    Progress,
     Report,
     by_function,
     golden_of,
@@ -47,20 +42,39 @@ from ..truth import (
     with_function,
 )
 from .baseline import document_of, since
-from .clock_start import SUBTRACT, TOLERANCE, counted_from_release
+from .clock_start import TOLERANCE, counted_from_release
 from .errors import TrajectoryErrors, drifts, trajectory_errors
+from .remarks import scale_beyond_the_cord, warning_of_a_flung_bob, warning_of_a_resting_bob
+from .time_span import check_end, check_transits, end_of_run, rows_until
 from .transit_matching import judged_transits, unjudged_transits
 from .verdict import Score
 
 # readings of the scene's numbers; auto: by the candidate's precision
 READINGS = ("auto", "decimal", "binary64")
-FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
-BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
-ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
+_ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
 SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
-FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
-DOUBT = 3  # times the reference's bound, which each of the three coordinates may be off by
-SAME = 1e-3  # relative difference of ratios that count as one scale
+_DOUBT = 3  # times the reference's bound, which each of the three coordinates may be off by
+
+
+@dataclass(frozen=True)
+class JudgeOptions:
+    """What counts as agreement, and whether reasons are looked for.
+
+    Attributes:
+        tolerance_m: largest position error allowed; None for `TOLERANCE` times the amplitude.
+        inputs: how the scene's numbers are read: decimal, binary64, or auto, by the candidate.
+        t_end_s: end of the comparison; None for the scene's.
+        covers: share of the scene's span, from 0 to 1, that the rows have to reach.
+        as_model: whether agreement as a named model is enough.
+        explain: whether to look for the reasons if a position is off.
+    """
+
+    tolerance_m: float | None = None
+    inputs: str = "auto"
+    t_end_s: float | None = None
+    covers: float = 0.0
+    as_model: bool = False
+    explain: bool = True
 
 
 def judge(
@@ -101,6 +115,26 @@ def judge(
             the tolerance is not positive.
         UnreachableError: the scene cannot be solved.
     """
+    options = checked_options(tolerance, inputs, t_end, covers, as_model, explain)
+    progress = Progress(announce, report)
+    return judge_with(
+        options, candidate, scene, transits=transits, baseline=baseline, progress=progress
+    )
+
+
+def checked_options(
+    tolerance: float | None,
+    inputs: str,
+    t_end: float | None,
+    covers: float,
+    as_model: bool,
+    explain: bool,
+) -> JudgeOptions:
+    """Return the options of `judge` in one object.
+
+    Raises:
+        InputError: one of them has a wrong type or is out of range.
+    """
     if tolerance is not None and not (isinstance(tolerance, Real) and 0 < tolerance < math.inf):
         raise InputError("tolerance", tolerance, "a positive number of metres")
     if t_end is not None and not isinstance(t_end, Real):
@@ -108,238 +142,102 @@ def judge(
     if not (isinstance(covers, Real) and 0 <= covers <= 1):
         raise InputError("covers", covers, "a share of the scene's span, from 0 to 1")
     if inputs not in READINGS:
-        raise InputError(
-            "inputs", inputs, in_words(READINGS), did_you_mean(str(inputs), READINGS, "")
-        )
+        advice = did_you_mean(str(inputs), READINGS, "")
+        raise InputError("inputs", inputs, in_words(READINGS), advice)
+    return JudgeOptions(
+        tolerance_m=None if tolerance is None else float(tolerance),
+        inputs=inputs,
+        t_end_s=None if t_end is None else float(t_end),
+        covers=covers,
+        as_model=as_model,
+        explain=explain,
+    )
+
+
+def judge_with(
+    options: JudgeOptions,
+    candidate: Candidate | str | Path | Mapping[str, Any] | None,
+    scene: AnyScene,
+    *,
+    transits: npt.ArrayLike | None = None,
+    baseline: Score | Candidate | Mapping[str, Any] | str | Path | None = None,
+    progress: Progress = SILENT,
+) -> Score:
+    """Judge a candidate as `judge` does, with its options in one object."""
     if not isinstance(baseline, Score | Candidate | Mapping | str | Path | None):
-        raise InputError(
-            "baseline",
-            baseline,
-            "a score, a trajectory, the path of a file, or a score's JSON document",
-        )
-    tolerance, t_end = (None if number is None else float(number) for number in (tolerance, t_end))
+        expected = "a score, a trajectory, the path of a file, or a score's JSON document"
+        raise InputError("baseline", baseline, expected)
     if isinstance(scene, Mapping) and "t" in scene:
         got = f"columns {', '.join(map(str, scene))}"
         raise InputError("scene", got, "a scene", "The rows stand before the scene.")
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
-    times = (
-        None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
-    )
-    if candidate is None and times is not None:
-        _check_transits(times, scene)
-        candidate = Candidate.of_transits("transits", times[times <= float(scene.exact.t_end)])
-    elif not isinstance(candidate, Candidate):
-        candidate = (
-            read(candidate) if isinstance(candidate, str | Path) else candidate_from(candidate)
-        )
-    times = candidate.transits if times is None else times
-    if candidate.positions:
-        candidate, times = counted_from_release(candidate, times, scene, tolerance)
-    if t_end is not None:
-        if candidate.t[0] > t_end:
-            _check_times(candidate, scene)
-        candidate = _up_to(candidate, t_end)
-        times = None if times is None else times[times <= t_end]
-    _check_times(candidate, scene)
-    until = None if times is None else _end_of_run(candidate, times, scene)
-    problem, why = _reading(candidate, scene, inputs)
-    for golden, truth in _truths(candidate, problem, times is not None, announce, report):
-        errors = trajectory_errors(candidate, truth, golden)
-        allowed = TOLERANCE * _amplitude(candidate, errors) if tolerance is None else tolerance
-        unjudged = None if times is None else unjudged_transits(golden)
-        if unjudged and not candidate.positions:
-            raise InputError("transits", unjudged, "a trajectory as well", "Print t,x,y.")
-        result = Score(
-            candidate=candidate,
-            scene=problem,
-            why_inputs=why,
-            golden=golden,
-            errors=errors,
-            tolerance_m=allowed,
-            swing=errors.swing(_rest(scene)),
-            drifts=drifts(candidate, problem),
-            transits=None
-            if times is None or unjudged
-            else judged_transits(times, golden, errors, allowed, until),
-            notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
-            covers=covers,
-            as_model=as_model,
-        )
-        if not in_doubt(result) and (
-            isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed
-        ):
-            break
-    result = replace(result, notes=result.notes + _as_good_as_none(result))
-    if candidate.positions and (
-        scale := _beyond_the_cord(candidate, scene, errors.truth.states[:, :2])
-    ):
-        result = replace(
-            result, candidate=replace(candidate, conventions=(*candidate.conventions, scale))
-        )
-    if explain and result.off_path and candidate.positions and result.covered:
-        result = replace(result, explanation=diagnose(candidate, problem, result.allowed_m))
-    if baseline is None:
-        return result
-    if isinstance(baseline, str | Path):
-        path = Path(baseline)
-        with named("baseline"):
-            baseline = document_of(path) if path.suffix == ".json" else read(path)
-    if isinstance(baseline, Candidate):
-        same: dict[str, Any] = {
-            "tolerance": tolerance,
-            "inputs": inputs,
-            "t_end": t_end,
-            "as_model": as_model,
-        }
-        baseline = judge(baseline, scene, **same, explain=explain and as_model)
-    changed = since(result, baseline, explain)
-    alone = () if changed else ("the baseline has no score of it: this verdict stands alone",)
-    return replace(result, since=changed, notes=result.notes + alone)
+
+    trial = _trial_of(_candidate_of(candidate, transits, scene), scene, options)
+    score = _with_remarks(_score_of(trial, progress), trial)
+    if options.explain and score.off_path and trial.candidate.positions and score.covered:
+        explanation = diagnose(trial.candidate, trial.problem, score.allowed_m)
+        score = replace(score, explanation=explanation)
+    return score if baseline is None else _with_changes(score, baseline, trial)
 
 
-def in_doubt(score: Score) -> bool:
-    """Return whether the reference's own error could change the verdict."""
-    transits, tolerance = score.transits, score.tolerance_m
-    measured = [score.errors.max_m, *([transits.max_conditioned_m] if transits else [])]
-    return any(abs(error - tolerance) <= DOUBT * score.errors.bound_m for error in measured)
+@dataclass(frozen=True)
+class _Trial:
+    """What is judged, and how.
+
+    Attributes:
+        candidate: rows and transits up to the end of the comparison, in times since the release.
+        scene: as it was given.
+        problem: the scene with its inputs read as decimals or as doubles.
+        why_inputs: the reason for that reading.
+        options: what counts as agreement.
+    """
+
+    candidate: Candidate
+    scene: Scene
+    problem: Scene
+    why_inputs: str
+    options: JudgeOptions
 
 
-def _truths(
-    candidate: Candidate,
-    problem: Scene,
-    transits: bool,
-    announce: Callable[[str], None] | None,
-    report: Report | None,
-) -> Iterator[tuple[Golden | Solution, Dense]]:
-    """Yield datasets or solutions with the truth at the times, each known more closely than the one before."""
-    if not candidate.extended:
-        ships = with_function(problem)
-        truth = ships and by_function(ships, candidate.t)
-        if ships and truth:
-            yield ships, truth
-        rough = None if ships else roughly_solved(problem, candidate.t, transits, report)
-        if rough is not None:
-            yield rough
-    digits, within = (problem.run.digits, FINE) if candidate.extended else (DIGITS, WITHIN)
-    golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))
-    yield golden, truth_at(golden, candidate.t, within)
-
-
-def _amplitude(candidate: Candidate, errors: TrajectoryErrors) -> float:
-    """Return the amplitude in m: of the truth, or of a candidate that swings far less."""
-    if not candidate.positions:
-        return errors.amplitude_m
-    columns = ((candidate.columns["x"], candidate.columns["y"]), errors.truth.states[:, :2].T)
-    reach, true = (float(np.hypot(*part).max()) for part in columns)
-    return errors.amplitude_m * (reach / true if 0 < reach < SMALL * true else 1.0)
-
-
-def _up_to(candidate: Candidate, end: float) -> Candidate:
-    """Return the rows up to a time in s, with a note if there were later ones."""
-    kept = candidate.t <= end
-    if kept.all():
-        return candidate
-    if not kept.any():
-        raise InputError(
-            "t_end",
-            f"{end:g}",
-            f"a time from the first row on, which is at t = {candidate.t[0]:g} s",
-        )
-    columns, low = (
-        {name: column[kept] for name, column in of.items()}
-        for of in (candidate.columns, candidate.low)
-    )
-    note = f"{counted(int((~kept).sum()), 'row')} after t = {end:g} s ignored, the last at {candidate.t[-1]:g} s"
-    return replace(
-        candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note)
-    )
-
-
-def _check_transits(times: Array, scene: Scene) -> None:
-    """Refuse transits that are all beyond the scene's end."""
-    end = float(scene.exact.t_end)
-    if len(times) and times[0] > end:
-        raise InputError(
-            "transits: t",
-            f"{times[0]:.10g} s first",
-            f"times from 0 to {scene.run.t_end} s",
-            SUBTRACT,
-        )
-
-
-def _end_of_run(candidate: Candidate, transits: Array, scene: Scene) -> float:
-    """Return the time in s at which a run ended: no later transit can be among its own."""
-    end = float(scene.exact.t_end)
-    last = float(candidate.t[-1])
-    goes_on = not candidate.positions or bool(len(transits) and transits[-1] > last)
-    return end if goes_on else min(last, end)
-
-
-def _check_times(candidate: Candidate, scene: Scene) -> None:
-    """Refuse times beyond the scene's span, and say what they may be.
+def _candidate_of(
+    candidate: Candidate | str | Path | Mapping[str, Any] | None,
+    transits: npt.ArrayLike | None,
+    scene: Scene,
+) -> Candidate:
+    """Return a candidate with its transits, or one of transits alone.
 
     Raises:
-        InputError: the last time is more than a grid step beyond the scene's end.
+        InputError: it cannot be read, or all transits are beyond the scene's end.
     """
-    last, end = float(candidate.t[-1]), float(scene.exact.t_end)
-    # one row alone says nothing of a clock's start
-    first = float(candidate.t[0]) if len(candidate.t) > 1 else 0.0
-    if last <= end + float(scene.exact.grid_step):
-        return
-    span = last - first
-    unit = next((word for word in FINER if span * float(TIMES[word]) <= end * (1 + SAME)), None)
-    longer = f"--t-end {scene.run.t_end} leaves out later rows, --set run.t_end={last:.10g} makes the scene longer."
-    if unit is not None and span > FAR * end:
-        seconds, start = last * float(TIMES[unit]), first * float(TIMES[unit])
-        what = (
-            f"and they end at {seconds:.10g} s"
-            if seconds <= end * (1 + SAME)
-            else f"from {shown(start)} on"
-        )
-        longer = f"They look like {LONG_NAMES[unit]}: --units {unit} reads them so, {what}."
-    elif first > 0 and span <= end:
-        longer = f"{longer} Did the clock start before the release? {SUBTRACT}"
-    expected = f"times from 0 to {scene.run.t_end} s"
-    raise InputError(f"{candidate.name}: t", f"{last:.10g} at the end", expected, longer)
+    times = None
+    if transits is not None:
+        times = checked_transits(real_array(transits, "transits"), "transits")
+
+    if candidate is None and times is not None:
+        check_transits(times, scene)
+        return Candidate.of_transits("transits", times[times <= float(scene.exact.t_end)])
+    if isinstance(candidate, str | Path):
+        candidate = read(candidate)
+    elif not isinstance(candidate, Candidate):
+        candidate = candidate_from(candidate)
+    return candidate if times is None else replace(candidate, transits=times)
 
 
-def _beyond_the_cord(candidate: Candidate, scene: Scene, truth: Array) -> Deviation | None:
-    """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None.
+def _trial_of(candidate: Candidate, scene: Scene, options: JudgeOptions) -> _Trial:
+    """Return the trial of a candidate.
 
-    A unit is named if the rows, in metres then, leave less than all of the truth: another pendulum does not follow it.
+    Raises:
+        InputError: its clock cannot be known, or its times are beyond the scene's end.
     """
-    x, y, length = candidate.columns["x"], candidate.columns["y"], float(scene.exact.length)
-    reach = float(np.hypot(x, y).max())
-    if reach <= BEYOND * length:
-        return None
-    far = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
-    release = complex(*map(float, Start.of(scene.exact, PLACEHOLDER_BITS).position[:2]))
-    ratio = complex(x[0], y[0]) / release if release and candidate.t[0] == 0 else 0j
-    scale = abs(ratio)
-    if not abs(ratio - scale) < SAME * scale:  # it does not begin at the release, in its direction
-        return Deviation(
-            "beyond_the_cord",
-            f"{far}: pixels, another unit, or another pendulum? Metres are wanted",
-        )
-    unit = next(
-        (
-            word
-            for word, size in LENGTHS.items()
-            if size != 1 and abs(scale * float(size) - 1) < SAME
-        ),
-        None,
-    )
-    times = f"the first row is {scale:.6g} times the release"
-    if unit is None:
-        question = f"is it another pendulum, or are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
-        return Deviation("scale", f"{far}: {times}; {question}")
-    follows = np.linalg.norm(np.column_stack([x, y]) / scale - truth) < np.linalg.norm(truth)
-    what = (
-        f", so they are {LONG_NAMES[unit]};"
-        if follows
-        else f"; is it another pendulum, or {LONG_NAMES[unit]}?"
-    )
-    return Deviation("scale", f"{far}: {times}{what} --units {unit} reads them so")
+    if candidate.positions:
+        candidate = counted_from_release(candidate, scene, options.tolerance_m)
+    if options.t_end_s is not None:
+        if candidate.t[0] > options.t_end_s:
+            check_end(candidate, scene)
+        candidate = rows_until(candidate, options.t_end_s)
+    check_end(candidate, scene)
+    problem, why_inputs = _reading(candidate, scene, options.inputs)
+    return _Trial(candidate, scene, problem, why_inputs, options)
 
 
 def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, str]:
@@ -354,6 +252,94 @@ def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, st
     return scene.with_values(["inputs=binary64"]), why
 
 
+def _score_of(trial: _Trial, progress: Progress) -> Score:
+    """Return the score by the first truth that is known closely enough to decide the verdict."""
+    for golden, truth in _truths(trial, progress):
+        score = _score_by(golden, truth, trial)
+        if _decides(score):
+            break
+    return score
+
+
+def _truths(trial: _Trial, progress: Progress) -> Iterator[tuple[Golden | Solution, Dense]]:
+    """Yield datasets or solutions with the truth at the times, each known more closely than the one before."""
+    candidate = trial.candidate
+    problem = trial.problem
+    if not candidate.extended:
+        ships = with_function(problem)
+        if ships is None:
+            transits = candidate.transits is not None
+            rough = roughly_solved(problem, candidate.t, transits, progress.report)
+            if rough is not None:
+                yield rough
+        else:
+            truth = by_function(ships, candidate.t)
+            if truth is not None:
+                yield ships, truth
+
+    digits = problem.run.digits if candidate.extended else DIGITS
+    within = FINE if candidate.extended else WITHIN
+    golden = golden_of(problem, digits, progress, until=float(candidate.t[-1]))
+    yield golden, truth_at(golden, candidate.t, within)
+
+
+def _score_by(golden: Golden | Solution, truth: Dense, trial: _Trial) -> Score:
+    """Return the score by one truth, without an explanation.
+
+    Raises:
+        InputError: there are transits alone, and the scene has none.
+    """
+    candidate = trial.candidate
+    options = trial.options
+    errors = trajectory_errors(candidate, truth, golden)
+    tolerance_m = options.tolerance_m
+    if tolerance_m is None:
+        tolerance_m = TOLERANCE * _amplitude(candidate, errors)
+
+    transits = None
+    notes = candidate.notes
+    if candidate.transits is not None:
+        reason = unjudged_transits(golden)
+        if reason is None:
+            until = end_of_run(candidate, trial.scene)
+            transits = judged_transits(candidate.transits, golden, errors, tolerance_m, until)
+        elif candidate.positions:
+            notes = (*notes, reason)
+        else:
+            raise InputError("transits", reason, "a trajectory as well", "Print t,x,y.")
+
+    return Score(
+        candidate=candidate,
+        scene=trial.problem,
+        why_inputs=trial.why_inputs,
+        golden=golden,
+        errors=errors,
+        tolerance_m=tolerance_m,
+        swing=errors.swing(_rest(trial.scene)),
+        drifts=drifts(candidate, trial.problem),
+        transits=transits,
+        notes=notes,
+        covers=options.covers,
+        as_model=options.as_model,
+    )
+
+
+def _amplitude(candidate: Candidate, errors: TrajectoryErrors) -> float:
+    """Return the amplitude in m: of the truth, or of a candidate that swings far less."""
+    if not candidate.positions:
+        return errors.amplitude_m
+    reach_m = _reach(candidate.columns["x"], candidate.columns["y"])
+    true_reach_m = _reach(errors.truth.states[:, 0], errors.truth.states[:, 1])
+    if 0 < reach_m < SMALL * true_reach_m:
+        return errors.amplitude_m * (reach_m / true_reach_m)
+    return errors.amplitude_m
+
+
+def _reach(x: Array, y: Array) -> float:
+    """Return the largest distance from the vertical in m."""
+    return float(np.hypot(x, y).max())
+
+
 def _rest(scene: Scene) -> tuple[float, float]:
     """Return x and y of the rest position in m; (0, 0) if none is singled out."""
     try:
@@ -363,44 +349,60 @@ def _rest(scene: Scene) -> tuple[float, float]:
     return float(x), float(y)
 
 
-def _as_good_as_none(score: Score) -> tuple[str, ...]:
-    """Return a warning where a bob that does not move would agree as well, so that to agree says little.
+def _decides(score: Score) -> bool:
+    """Return whether a more accurate truth would leave the verdict as it is."""
+    if in_doubt(score):
+        return False
+    is_proven = isinstance(score.golden, Golden)
+    return is_proven or score.errors.bound_m <= _ROUGHLY * score.tolerance_m
 
-    It may stay at its release, as in a program that never steps, or at its rest position, as in one without a swing.
+
+def in_doubt(score: Score) -> bool:
+    """Return whether the reference's own error could change the verdict."""
+    errors_m = [score.errors.max_m]
+    if score.transits is not None:
+        errors_m.append(score.transits.max_conditioned_m)
+    doubt_m = _DOUBT * score.errors.bound_m
+    return any(abs(error_m - score.tolerance_m) <= doubt_m for error_m in errors_m)
+
+
+def _with_remarks(score: Score, trial: _Trial) -> Score:
+    """Return a score with what a reader ought to know of the scene, the tolerance and the unit of length."""
+    notes = [
+        *score.notes,
+        *warning_of_a_flung_bob(score.scene),
+        *warning_of_a_resting_bob(score),
+    ]
+    candidate = score.candidate
+    if candidate.positions:
+        truth = score.errors.truth.states[:, :2]
+        scale = scale_beyond_the_cord(candidate, trial.scene, truth)
+        if scale is not None:
+            candidate = replace(candidate, conventions=(*candidate.conventions, scale))
+    return replace(score, candidate=candidate, notes=tuple(notes))
+
+
+def _with_changes(
+    score: Score, baseline: Score | Candidate | Mapping[str, Any] | str | Path, trial: _Trial
+) -> Score:
+    """Return a score with what changed since an earlier version.
+
+    Raises:
+        InputError: the earlier version cannot be read, or is of another problem.
     """
-    if not (score.agrees and score.candidate.positions and score.transits is None):
-        return ()
-    places = {
-        "where it is released": np.array(
-            [float(q) for q in Start.of(score.scene.exact, PLACEHOLDER_BITS).position]
-        )
-    }
-    with suppress(UnreachableError):
-        places["at its rest position"] = rest_in_metres(score.scene)
-    given = [i for i, name in enumerate(POSITION) if name in score.candidate.columns]
-    truth = score.errors.truth.states[:, given]
-    farthest = {
-        word: float(np.linalg.norm(truth - place[given], axis=1).max())
-        for word, place in places.items()
-    }
-    word = min(farthest, key=lambda word: farthest[word])
-    if farthest[word] > score.allowed_m:
-        return ()
-    moves = f"the true one is never more than {farthest[word]:.2g} m from there"
-    advice = ": set a tolerance far below that" if farthest[word] > score.errors.bound_m else ""
-    return (f"a bob that stays {word} would agree as well, as {moves}{advice}",)
+    options = trial.options
+    if isinstance(baseline, str | Path):
+        path = Path(baseline)
+        with named("baseline"):
+            baseline = document_of(path) if path.suffix == ".json" else read(path)
+    if isinstance(baseline, Candidate):
+        # its reasons matter only to decide whether it agreed as a model
+        explain = options.explain and options.as_model
+        same = replace(options, covers=0.0, explain=explain)
+        baseline = judge_with(same, baseline, trial.scene)
 
-
-def _flung_off(scene: Scene) -> tuple[str, ...]:
-    """Return a warning where the centrifugal force at the suspension is larger than gravity."""
-    k = constants_in_double(scene.exact)
-    outward, gravity = (
-        float(k.rate) ** 2 * float(k.axis_distance) * k.length,
-        float(k.gravity) * k.length,
-    )
-    if outward <= gravity:
-        return ()
-    advice = "with site.gravity_is=effective g contains that force"
-    return (
-        f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",
-    )
+    changes = since(score, baseline, options.explain)
+    notes = score.notes
+    if changes is None:
+        notes = (*notes, "the baseline has no score of it: this verdict stands alone")
+    return replace(score, since=changes, notes=notes)

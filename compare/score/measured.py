@@ -1,36 +1,44 @@
-"""Hold rows, measured or computed, against what is proved for every value of uncertain inputs."""
+"""Compare rows, measured or computed, with what is proved for every value of uncertain inputs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from reference import InputError, Ranges, prove_ranges
 from reference.errors import counted
 from reference.numbers.columns import STATE
-from reference.numbers.precision import Array
 
-from ..candidates.candidate import Candidate
+from ..candidates.candidate import Candidate, Passages
 from ..candidates.clock import shown
-from .clock_start import SUBTRACT, clock_starts, starts_in_words
+from ..truth import Report
+from .clock_start import SUBTRACT, Ends, clock_starts, starts_in_words
+
+DISAGREES = "disagrees"
+INSIDE = "cannot be told apart"
+SWING = 7.0  # times sqrt(l/g): a little more than a period
 
 # of the numbers outside, those in the lines for people: the farthest of each column first
-LISTED = 5
-# of a column's largest number: what doubles cannot hold says nothing
-ROUNDING = Fraction(1, 1 << 48)
-SWING = 7.0  # times sqrt(l/g): a period, and some
-TRANSIT = "transit"
-APART, INSIDE = "disagrees", "cannot be told apart"
-
-
-# the ends of each, and whether it holds just one zero
-Intervals = list[tuple[tuple[Fraction, Fraction], bool]]
+_LISTED = 5
+# of a column's largest number: differences below the rounding of doubles mean nothing
+_ROUNDING = Fraction(1, 1 << 48)
+_TRANSIT = "transit"
 
 
 class Outside(NamedTuple):
-    """A number outside of what is proved: where, what it is, the interval, by how much it misses this; m, s."""
+    """A number outside of what is proved.
+
+    Attributes:
+        column: of the number; "transit", or the word of a section.
+        t: time of the row in s; of a passage, the passage itself.
+        got: the number, in m, m/s or s.
+        low: end of the proven interval, as are the following.
+        high: its other end.
+        by: how far outside the number is.
+    """
 
     column: str
     t: float
@@ -38,6 +46,17 @@ class Outside(NamedTuple):
     low: float
     high: float
     by: float
+
+    @property
+    def text(self) -> str:
+        """The number, where it is, and the interval."""
+        where = self.column
+        unit = "s"
+        if self.column in STATE:
+            where = f"{self.column} at t = {self.t:.10g} s"
+            unit = "m/s" if self.column.startswith("v") else "m"
+        proved = f"proved {self.low:.10g} to {self.high:.10g} {unit}"
+        return f"{where}: {self.got:.10g}, {proved} ({self.by:.2g} outside)"
 
 
 @dataclass(frozen=True)
@@ -67,34 +86,43 @@ class Measured:
     @property
     def verdict(self) -> str:
         """'cannot be told apart', or 'disagrees'."""
-        return APART if self.outside else INSIDE
+        return DISAGREES if self.outside else INSIDE
 
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""
-        box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
-        parts = [counted(self.rows, "row")] if self.rows else []
-        zero, section = ("passage", f" of {self.section}") if self.section else (TRANSIT, "")
-        parts += [] if self.transits is None else [f"{counted(self.transits, zero)}{section}"]
-        scene, what = self.ranges.scene.id, " and ".join(parts)
-        clock = (
-            f" by a clock that showed {starts_in_words(self.starts)} at the release"
-            if self.starts
-            else ""
-        )
-        if not self.outside:
-            yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved{clock}"
-        else:
-            numbers = counted(len(self.outside), "number")
-            yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
-        for column, t, got, low, high, by in self.outside[:LISTED]:
-            at, unit = (
-                (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m")
-                if column in STATE
-                else ("", "s")
-            )
-            yield f"  {column}{at}: {got:.10g}, proved {low:.10g} to {high:.10g} {unit} ({by:.2g} outside)"
+        yield self._verdict_line()
+        for number in self.outside[:_LISTED]:
+            yield f"  {number.text}"
         for note in self.notes:
             yield f"Note: {note}."
+
+    def _verdict_line(self) -> str:
+        scene = self.ranges.scene.id
+        box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
+        if self.outside:
+            numbers = counted(len(self.outside), "number")
+            return (
+                f"{self.name} disagrees with {scene}, whatever {box}: of {self._contents()}, "
+                f"{numbers} outside what is proved"
+            )
+        clock = ""
+        if self.starts:
+            clock = f" by a clock that showed {starts_in_words(self.starts)} at the release"
+        return (
+            f"{self.name} cannot be told apart from {scene} with {box}: {self._contents()}, "
+            f"all inside what is proved{clock}"
+        )
+
+    def _contents(self) -> str:
+        """Return how many rows and passages there are, in words."""
+        words = []
+        if self.rows:
+            words.append(counted(self.rows, "row"))
+        if self.transits is not None and self.section is None:
+            words.append(counted(self.transits, _TRANSIT))
+        elif self.transits is not None:
+            words.append(f"{counted(self.transits, 'passage')} of {self.section}")
+        return " and ".join(words)
 
     def document(self) -> dict[str, Any]:
         """Return it as a JSON document."""
@@ -114,204 +142,325 @@ class Measured:
 
 def measured(
     candidate: Candidate | None,
-    transits: Array | None,
+    passages: Passages | None,
     ranges: Ranges,
-    tolerance: float = 0.0,
-    name: str = "",
-    report: Any = None,
-    section: str | None = None,
+    tolerance_m: float = 0.0,
+    report: Report | None = None,
 ) -> Measured:
-    """Hold a candidate, or transits alone, against ranges; rows at other times than theirs take another proof.
+    """Compare a candidate, or passages alone, with ranges; rows at other times than theirs take another proof.
 
     Args:
         candidate: rows of positions and, if there, velocities.
-        transits: times of xdot = 0 in s, or of passages of a section.
-        ranges: read from files, or made for these rows where they have no times.
-        tolerance: how far outside a number of a row may lie, in m or m/s, at least the rounding of doubles; transits
-            are taken as they are.
-        name: of transits alone.
+        passages: of a section, or transits.
+        ranges: read from files, or made for these rows if they have no times.
+        tolerance_m: how far outside a number of a row may be, in m or m/s, at least the rounding of
+            doubles; passages are taken as they are.
         report: called with the simulated time reached, in s.
-        section: the word of the section that `transits` are passages of.
 
     Raises:
-        InputError: no row or transit lies within the scene's span, or the proof decides nothing at any of the times.
+        InputError: no row or passage lies within the scene's span, or the proof decides nothing at any
+            of the times.
         UnreachableError: the box is too wide.
     """
-    end, sections = ranges.scene.exact.t_end, ranges.scene.run.sections or ()
-    times = (
-        [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
-    )
-    zeros = [] if transits is None else sorted(_decimal(t) for t in transits)
-    kept, seen = [t for t in times if t <= end], [t for t in zeros if 0 < t <= end]
-    name = name if candidate is None else candidate.name
-    if candidate is not None and (candidate.clock_s is not None or (not kept and _fit(times, end))):
-        raise InputError(
-            f"{name}: t",
-            f"{_clock_of(candidate)} in the first row",
-            "times since the release",
-            SUBTRACT,
-        )
-    other_clock = candidate is None and _fit(zeros, end)
-    if not kept and not seen and not other_clock:
-        raise InputError(
-            name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end."
-        )
-    wanted = bool(seen or not kept)  # transits or passages
-    if not ({*kept} <= {*ranges.times} and (_intervals(ranges, section) or not wanted)):
-        last = max([*kept, *seen]) if kept or seen else zeros[-1] - zeros[0]
-        ranges = _proved(ranges, kept, last, section, wanted, report)
-    if wanted and not _intervals(ranges, section):
-        none = f"none: {section or 'xdot'} has no single zeros in this scene"
-        raise InputError(name, "transits", none, "Give positions instead.")
-    word = section or TRANSIT
-    decided = [t for t in seen if not _undecided(t, _intervals(ranges, section))]
-    off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
-    off += _zeros(decided, _intervals(ranges, section), word)
-    starts: list[tuple[Fraction, Fraction]] = []
-    if other_clock and (off or not seen):
-        starts = _starts(zeros, _intervals(ranges, section))
-    # a program prints transits, by a clock of its own from the release on
-    measured_by_gate = bool(starts and section)
-    if measured_by_gate:
-        off, seen, decided = [], zeros, zeros
-    if not seen and not kept:
-        span = f"times above 0, up to {float(end):g} s"
-        raise InputError(f"{name}: t", f"{float(zeros[0]):.10g} s first", span, SUBTRACT)
-    if seen and not decided and not kept:
-        free = _intervals(ranges, section)
-        (low, high) = next(
-            ends for ends, single in free if not single and ends[0] <= seen[0] <= ends[1]
-        )
-        advice = f"The proof leaves {float(low):g} to {float(high):g} s open. Take smaller widths, or another section."
-        raise InputError(
-            f"{name}: t", f"{float(seen[0]):g} s", f"a time at which {word} is decided", advice
-        )
-    farthest = {number.column: number.by for number in sorted(off, key=lambda number: number.by)}
-    notes = list(candidate.notes if candidate else ())
-    if starts and not measured_by_gate:
-        notes.append(
-            f"all transits are inside by a clock that showed {starts_in_words(starts)} at the release"
-        )
-    late = 0 if measured_by_gate else sum(t > end for t in [*times, *zeros])
-    if late:
-        notes.append(f"after {float(end):g} s {counted(late, 'time')} left out")
-    if open_ := len(seen) - len(decided):
-        notes.append(
-            f"{counted(open_, 'time')} left out, at which the proof does not decide {word}"
-        )
-    if TRANSIT in farthest and sections:
-        notes.append(f"for passages of {sections[0]} write --section '{sections[0]}'")
-    off.sort(
-        key=lambda number: (
-            number.by < farthest[number.column],
-            number.column not in STATE,
-            -number.by,
-        )
-    )
-    count = len(decided) if transits is not None else None
+    times = _Times.of(candidate, passages, ranges.scene.exact.t_end)
+    _check_clock(candidate, times)
+    sections = ranges.scene.run.sections or ()  # a new proof finds no others than are needed
+    ranges = _proved_at(times, ranges, report)
+    intervals = _intervals(ranges, times.section)
+    if times.needs_passages and not intervals:
+        got = f"none: {times.section or 'xdot'} has no single zeros in this scene"
+        raise InputError(times.name, "transits", got, "Give positions instead.")
+
+    outside: list[Outside] = []
+    if candidate is not None:
+        outside += _rows_outside(candidate, times.rows_in_span, ranges, tolerance_m)
+    decided = [t for t in times.passages_in_span if not _is_undecided(t, intervals)]
+    outside += _passages_outside(decided, intervals, times.word)
+
+    starts: tuple[Ends, ...] = ()
+    if times.may_be_by_another_clock and (outside or not times.passages_in_span):
+        starts = tuple(_starts(times.passages, intervals))
+    if starts and times.section is not None:
+        # a gate's clock starts at any time; a program's transits are since the release
+        count = len(times.passages)
+        return Measured(times.name, ranges, 0, count, (), (), times.section, starts)
+
+    _check_decided(times, decided, intervals)
+    notes = [
+        *(candidate.notes if candidate is not None else ()),
+        *_notes(times, decided, starts),
+        *_notes_on_sections(sections, outside),
+    ]
     return Measured(
-        name, ranges, len(kept), count, tuple(off), tuple(notes), section, tuple(starts)
+        name=times.name,
+        ranges=ranges,
+        rows=len(times.rows_in_span),
+        transits=None if passages is None else len(decided),
+        outside=_farthest_first(outside),
+        notes=tuple(notes),
+        section=times.section,
+        starts=starts,
     )
 
 
-def _proved(
-    ranges: Ranges,
-    kept: Sequence[Fraction],
-    last: Fraction,
-    section: str | None,
-    wanted: bool,
-    report: Any,
-) -> Ranges:
-    """Return a proof at the times of rows, and if they are wanted of transits or passages, a swing beyond the last."""
-    end, inputs = ranges.scene.exact.t_end, ranges.scene.exact
-    # a swing beyond the last one, so that a transit is not cut off
-    swing = (
-        Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5)
-        if inputs.gravity
-        else last
-    )
-    grid = sorted({Fraction(0), *kept, *([min(last + swing, end)] if wanted or not last else [])})
-    sought = {"run.transits": str(wanted and not section).lower(), "run.sections": section or ""}
-    box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
-    return prove_ranges(ranges.scene.with_values(sought), box, times=grid, report=report)
+@dataclass(frozen=True)
+class _Times:
+    """The times of rows and passages in s, exactly as their decimals.
+
+    Attributes:
+        name: of the candidate.
+        rows: times of rows.
+        passages: times of passages of a section, or of transits, sorted.
+        section: its word; None for transits.
+        end: of the scene.
+    """
+
+    name: str
+    rows: Sequence[Fraction]
+    passages: Sequence[Fraction]
+    section: str | None
+    end: Fraction
+
+    @classmethod
+    def of(cls, candidate: Candidate | None, passages: Passages | None, end: Fraction) -> _Times:
+        """Return the times of a candidate and of passages."""
+        name = ""
+        rows: list[Fraction] = []
+        times: list[Fraction] = []
+        section = None
+        if passages is not None:
+            name = passages.name
+            times = sorted(_decimal(t) for t in passages.times)
+            section = passages.section
+        if candidate is not None:
+            name = candidate.name
+            rows = [_exact(candidate, "t", k) for k in range(len(candidate.t))]
+        return cls(name, rows, times, section, end)
+
+    @property
+    def word(self) -> str:
+        """The word for a passage: of its section, or "transit"."""
+        return self.section or _TRANSIT
+
+    @cached_property
+    def rows_in_span(self) -> list[Fraction]:
+        """The rows up to the end of the scene."""
+        return [t for t in self.rows if t <= self.end]
+
+    @cached_property
+    def passages_in_span(self) -> list[Fraction]:
+        """The passages after the release, up to the end of the scene."""
+        return [t for t in self.passages if 0 < t <= self.end]
+
+    @property
+    def needs_passages(self) -> bool:
+        """Whether a proof has to find passages."""
+        return bool(self.passages_in_span or not self.rows_in_span)
+
+    @property
+    def may_be_by_another_clock(self) -> bool:
+        """Whether there are passages alone, and their clock may not have started at the release."""
+        return not self.rows and _fits(self.passages, self.end)
 
 
-def _fit(times: Sequence[Fraction], end: Fraction) -> bool:
+def _check_clock(candidate: Candidate | None, times: _Times) -> None:
+    """Refuse rows by a clock that did not start at the release, and times none of which can be judged.
+
+    Raises:
+        InputError: they are such.
+    """
+    if candidate is not None:
+        clock_s = candidate.clock_s
+        if clock_s is None and not times.rows_in_span and _fits(times.rows, times.end):
+            clock_s = float(candidate.t[0])
+        if clock_s is not None:
+            got = f"{shown(clock_s)} in the first row"
+            raise InputError(f"{times.name}: t", got, "times since the release", SUBTRACT)
+
+    in_span = times.rows_in_span or times.passages_in_span
+    if not in_span and not times.may_be_by_another_clock:
+        expected = f"one up to {float(times.end):g} s"
+        raise InputError(times.name, "no row", expected, "The scene ends there: run.t_end.")
+
+
+def _fits(times: Sequence[Fraction], end: Fraction) -> bool:
     """Return whether times, more than one, may be by a clock that did not start at the release."""
     return len(times) > 1 and times[-1] - times[0] <= end
 
 
-def _clock_of(candidate: Candidate) -> str:
-    return shown(float(candidate.t[0]) if candidate.clock_s is None else candidate.clock_s)
+def _proved_at(times: _Times, ranges: Ranges, report: Report | None) -> Ranges:
+    """Return ranges that have the times of all rows, and passages if needed: the same, or a new proof."""
+    rows = times.rows_in_span
+    has_rows = set(rows) <= set(ranges.times)
+    has_passages = not times.needs_passages or _intervals(ranges, times.section)
+    if has_rows and has_passages:
+        return ranges
+
+    inputs = ranges.scene.exact
+    in_span = [*rows, *times.passages_in_span]
+    last = max(in_span) if in_span else times.passages[-1] - times.passages[0]
+    grid = {Fraction(0), *rows}
+    if times.needs_passages or not last:
+        # a swing beyond the last one, so that a transit is not cut off
+        swing_s = last
+        if inputs.gravity:
+            swing_s = Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5)
+        grid.add(min(last + swing_s, times.end))
+
+    transits = times.needs_passages and times.section is None
+    sought = {"run.transits": str(transits).lower(), "run.sections": times.section or ""}
+    scene = ranges.scene.with_values(sought)
+    box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
+    return prove_ranges(scene, box, times=sorted(grid), report=report)
 
 
-def _starts(times: Sequence[Fraction], intervals: Intervals) -> list[tuple[Fraction, Fraction]]:
-    """Return what a clock may have shown at the release, if each time lies in an interval of its own by it."""
-    possible = clock_starts(times, [ends for ends, _ in intervals])
-    middles = [(low + high) / 2 for low, high in possible]
-    fits = [not any(_zeros([t - middle for t in times], intervals, TRANSIT)) for middle in middles]
-    return [start for start, fit in zip(possible, fits, strict=True) if fit]
+def _check_decided(times: _Times, decided: Sequence[Fraction], intervals: Sequence[_Zero]) -> None:
+    """Refuse passages alone of which none is in the scene's span, or none is decided by the proof.
+
+    Raises:
+        InputError: they are such.
+    """
+    if times.rows_in_span or decided:
+        return
+    if not times.passages_in_span:
+        first_s = float(times.passages[0])
+        expected = f"times above 0, up to {float(times.end):g} s"
+        raise InputError(f"{times.name}: t", f"{first_s:.10g} s first", expected, SUBTRACT)
+
+    first = times.passages_in_span[0]
+    zero = next(zero for zero in intervals if not zero.is_single and zero.holds(first))
+    advice = (
+        f"The proof leaves {float(zero.low):g} to {float(zero.high):g} s open. "
+        "Take smaller widths, or another section."
+    )
+    expected = f"a time at which {times.word} is decided"
+    raise InputError(f"{times.name}: t", f"{float(first):g} s", expected, advice)
 
 
-def _rows(
-    candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float
+def _notes(times: _Times, decided: Sequence[Fraction], starts: Sequence[Ends]) -> Iterator[str]:
+    """Yield remarks on a clock, and on times that are left out."""
+    if starts:
+        clock = f"a clock that showed {starts_in_words(starts)} at the release"
+        yield f"all transits are inside by {clock}"
+
+    late = sum(t > times.end for t in [*times.rows, *times.passages])
+    if late:
+        yield f"after {float(times.end):g} s {counted(late, 'time')} left out"
+
+    undecided = len(times.passages_in_span) - len(decided)
+    if undecided:
+        why = f"at which the proof does not decide {times.word}"
+        yield f"{counted(undecided, 'time')} left out, {why}"
+
+
+def _notes_on_sections(sections: Sequence[str], outside: Iterable[Outside]) -> Iterator[str]:
+    """Yield a hint if transits are outside and may be passages of the scene's section."""
+    if sections and any(number.column == _TRANSIT for number in outside):
+        yield f"for passages of {sections[0]} write --section '{sections[0]}'"
+
+
+def _farthest_first(outside: Sequence[Outside]) -> tuple[Outside, ...]:
+    """Sort numbers: first the farthest of each column, then the others; rows before passages."""
+    farthest: dict[str, float] = {}
+    for number in outside:
+        farthest[number.column] = max(number.by, farthest.get(number.column, 0.0))
+
+    def place(number: Outside) -> tuple[bool, bool, float]:
+        is_farthest = number.by == farthest[number.column]
+        return not is_farthest, number.column not in STATE, -number.by
+
+    return tuple(sorted(outside, key=place))
+
+
+def _rows_outside(
+    candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance_m: float
 ) -> Iterator[Outside]:
-    """Yield the numbers of rows that lie outside."""
+    """Yield the numbers of a candidate's first rows, at these times, that lie outside."""
     place = {t: k for k, t in enumerate(ranges.times)}
-    for name in (name for name in STATE if name in candidate.columns):
+    for name in STATE:
+        if name not in candidate.columns:
+            continue
         intervals = ranges.grid.exact(name)
-        allowed = max(
-            Fraction(tolerance), ROUNDING * max(max(-low, high) for low, high in intervals)
-        )
+        largest = max(max(-low, high) for low, high in intervals)
+        allowed = max(Fraction(tolerance_m), _ROUNDING * largest)
         for k, t in enumerate(times):
-            (low, high), got = intervals[place[t]], _exact(candidate, name, k)
+            low, high = intervals[place[t]]
+            got = _exact(candidate, name, k)
             by = max(low - got, got - high)
             if by > allowed:
                 yield Outside(name, *map(float, (t, got, low, high, by)))
 
 
-def _intervals(ranges: Ranges, section: str | None) -> Intervals:
-    """Return the intervals of transits, or of a section's passages, and whether each has just one."""
-    passages = ranges.sections.get(section) if section else None
-    if section and not passages:
-        return []
-    table, possible = (
-        (passages.table, passages.possible) if passages else (ranges.transits, ranges.possible)
-    )
-    single = [(ends, True) for ends in table.exact("t")] if len(table) else []
-    return [*single, *(((low, high), False) for low, high, _ in possible)]
+@dataclass(frozen=True)
+class _Zero:
+    """An interval in s in which there is one zero, or in which there may be any number of them."""
+
+    low: Fraction
+    high: Fraction
+    is_single: bool
+
+    def holds(self, t: Fraction) -> bool:
+        """Return whether a time lies in the interval."""
+        return self.low <= t <= self.high
+
+    def gap(self, t: Fraction) -> Fraction:
+        """Return the distance in s of a time from the interval; 0 inside."""
+        return max(self.low - t, t - self.high, Fraction(0))
 
 
-def _undecided(t: Fraction, free: Intervals) -> bool:
+def _intervals(ranges: Ranges, section: str | None) -> list[_Zero]:
+    """Return the intervals of transits, or of a section's passages."""
+    if section is None:
+        table = ranges.transits
+        possible = ranges.possible
+    else:
+        passages = ranges.sections.get(section)
+        if passages is None:
+            return []
+        table = passages.table
+        possible = passages.possible
+    single = table.exact("t") if len(table) else []
+    zeros = [_Zero(low, high, True) for low, high in single]
+    zeros += [_Zero(low, high, False) for low, high, _ in possible]
+    return zeros
+
+
+def _is_undecided(t: Fraction, intervals: Sequence[_Zero]) -> bool:
     """Return whether a time lies in an interval that may hold zeros, and in none that holds just one."""
-    inside = [single for (low, high), single in free if low <= t <= high]
-    return bool(inside) and not any(inside)
+    around = [zero for zero in intervals if zero.holds(t)]
+    return bool(around) and not any(zero.is_single for zero in around)
 
 
-def _zeros(times: Sequence[Fraction], free: Intervals, word: str) -> Iterator[Outside]:
-    """Yield transits or passages in no proven interval, or in one whose only one is another."""
-    every = [*free]
-
-    def gap(t: Fraction, ends: tuple[Fraction, Fraction]) -> Fraction:
-        return max(ends[0] - t, t - ends[1], Fraction(0))
-
+def _passages_outside(
+    times: Iterable[Fraction], intervals: Sequence[_Zero], word: str
+) -> Iterator[Outside]:
+    """Yield passages in no proven interval, or in one whose only zero is an earlier passage."""
+    free = list(intervals)
     for t in times:
-        ends, single = min(free or every, key=lambda interval: gap(t, interval[0]))
-        if not free or gap(t, ends):
-            yield Outside(word, *map(float, (t, t, *ends, gap(t, ends))))
-        elif single:
-            free.remove((ends, single))
+        zero = min(free or intervals, key=lambda zero: zero.gap(t))
+        gap = zero.gap(t)
+        if gap or not free:
+            yield Outside(word, *map(float, (t, t, zero.low, zero.high, gap)))
+        elif zero.is_single:
+            free.remove(zero)
+
+
+def _starts(times: Sequence[Fraction], intervals: Sequence[_Zero]) -> Iterator[Ends]:
+    """Yield what a clock may have shown at the release, if each time lies in an interval of its own by it."""
+    for low, high in clock_starts(times, [(zero.low, zero.high) for zero in intervals]):
+        middle = (low + high) / 2
+        shifted = [t - middle for t in times]
+        if not any(_passages_outside(shifted, intervals, _TRANSIT)):
+            yield low, high
 
 
 def _exact(candidate: Candidate, name: str, k: int) -> Fraction:
     """Return a number of a row exactly: the shortest decimal of a double, and what the file has beyond it."""
     column = candidate.t if name == "t" else candidate.columns[name]
     low = candidate.low.get(name)
-    return (
-        _decimal(column[k])
-        if low is None or not low[k]
-        else Fraction(float(column[k])) + Fraction(float(low[k]))
-    )
+    if low is None or not low[k]:
+        return _decimal(column[k])
+    return Fraction(float(column[k])) + Fraction(float(low[k]))
 
 
 def _decimal(x: float) -> Fraction:

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from reference import InputError, Scene
+from reference import Golden, InputError, Scene
 from reference.errors import counted
-from reference.model.constants import constants_in_double
+from reference.model.constants import Constants, constants_in_double
 from reference.model.force import rates
 from reference.model.sections import form_of
 from reference.model.start import Start
 from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 
-from ..truth import DIGITS, Report, golden_of, truth_at
+from ..candidates.candidate import Passages
+from ..truth import DIGITS, SILENT, Progress, golden_of, truth_at
 from .clock_start import SUBTRACT, TOLERANCE, Ends, clock_starts, starts_in_words
 from .errors import entry, swing_rate
 from .measured import SWING
@@ -90,118 +91,163 @@ class PassageScore:
 
 
 def score_passages(
-    name: str,
-    times: Array,
+    passages: Passages,
     scene: Scene,
-    section: str,
-    tolerance: float | None = None,
-    announce: Callable[[str], None] | None = None,
-    report: Report | None = None,
+    tolerance_m: float | None = None,
+    progress: Progress = SILENT,
 ) -> PassageScore:
     """Score the passages of a section.
 
     Args:
-        name: of the candidate.
-        times: its passages in s, in order; those after the scene's end are not judged.
+        passages: their times; those after the scene's end are not judged.
         scene: the problem.
-        section: its word, such as "gate 30".
-        tolerance: largest distance in m by which the motion may be off; if None, `TOLERANCE` times the amplitude.
-        announce: called with a message before the scene is solved.
-        report: called with the simulated time reached, in s.
+        tolerance_m: largest distance by which the motion may be off; None for `TOLERANCE` times the
+            amplitude.
+        progress: what is called while the scene is solved.
 
     Raises:
         InputError: no time lies after t = 0 and before the scene's end.
         UnreachableError: the scene cannot be solved.
     """
+    section = passages.section
+    assert section is not None
     scene = scene.with_values({"run.sections": section, "run.transits": "false"})
-    end = float(scene.exact.t_end)
-    judged = times[(times > 0) & (times <= end)]
-    until = float(judged[-1]) if len(judged) else min(end, float(np.ptp(times)) + _swing_s(scene))
-    golden = golden_of(scene, DIGITS, announce, report, until)
-    truth = golden.sections[section]
-    speed = float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
-    away = _distances(section, scene, swing_rate(scene, speed))
-    _, slopes = away(np.column_stack([truth[column] for column in STATE]))
-    allowed = (
-        TOLERANCE * float(np.hypot(golden.x, golden.y).max()) if tolerance is None else tolerance
-    )
+    end_s = float(scene.exact.t_end)
+    swing_s = _swing_s(scene)
+    judged = passages.times[(passages.times > 0) & (passages.times <= end_s)]
+    until_s = float(judged[-1]) if len(judged) else None
+    if until_s is None:
+        # the truth is needed all the same, to learn what the clock showed at the release
+        until_s = min(end_s, float(np.ptp(passages.times)) + swing_s)
+
+    golden = golden_of(scene, DIGITS, progress, until=until_s)
+    speed_m_s = float(np.linalg.norm((golden.vx, golden.vy, golden.vz), axis=0).max())
+    distance = _Distance.of(section, scene, swing_rate(scene, speed_m_s))
+    if tolerance_m is None:
+        tolerance_m = TOLERANCE * float(np.hypot(golden.x, golden.y).max())
     if not len(judged):
-        starts = [*_starts(times, truth, away, allowed)]
-        advice = (
-            f"By the passages the clock showed {starts_in_words(starts)} at the release. "
-            if starts
-            else ""
-        )
-        span = f"times above 0, up to {scene.run.t_end} s"
-        raise InputError(
-            f"{name}: t",
-            "no time in the scene's span",
-            span,
-            f"{advice}{SUBTRACT if len(times) else ''}",
-        )
+        starts = _starts_by(golden, passages, distance, tolerance_m)
+        raise _nothing_in_the_span(passages, scene, starts)
 
-    def distances(at: Array) -> Array:
-        return away(truth_at(golden, at).states)[0]
-
+    truth = golden.sections[section]
+    _, slopes = distance(_states(golden, section))
     errors = transit_errors(
-        judged, truth["t"], slopes, float(judged[-1]), tolerance_m=allowed, away=distances
+        judged,
+        truth["t"],
+        slopes,
+        float(judged[-1]),
+        tolerance_m=tolerance_m,
+        away=lambda times: distance(truth_at(golden, times).states)[0],
     )
-    bound = float(max(map(float, truth.bound("t")), default=0.0) * np.abs(slopes).max(initial=0.0))
-    score = PassageScore(name, scene, section, judged, errors, allowed, bound, golden.level)
+    bound_s = max(map(float, truth.bound("t")), default=0.0)
+    bound_m = float(bound_s * np.abs(slopes).max(initial=0.0))
+    score = PassageScore(
+        passages.name, scene, section, judged, errors, tolerance_m, bound_m, golden.level
+    )
     if score.verdict == "agrees":
         return score
-    golden = golden_of(scene, DIGITS, announce, report, min(end, until + _swing_s(scene)))
-    return replace(
-        score, starts=tuple(_starts(times, golden.sections[section], away, score.allowed_m))
-    )
+
+    # by another clock, the last passage may be up to a swing later
+    golden = golden_of(scene, DIGITS, progress, until=min(end_s, until_s + swing_s))
+    return replace(score, starts=_starts_by(golden, passages, distance, score.allowed_m))
+
+
+def _nothing_in_the_span(passages: Passages, scene: Scene, starts: tuple[Ends, ...]) -> InputError:
+    """Return the error of passages none of which lies in the scene's span."""
+    advice = ""
+    if starts:
+        advice = f"By the passages the clock showed {starts_in_words(starts)} at the release. "
+    if len(passages.times):
+        advice += SUBTRACT
+    expected = f"times above 0, up to {scene.run.t_end} s"
+    return InputError(f"{passages.name}: t", "no time in the scene's span", expected, advice)
 
 
 def _swing_s(scene: Scene) -> float:
-    """Return a period in s, and some: before it, the first passage by a stopwatch comes."""
+    """Return a little more than a period in s; 0 without gravity."""
     inputs = scene.exact
     return SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5 if inputs.gravity else 0.0
 
 
-def _starts(
-    times: Array, truth: Any, away: Callable[[Array], tuple[Array, Array]], allowed_m: float
-) -> Iterator[Ends]:
-    """Yield what the clock may have shown at the release, in s, if every passage agrees by it."""
-    _, slopes = away(np.column_stack([truth[column] for column in STATE]))
+def _states(golden: Golden, section: str) -> Array:
+    """Return the states of a dataset's passages, shape (passages, 6)."""
+    table = golden.sections[section]
+    return np.column_stack([table[column] for column in STATE])
+
+
+def _starts_by(
+    golden: Golden, passages: Passages, distance: _Distance, allowed_m: float
+) -> tuple[Ends, ...]:
+    """Return what the clock may have shown at the release, in s, if every passage agrees by it."""
+    assert passages.section is not None
+    exact = [Fraction(repr(float(time))) for time in passages.times]
+    if len(set(exact)) < len(exact):
+        return ()
+    times = golden.sections[passages.section]["t"]
+    _, slopes = distance(_states(golden, passages.section))
     intervals = []
-    for time, slope in zip(truth["t"], np.abs(slopes), strict=True):
+    for time, slope in zip(times, np.abs(slopes), strict=True):
         if slope:
+            time_s = Fraction(float(time))
             late_s = Fraction(allowed_m / float(slope))
-            intervals.append((Fraction(float(time)) - late_s, Fraction(float(time)) + late_s))
-    exact = [Fraction(repr(float(time))) for time in times]
-    if len({*exact}) == len(exact):
-        yield from clock_starts(exact, intervals)
+            intervals.append((time_s - late_s, time_s + late_s))
+    return tuple(clock_starts(exact, intervals))
 
 
-def _distances(section: str, scene: Scene, omega: float) -> Callable[[Array], tuple[Array, Array]]:
-    """Return a function of states, shape (rows, 6), that gives how far the bob is from passing, in m, and its rate.
+@dataclass(frozen=True)
+class _Distance:
+    """How far the bob is from passing a section, whose form is a·r = d or b·v = 0.
 
-    A velocity is `omega` times a distance. Where a passage of the other direction is near, it is infinitely far.
+    Attributes:
+        a: of a form in the position r, shape (3,); 0 if the form is one in the velocity v.
+        b: of a form in the velocity, shape (3,).
+        offset_m: d.
+        direction: the sign of b·v after a passage; 0 for either.
+        omega: the rate in rad/s by which a velocity counts as a distance.
+        constants: of the equations of motion.
     """
-    form = form_of(section, Start.of(scene.exact, DOUBLE_BITS))
-    k, (a, b) = (
-        constants_in_double(scene.exact),
-        (np.array([*map(float, part)]) for part in (form.a, form.b)),
-    )
 
-    def away(states: Array) -> tuple[Array, Array]:
-        position, velocity = states[:, :3], states[:, 3:]
-        force = np.column_stack(rates([*states.T], k)[3:])
-        if a.any():
-            size = np.linalg.norm(a)
-            return (position @ a - float(form.d) * float(k.length)) / size, velocity @ a / size
-        size = omega * np.linalg.norm(b)
+    a: Array
+    b: Array
+    offset_m: float
+    direction: int
+    omega: float
+    constants: Constants
+
+    @classmethod
+    def of(cls, section: str, scene: Scene, omega: float) -> _Distance:
+        """Return the distance from a section of a scene."""
+        form = form_of(section, Start.of(scene.exact, DOUBLE_BITS))
+        constants = constants_in_double(scene.exact)
+        a = np.array([float(number) for number in form.a])
+        b = np.array([float(number) for number in form.b])
+        offset_m = float(form.d) * float(constants.length)
+        return cls(a, b, offset_m, form.direction, omega, constants)
+
+    def __call__(self, states: Array) -> tuple[Array, Array]:
+        """Return the distances in m and their rates in m/s of states, shape (rows, 6).
+
+        Where a passage of the other direction is near, the distance is infinite.
+        """
+        position = states[:, :3]
+        velocity = states[:, 3:]
+        if self.a.any():
+            size = np.linalg.norm(self.a)
+            return (position @ self.a - self.offset_m) / size, velocity @ self.a / size
+
+        size = self._velocity_per_distance(position, velocity)
+        force = np.column_stack(rates([*states.T], self.constants)[3:])
+        far_m = velocity @ self.b / size
+        rate_m_s = force @ self.b / size
+        return np.where(rate_m_s * self.direction < 0, np.inf, far_m), rate_m_s
+
+    def _velocity_per_distance(self, position: Array, velocity: Array) -> Any:
+        """Return the change of b·v in 1/s by which a shift of the motion in m shows."""
+        if not self.direction:
+            return self.omega * np.linalg.norm(self.b)
         # only what is along the sphere counts, and where that points changes with the place
-        if form.direction:
-            aside, down = np.linalg.norm(np.cross(b, position), axis=1), np.abs(position @ b)
-            size = (
-                omega * aside + np.linalg.norm(velocity, axis=1) * down / float(k.length)
-            ) / float(k.length)
-        far, rate = velocity @ b / size, force @ b / size
-        return np.where(rate * form.direction < 0, np.inf, far), rate
-
-    return away
+        length_m = float(self.constants.length)
+        aside = np.linalg.norm(np.cross(self.b, position), axis=1)
+        down = np.abs(position @ self.b)
+        speed = np.linalg.norm(velocity, axis=1)
+        return (self.omega * aside + speed * down / length_m) / length_m

@@ -24,9 +24,9 @@ from reference.numbers.zeros import XDOT
 from ..truth import by_function, roughly_solved, truth_at
 from .errors import TrajectoryErrors, entry, swing_rate
 
-NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
+_NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 # extra transits at which the truth is evaluated; if there are more, none is excused
-MOST_EXTRA = 1000
+_MOST_EXTRA = 1000
 
 
 @dataclass(frozen=True, repr=False)
@@ -70,9 +70,12 @@ class TransitErrors:
     def until(self, end: float) -> TransitErrors:
         """Return those up to a time in s."""
         kept = self.at <= end
-        missed, extra = ([t for t in times if t <= end] for times in (self.missed, self.extra))
         return TransitErrors(
-            self.errors_s[kept], self.conditioned_m[kept], missed, extra, self.at[kept]
+            errors_s=self.errors_s[kept],
+            conditioned_m=self.conditioned_m[kept],
+            missed=[t for t in self.missed if t <= end],
+            extra=[t for t in self.extra if t <= end],
+            at=self.at[kept],
         )
 
     def shifted(self, tolerance_m: float) -> list[tuple[float, float]]:
@@ -92,17 +95,18 @@ class TransitErrors:
             f"largest error {self.max_error_s:.3g} s, {weighted}: {self.max_conditioned_m:.3g} m"
         )
         shifted = self.shifted(tolerance_m)
-        matched = f"{self.matched} matched{f' ({len(shifted)} shifted)' if shifted else ''}"
+        matched = f"{self.matched} matched"
+        if shifted:
+            matched = f"{matched} ({len(shifted)} shifted)"
         yield entry(name, f"{matched}, {len(self.missed)} missed, {len(self.extra)} extra", worst)
-        may = "a motion within the tolerance may or may not have them"
-        kinds = (
-            ("missed", self.missed, ""),
-            ("extra", self.extra, ""),
-            ("undecided", self.undecided, may),
-        )
-        for word, times, remark in kinds:
-            if times:
-                yield entry(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s", remark)
+
+        if self.missed:
+            yield entry("  missed at", _listed_times(self.missed))
+        if self.extra:
+            yield entry("  extra at", _listed_times(self.extra))
+        if self.undecided:
+            remark = "a motion within the tolerance may or may not have them"
+            yield entry("  undecided at", _listed_times(self.undecided), remark)
         if shifted:
             yield entry("  shifted", _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted))
 
@@ -121,10 +125,16 @@ class TransitErrors:
         }
 
 
+def _listed_times(times: Iterable[float]) -> str:
+    """Return the first few times, with … if there are more."""
+    return _listed(f"{t:.6f}" for t in times) + " s"
+
+
 def _listed(texts: Iterable[str]) -> str:
     """Join the first few, with … if there are more."""
-    first = list(islice(texts, NAMED + 1))
-    return ", ".join(first[:NAMED]) + (" …" if len(first) > NAMED else "")
+    first = list(islice(texts, _NAMED + 1))
+    more = " …" if len(first) > _NAMED else ""
+    return ", ".join(first[:_NAMED]) + more
 
 
 def transit_errors(
@@ -149,21 +159,22 @@ def transit_errors(
     """
     owner = _owners(times, truth)
     matched = owner >= 0
-    errors = times[owner[matched]] - truth[matched]
+    errors_s = times[owner[matched]] - truth[matched]
     weight = np.abs(slopes)
+
     missed = np.flatnonzero(~matched & (truth <= until))
+    may_vanish = _vanishing(missed, truth, weight, until, tolerance_m)
     extra = np.setdiff1d(np.arange(len(times)), owner[matched])
-    excused = _vanishing(missed, truth, weight, until, tolerance_m)
-    spurious = np.zeros(len(extra), dtype=bool)
-    if away is not None and 0 < len(extra) <= MOST_EXTRA:
-        # no motion has a transit twice
-        doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])
-        once, back = np.unique(times[extra], return_inverse=True)
-        spurious = (np.abs(away(once)[back]) <= tolerance_m) & ~doubled
-    lacking, too_many = truth[missed[~excused]].tolist(), times[extra[~spurious]].tolist()
-    undecided = sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()])
+    may_appear = _appearing(extra, times, away, tolerance_m)
+
+    undecided = [*truth[missed[may_vanish]].tolist(), *times[extra[may_appear]].tolist()]
     return TransitErrors(
-        errors, errors * weight[matched], lacking, too_many, truth[matched], undecided
+        errors_s=errors_s,
+        conditioned_m=errors_s * weight[matched],
+        missed=truth[missed[~may_vanish]].tolist(),
+        extra=times[extra[~may_appear]].tolist(),
+        at=truth[matched],
+        undecided=sorted(undecided),
     )
 
 
@@ -188,14 +199,30 @@ def _vanishing(
     missed: npt.NDArray[np.int64], truth: Array, weight: Array, until: float, tolerance_m: float
 ) -> npt.NDArray[np.bool_]:
     """Mark the missed transits that an error within the tolerance takes away in a pair, or moves beyond the end."""
-    excused = (until - truth[missed]) * weight[missed] <= tolerance_m
+    marked = (until - truth[missed]) * weight[missed] <= tolerance_m
     pairs = np.flatnonzero(np.diff(missed) == 1)
     first = missed[pairs]
     # of the parabola between the two zeros
-    depth = weight[first] * (truth[first + 1] - truth[first]) / 4
-    shallow = pairs[depth <= tolerance_m]
-    excused[shallow] = excused[shallow + 1] = True
-    return excused
+    depth_m = weight[first] * (truth[first + 1] - truth[first]) / 4
+    shallow = pairs[depth_m <= tolerance_m]
+    marked[shallow] = True
+    marked[shallow + 1] = True
+    return marked
+
+
+def _appearing(
+    extra: npt.NDArray[np.int64],
+    times: Array,
+    away: Callable[[Array], Array] | None,
+    tolerance_m: float,
+) -> npt.NDArray[np.bool_]:
+    """Mark the extra transits at which an error within the tolerance makes the truth pass."""
+    if away is None or not 0 < len(extra) <= _MOST_EXTRA:
+        return np.zeros(len(extra), dtype=bool)
+    # no motion has a transit twice
+    doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])
+    once, back = np.unique(times[extra], return_inverse=True)
+    return (np.abs(away(once)[back]) <= tolerance_m) & ~doubled
 
 
 def unjudged_transits(golden: Golden | Solution) -> str | None:
@@ -206,13 +233,12 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
         transits = "complete"
     else:
         transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"
+
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
-    return (
-        f"{transits}: the candidate's transits were not judged"
-        if transits == "xdot is identically zero"
-        else None
-    )
+    if transits == "xdot is identically zero":
+        return f"{transits}: the candidate's transits were not judged"
+    return None
 
 
 def _truth(golden: Golden | Solution, times: Array) -> Dense:
@@ -220,7 +246,8 @@ def _truth(golden: Golden | Solution, times: Array) -> Dense:
         again = roughly_solved(golden.scene, times, False, None)
         assert again is not None  # as before, at other times
         return again[1]
-    return (golden.function and by_function(golden, times)) or truth_at(golden, times)
+    truth = by_function(golden, times) if golden.function is not None else None
+    return truth_at(golden, times) if truth is None else truth
 
 
 def judged_transits(
@@ -230,24 +257,36 @@ def judged_transits(
     tolerance_m: float,
     end_of_run: float | None = None,
 ) -> TransitErrors:
-    """Return the errors of a candidate's transits, in s; of those that the truth's end or proof leaves open none.
+    """Return the errors of a candidate's transits, but of those after the truth's end or left open by its proof.
 
-    A transit of the truth after the end of the run, in s, matches none, unless an error within the tolerance moves it.
+    A transit of the truth after the end of the run is left out, unless an error within the tolerance
+    moves it into the run.
+
+    Args:
+        times: the candidate's transits, in order, in s.
+        golden: dataset or solution of the truth.
+        errors: of the candidate's rows, or of its transits alone.
+        tolerance_m: largest weighted error that counts as none, in m.
+        end_of_run: in s; None for the scene's end.
     """
     end = float(golden.scene.exact.t_end)
     end_of_run = end if end_of_run is None else min(end_of_run, end)
     judged = times[times <= end_of_run]  # beyond its end the truth is not known
-    for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
-        judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
-    truth, omega = golden.transits, swing_rate(golden.scene, errors.speed_m_s)
-    t, ax = truth["t"], truth["ax"]
+    if isinstance(golden, Golden):
+        for interval in golden.manifest.possible:
+            is_open = (judged >= float(interval.from_s)) & (judged <= float(interval.to_s))
+            judged = judged[~is_open]
+
+    t = golden.transits["t"]
+    ax = golden.transits["ax"]
     # xdot divided by ω is a distance; if nothing swings, ω is 0 and the errors have no weight
+    omega = swing_rate(golden.scene, errors.speed_m_s)
     slopes = np.abs(ax) / omega if omega else np.zeros_like(ax)
-    kept = (t <= end_of_run) | ((t - end_of_run) * slopes <= tolerance_m)
 
     def distance(at: Array) -> Array:
         return np.asarray(_truth(golden, at).states[:, 3] / omega)
 
+    kept = (t <= end_of_run) | ((t - end_of_run) * slopes <= tolerance_m)
     until = min(float(errors.t[-1]), end_of_run)
     away = distance if omega else None
     return transit_errors(judged, t[kept], slopes[kept], until, tolerance_m=tolerance_m, away=away)

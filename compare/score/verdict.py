@@ -92,25 +92,27 @@ class Score:
     @property
     def worst_of_each(self) -> dict[str, Worst]:
         """The largest error of each column."""
-        return {
-            name: self._at(int(np.abs(off).argmax()), name)
-            for name, off in self.errors.components.items()
-        }
+        worst = {}
+        for name, errors in self.errors.components.items():
+            row = int(np.abs(errors).argmax())
+            worst[name] = self._at(row, name)
+        return worst
 
     def _at(self, row: int, name: str) -> Worst:
-        expected, got = (
-            self.errors.truth.states[row, COLUMNS.index(name)],
-            self.candidate.columns[name][row],
-        )
-        difference = self.errors.components[name][row]
+        """Return one number of a row."""
         return Worst(
-            float(self.errors.t[row]), name, float(expected), float(got), float(difference)
+            t=float(self.errors.t[row]),
+            component=name,
+            expected=float(self.errors.truth.states[row, COLUMNS.index(name)]),
+            got=float(self.candidate.columns[name][row]),
+            difference=float(self.errors.components[name][row]),
         )
 
     @cached_property
     def covered(self) -> float:
         """Share of the scene's span up to the last row, from 0 to 1; of transits alone, up to the next true one."""
-        last, end = float(self.errors.t[-1]), float(self.scene.exact.t_end)
+        last = float(self.errors.t[-1])
+        end = float(self.scene.exact.t_end)
         if not self.candidate.positions:
             later = self.golden.transits["t"]
             later = later[later > last + self.tolerance_m / self.errors.speed_m_s]
@@ -147,17 +149,18 @@ class Score:
     def grade(self) -> str:
         """'agrees', 'agrees as the model …' where it is exact within a named simplification, or 'disagrees'."""
         model = None if self.explanation is None else self.explanation.model
-        return (
-            self.verdict if self.agrees or model is None else f"agrees as the model: {model.text}"
-        )
+        if self.agrees or model is None:
+            return self.verdict
+        return f"agrees as the model: {model.text}"
 
     @property
     def passes(self) -> bool:
         """True if it agrees, or agrees as a named model and `as_model` says that this is enough."""
-        modelled = self.explanation is not None and self.explanation.model is not None
-        return self.agrees or (
-            self.as_model and modelled and not self.falls_short and self.transits is None
-        )
+        if self.agrees:
+            return True
+        is_model = self.explanation is not None and self.explanation.model is not None
+        is_enough = self.as_model and not self.falls_short and self.transits is None
+        return is_model and is_enough
 
     @property
     def accepted(self) -> bool:
@@ -177,74 +180,21 @@ class Score:
 
 def lines(score: Score) -> Iterator[str]:
     """Yield the verdict line by line."""
-    errors = score.errors
     yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
     if score.since is not None:
         yield f"{score.since.text}."
-    if not score.covered:
-        yield entry(
-            "covers nothing", "no row after t = 0", "the release alone says nothing of the motion"
-        )
-    elif score.falls_short:
-        yield entry(
-            "covers too little", percent(score.covered), f"{percent(score.covers)} demanded"
-        )
-    yield entry("largest error", f"{errors.max_m:.3g} m", _largest(score))
-    growth = "" if errors.growth_exponent is None else f"grows like t^{errors.growth_exponent:.2f}"
-    yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", growth)
-    size, least = (
-        ("the reference's bound", "at least ") if score.at_bound else ("largest error", "")
-    )
-    over = f"{size} over the amplitude {errors.amplitude_m:.4g} m"
-    yield entry("digits", f"{least}{_one_decimal(errors.digits)}", over)
-    mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
-    yield entry(
-        "scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed
-    )
-    worst = score.worst
-    numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
-    yield entry("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
-    of_each = score.worst_of_each.items()
-    each = (
-        f"{name} {abs(row.difference):.2g} m{'/s' if name.startswith('v') else ''}"
-        for name, row in of_each
-    )
-    yield entry("worst of each", ", ".join(each))
-    limit = score.allowed_m * errors.speed_m_s / errors.amplitude_m
-    fast = [
-        name
-        for name, row in score.worst_of_each.items()
-        if name in VELOCITY and abs(row.difference) > limit
-    ]
-    if fast and score.agrees:
-        yield entry(
-            "velocities", "not judged", f"{', '.join(fast)} off by more than {limit:.2g} m/s"
-        )
-    turn, delay = score.swing.largest_turn, score.swing.largest_delay
-    if turn is not None and delay is not None:
-        yield entry(
-            "swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted"
-        )
-    if score.drifts:
-        words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
-        yield entry(
-            "drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items())
-        )
+    yield from _lines_on_coverage(score)
+    yield from _lines_on_positions(score)
+    yield from _lines_on_velocities(score)
+    yield from _lines_on_the_swing(score)
     if score.transits is not None:
         yield from score.transits.lines(score.allowed_m)
     if score.timing is not None:
-        timing = score.timing
-        how = f"median of {timing.runs} after a warm-up" if timing.warm else "one run, no warm-up"
-        yield entry("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
+        yield _line_on_timing(score.timing)
     yield entry("inputs read as", score.scene.inputs, score.why_inputs)
-    yield entry("reference", score.golden.level, f"within {errors.bound_m:.2g} m at these times")
-    if score.experiments is not None:
-        yield from score.experiments.lines()
-    explanation = score.explanation
-    if explanation is not None and (
-        score.experiments is None or explanation.causes or explanation.conventions
-    ):
-        yield from explanation.lines()
+    bound = f"within {score.errors.bound_m:.2g} m at these times"
+    yield entry("reference", score.golden.level, bound)
+    yield from _lines_on_reasons(score)
     for convention in score.candidate.conventions:
         yield f"Reading: {convention.text}."
     for note in score.notes:
@@ -260,25 +210,50 @@ def _verdict(score: Score) -> str:
     return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}{enough}"
 
 
-def percent(share: float) -> str:
-    """Return a share to three digits, rounded down: 100 % is all of it."""
-    percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
-    return (
-        f"{float(Context(prec=3, rounding=ROUND_DOWN).create_decimal_from_float(percents)):.6g} %"
-    )
-
-
-def _one_decimal(digits: float | None) -> str:
-    return "none" if digits is None else f"{round(digits, 1) + 0.0:.1f}"
-
-
 def _span(score: Score) -> str:
-    t, end = score.errors.t, score.scene.run.t_end
+    t = score.errors.t
     rows = counted(len(t), "row" if score.candidate.positions else "transit")
-    return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s: {percent(score.covered)}"
+    span = f"t = {t[0]:.6g} to {t[-1]:.6g} of {score.scene.run.t_end} s"
+    return f"{rows}, {span}: {percent(score.covered)}"
 
 
-def _largest(score: Score) -> str:
+def _lines_on_coverage(score: Score) -> Iterator[str]:
+    """Yield a line if the rows do not reach far enough."""
+    if not score.covered:
+        remark = "the release alone says nothing of the motion"
+        yield entry("covers nothing", "no row after t = 0", remark)
+    elif score.falls_short:
+        remark = f"{percent(score.covers)} demanded"
+        yield entry("covers too little", percent(score.covered), remark)
+
+
+def _lines_on_positions(score: Score) -> Iterator[str]:
+    """Yield lines on the size of the errors, their growth, and the worst numbers."""
+    errors = score.errors
+    yield entry("largest error", f"{errors.max_m:.3g} m", _allowed(score))
+    growth = "" if errors.growth_exponent is None else f"grows like t^{errors.growth_exponent:.2f}"
+    yield entry("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", growth)
+
+    size = "the reference's bound" if score.at_bound else "largest error"
+    least = "at least " if score.at_bound else ""
+    ratio = f"{size} over the amplitude {errors.amplitude_m:.4g} m"
+    yield entry("digits", f"{least}{_one_decimal(errors.digits)}", ratio)
+    scales = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
+    scores = f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}"
+    yield entry("scd, mescd at end", scores, scales)
+
+    worst = score.worst
+    numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
+    yield entry("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
+    of_each = []
+    for name, number in score.worst_of_each.items():
+        unit = "m/s" if name in VELOCITY else "m"
+        of_each.append(f"{name} {abs(number.difference):.2g} {unit}")
+    yield entry("worst of each", ", ".join(of_each))
+
+
+def _allowed(score: Score) -> str:
+    """Return what the largest error is compared with."""
     errors = score.errors
     if score.at_bound:
         return "at or below the reference's bound"
@@ -290,6 +265,60 @@ def _largest(score: Score) -> str:
         return f"{allowed}; the inputs are doubles as they stand"
     ratio = errors.max_m / score.input_floor_m
     return f"{allowed}; {ratio:.2g} times the input floor of {score.input_floor_m:.2g} m"
+
+
+def _lines_on_velocities(score: Score) -> Iterator[str]:
+    """Yield a line if the positions agree and velocities are off by more than the same share of their scale."""
+    if not score.agrees:
+        return
+    limit_m_s = score.allowed_m * score.errors.speed_m_s / score.errors.amplitude_m
+    fast = []
+    for name, number in score.worst_of_each.items():
+        if name in VELOCITY and abs(number.difference) > limit_m_s:
+            fast.append(name)
+    if fast:
+        remark = f"{', '.join(fast)} off by more than {limit_m_s:.2g} m/s"
+        yield entry("velocities", "not judged", remark)
+
+
+def _lines_on_the_swing(score: Score) -> Iterator[str]:
+    """Yield lines on the fitted turn and delay, and on what should be conserved."""
+    turn = score.swing.largest_turn
+    delay = score.swing.largest_delay
+    if turn is not None and delay is not None:
+        fit = f"{math.degrees(turn):.3g} degrees, {delay:.3g} s"
+        yield entry("swing plane, phase", fit, "fitted")
+    if score.drifts:
+        words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
+        drifts = [words[name].format(value) for name, value in score.drifts.items()]
+        yield entry("drifts", ", ".join(drifts))
+
+
+def _line_on_timing(timing: Timing) -> str:
+    how = f"median of {timing.runs} after a warm-up" if timing.warm else "one run, no warm-up"
+    return entry("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
+
+
+def _lines_on_reasons(score: Score) -> Iterator[str]:
+    """Yield what experiments measured, and the explanation; after experiments only if it has something to say."""
+    explanation = score.explanation
+    if score.experiments is not None:
+        yield from score.experiments.lines()
+        if explanation is None or not (explanation.causes or explanation.conventions):
+            return
+    if explanation is not None:
+        yield from explanation.lines()
+
+
+def percent(share: float) -> str:
+    """Return a share to three digits, rounded down: 100 % is all of it."""
+    percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
+    rounded = Context(prec=3, rounding=ROUND_DOWN).create_decimal_from_float(percents)
+    return f"{float(rounded):.6g} %"
+
+
+def _one_decimal(digits: float | None) -> str:
+    return "none" if digits is None else f"{round(digits, 1) + 0.0:.1f}"
 
 
 @dataclass(frozen=True)
@@ -318,13 +347,9 @@ class Outcome:
     @property
     def exit_status(self) -> int:
         """0: agrees, or no worse than its baseline; 1: disagrees, or worse; 2 or 3: could not be judged."""
-        return (
-            int(not self.score.accepted)
-            if self.score is not None
-            else self.error.exit_status
-            if self.error
-            else 0
-        )
+        if self.score is not None:
+            return int(not self.score.accepted)
+        return self.error.exit_status if self.error is not None else 0
 
     @property
     def since(self) -> Since | None:

@@ -21,7 +21,7 @@ from ..methods import METHODS
 from ..methods.method import available
 from ..methods.rhs.problem import Problem
 from ..observed.least_squares import power_of_time
-from ..truth import golden_of
+from ..truth import Progress, golden_of
 from .campaign import Counted, campaign
 from .measure import OnScene, timed
 from .row import FAILURES, failure
@@ -108,7 +108,7 @@ def long_runs(
     golden = golden_of(
         scene,
         TRUTH_DIGITS,
-        report=solving and (lambda t: solving(t / DAY_S, days)),
+        Progress(report=solving and (lambda t: solving(t / DAY_S, days))),
         level=TRUTH_LEVEL,
         grid=True,
     )

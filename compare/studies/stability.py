@@ -23,7 +23,7 @@ from reference.status import Status
 
 from ..candidates.external import STEPS
 from ..methods import METHODS
-from ..truth import golden_of
+from ..truth import Progress, golden_of
 from . import users_program
 from .campaign import Counted, Measurement, campaign
 from .character import Character, character, reason_of
@@ -151,7 +151,7 @@ def _solved(
     for count, (name, scene) in enumerate(scenes.items()):
         report = solving and partial(_report_time, solving, count, len(scenes), scene)
         try:
-            golden = golden_of(scene, TRUTH_DIGITS, report=report, grid=True)
+            golden = golden_of(scene, TRUTH_DIGITS, Progress(report=report), grid=True)
             times = GridTruth(golden, float(scene.exact.t_end)).times
             states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
             problems[name] = scene, golden.path, character(scene, times, states)

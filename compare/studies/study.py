@@ -20,7 +20,7 @@ from ..candidates.candidate import Candidate
 from ..methods import METHODS
 from ..methods.external import external
 from ..observed.least_squares import LEAST_POINTS, PowerLaw, power_law
-from ..truth import Report, golden_of
+from ..truth import Progress, Report, golden_of
 from .campaign import Counted, campaign, machine
 from .measure import Bench, OnScene
 from .row import Row, grouped
@@ -151,7 +151,8 @@ def study(
         methods = methods.split(",")
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
-    golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
+    progress = Progress(announce, solving)
+    golden = golden_of(problem, digits or problem.run.digits, progress, grid=True)
     commands = programs or {}
     recipe = [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s]
     runs = _MethodRuns(recipe, PATIENCE * limit_s, commands, problem, golden.path, limit_s)

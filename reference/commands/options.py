@@ -56,13 +56,17 @@ def as_command(options: type[Chosen], run: Callable[[Chosen], None]) -> Callable
 def values_by_word(options: Any) -> dict[str, Any]:
     """Return what was chosen by the word that a user types: `--set`, or `SCENE` for an argument.
 
-    A switch of two words, such as `--audit/--no-audit`, has both: the second holds True if it was switched off.
+    An option at its default has None, whether or not it was typed: it changes nothing.
+    A switch of two words, such as `--audit/--no-audit`, has both: the second holds True if it was
+    switched off.
     """
     values: dict[str, Any] = {}
     hints = get_type_hints(type(options), include_extras=True)
-    for name, hint in hints.items():
-        value = getattr(options, name)
-        declared = get_args(hint)[1]
+    for field in dataclasses.fields(options):
+        value = getattr(options, field.name)
+        if value == field.default:
+            value = None
+        declared = get_args(hints[field.name])[1]
         if not isinstance(declared, OptionInfo):
             values[declared.metavar.strip("[]")] = value
             continue

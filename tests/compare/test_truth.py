@@ -11,7 +11,7 @@ from small_scenes import make_scene
 
 from compare import judge
 from compare.score.input_floor import floor_of_what_ships
-from compare.truth import by_function, golden_of, shipping, solves, truth_at
+from compare.truth import Progress, by_function, golden_of, shipping, solves, truth_at
 from reference import load, load_scene
 from reference.solver.sensitivity import Sensitivity
 from reference.system import cache
@@ -70,15 +70,15 @@ def test_a_dataset_solves_a_scene_only_with_its_inputs_span_and_transits():
 def test_a_scene_of_the_users_own_is_solved_once_and_kept(own_cache):
     said: list[str] = []
     scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
-    first = golden_of(scene, announce=said.append)
-    again = golden_of(scene, announce=said.append)
+    first = golden_of(scene, progress=Progress(said.append))
+    again = golden_of(scene, progress=Progress(said.append))
     assert first.path == again.path
     assert first.path.is_relative_to(own_cache)
     assert len(said) == 1
     assert "mine" in said[0]
     renamed = golden_of(
         make_scene("mine", title="other words", pendulum={"length": "5"}, run=RUN),
-        announce=said.append,
+        progress=Progress(said.append),
     )
     assert renamed.path == first.path
 
@@ -90,7 +90,7 @@ def test_a_damaged_entry_is_solved_again():
     grid = path / "grid.csv"
     grid.write_text(grid.read_text().replace("1", "2", 1))
     said: list[str] = []
-    golden_of(scene, announce=said.append)
+    golden_of(scene, progress=Progress(said.append))
     assert len(said) == 1
     load(path)
 
@@ -107,10 +107,10 @@ def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched():
     assert again.manifest == golden.manifest
     (golden.path / "stranger").touch()
     said: list[str] = []
-    assert golden_of(scene, announce=said.append).manifest == golden.manifest
+    assert golden_of(scene, progress=Progress(said.append)).manifest == golden.manifest
     assert said == []
     transits.write_bytes(transits.read_bytes()[:-1])
-    assert golden_of(scene, announce=said.append).manifest == golden.manifest
+    assert golden_of(scene, progress=Progress(said.append)).manifest == golden.manifest
     assert len(said) == 1  # damaged, so it was solved again
 
 
@@ -137,10 +137,13 @@ def test_whatever_is_in_the_way_of_an_entry_is_removed(kind, own_cache):
             path.mkdir()
             if kind == "full folder":
                 (path / "thesis.txt").write_text("in the way")
-    again = truth_at(golden_of(scene, announce=said.append), times)
+    again = truth_at(golden_of(scene, progress=Progress(said.append)), times)
     assert np.array_equal(again.states, first.states)
     assert len(said) == 1
-    assert truth_at(golden_of(scene, announce=said.append), times).t.tolist() == times.tolist()
+    assert (
+        truth_at(golden_of(scene, progress=Progress(said.append)), times).t.tolist()
+        == times.tolist()
+    )
     assert len(said) == 1
     for name in ("golden", "dense"):
         assert len(list((own_cache / name).iterdir())) == 1
@@ -254,7 +257,7 @@ def test_of_a_scene_that_ships_it_is_said_why_it_is_solved(name, change, why):
         raise Enough
 
     with pytest.raises(Enough):
-        golden_of(load_scene(name, [change]), announce=stop)
+        golden_of(load_scene(name, [change]), progress=Progress(stop))
 
 
 @pytest.mark.parametrize(

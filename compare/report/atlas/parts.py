@@ -24,8 +24,10 @@ from reference.status import Status
 from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
 from ...diagnosis import AXES_SAID, LENGTHS_SAID, TIMES_SAID
-from ...score import judge
+from ...score.clock_start import SUBTRACT, TOLERANCE
 from ...score.errors import swing_rate
+from ...score.judge import SMALL
+from ...score.time_span import FAR, FINER, SAME
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
 from ...studies.stability import Cell
@@ -208,11 +210,17 @@ def vocabulary() -> dict[str, Any]:
     """Return the tables, patterns and limits that the page's scripts share with the package."""
     tables: dict[str, Any] = {}
     for module in (names, text_reader, header, clock, read, candidate):
-        tables |= {name: value for name, value in vars(module).items() if name.isupper()}
+        for name, value in vars(module).items():
+            if name.isupper() and not name.startswith("_"):
+                tables[name] = value
     sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID}
     limits = {
-        name: getattr(judge, name)
-        for name in ("TOLERANCE", "SUBTRACT", "FINER", "FAR", "SAME", "SMALL")
+        "TOLERANCE": TOLERANCE,
+        "SUBTRACT": SUBTRACT,
+        "FINER": FINER,
+        "FAR": FAR,
+        "SAME": SAME,
+        "SMALL": SMALL,
     }
     axes = [[*order, *signs, text] for (order, signs), (_, text) in AXES_SAID.items()]
     return tables | sentences | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}

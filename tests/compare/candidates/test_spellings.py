@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from random import Random
@@ -130,3 +131,10 @@ def test_what_is_drawn_is_read_as_written_or_refused_and_by_the_page_alike(size,
             mine,
             columns,
         )
+
+
+def test_what_the_scripts_take_from_the_vocabulary_is_in_it():
+    """A name that is missing would be `undefined` there, which compares as false with any number."""
+    scripts = "".join(map(source, ("reading.js", "judging.js", "dropping.js", "answering.js")))
+    taken = re.findall(r"\b(?:vocabulary|words)\.([A-Z_]+)\b", scripts)
+    assert set(taken) - vocabulary().keys() == set()

@@ -97,6 +97,18 @@ def test_a_transit_that_comes_twice_is_told(score, tmp_path):
     assert "1 number outside" in told
 
 
+def test_every_time_at_which_a_stopwatch_may_have_shown_the_release_is_given(score, tmp_path):
+    times = reference.load("museum_gate").sections["gate 127"]["t"][:20]
+    np.savetxt(tmp_path / "gate.csv", times + 1234.5, header="t", comments="")
+    words = ["--section", "gate 127", "--transits", tmp_path / "gate.csv", "--json"]
+    status, out = score("museum_gate", *words)
+    starts = json.loads(out)["clock_at_release_s"]
+    assert status == 0
+    # the twenty passages fit a swing earlier as well
+    assert any(low < 1234.5 < high for low, high in starts)
+    assert any(high < 1234 for _, high in starts)
+
+
 def test_ranges_on_disk_take_the_place_of_the_scene(score, file, tmp_path):
     ranges = reference.prove_ranges("paris", t_end="60", widths=BOX)
     folder = write_ranges(ranges, tmp_path / "ranges")

@@ -14,7 +14,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from compare.commands.judging import suite_files
+from compare.commands.suite_files import suite_files
 from reference import load, load_scene, trajectory
 from reference.scenes.shipped import DATA_VERSION
 
@@ -53,17 +53,10 @@ def folder(tmp_path_factory):
 
 def test_the_files_of_a_suite_are_named_by_their_scenes(folder):
     found = suite_files(folder)
-    assert [candidate.name for candidate, _ in found.values()] == [
-        "bad.csv",
-        "paris.npz",
-        "wrong.csv",
-    ]
-    assert list(found) == [str(folder / "bad.toml"), "paris", str(folder / "wrong.toml")]
-    assert [transits and transits.name for _, transits in found.values()] == [
-        None,
-        "paris.transits.csv",
-        None,
-    ]
+    assert [files.rows.name for files in found] == ["bad.csv", "paris.npz", "wrong.csv"]
+    scenes = [str(folder / "bad.toml"), "paris", str(folder / "wrong.toml")]
+    assert [files.scene for files in found] == scenes
+    assert [files.transits for files in found] == [None, folder / "paris.transits.csv", None]
 
 
 def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):

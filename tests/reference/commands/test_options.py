@@ -20,9 +20,12 @@ class Options:
     run: Annotated[str | None, option("--run", "Run a program.", "COMMAND")] = None
     timeout: Annotated[float | None, option("--timeout", "Stop it.", "S")] = None
     audit: Annotated[bool | None, option("--audit/--no-audit", "Prove it again.")] = None
+    reading: Annotated[str, option("--reading", "Read it so.", "WORD")] = "auto"
 
 
-CONFLICTS = [Conflict("--timeout --no-audit", "without --run", lambda chosen: chosen.run is None)]
+CONFLICTS = [
+    Conflict("--timeout --no-audit --reading", "without --run", lambda chosen: chosen.run is None)
+]
 
 
 def run(options: Options) -> None:
@@ -48,6 +51,7 @@ def test_values_are_named_as_a_user_types_them():
         "--timeout": None,
         "--audit": None,
         "--no-audit": True,
+        "--reading": None,
     }
 
 
@@ -71,3 +75,9 @@ def test_a_field_without_a_default_is_required():
     missing = runner.invoke(app, [])
     assert missing.exit_code == 2 and "Missing argument" in missing.output
     assert runner.invoke(app, ["paris"]).output.strip() == str(OfOneScene("paris"))
+
+
+def test_an_option_at_its_default_changes_nothing_and_is_not_refused():
+    refuse_conflicts(Options("paris", reading="auto"), CONFLICTS)
+    with pytest.raises(InputError, match=r"--reading: got 'binary64'.*without --run"):
+        refuse_conflicts(Options("paris", reading="binary64"), CONFLICTS)
