@@ -75,8 +75,10 @@ class TangentSource:
     def _equations(self, step: TaylorStep) -> tuple[Any, Any]:
         """Return coefficients of the linearised equations' matrix, and of their forces (12.1)."""
         h, M, count = float(step.h), ORDER, len(self.ends)
-        field, p, K_less_omega = self.columns.linearised(step)
-        omega = self.columns.w * h
+        linearised = self.columns.linearised(step)
+        p = linearised.p
+        K_less_omega = linearised.K_less_omega
+        omega = self.columns.omega * h
         K = K_less_omega.copy()
         K[0] += omega
         forces = np.zeros((M + 1, 6, 6 + count))
@@ -90,7 +92,7 @@ class TangentSource:
                 forces[0, 3:, 6 + j] += h * self.drag * omega_q
             if drag_q:
                 forces[:, 3:, 6 + j] -= drag_q * (K_less_omega + _along(omega, p))
-        return field, forces
+        return linearised.field, forces
 
 
 def _value(flow: Any, s: Fraction) -> Any:
