@@ -471,10 +471,10 @@ def motion_at(covered: Covered, s: arb) -> MotionBalls:
 def variation_at(covered: Covered, tangent: Tangent, s: arb) -> VariationBalls:
     """Return balls of ρ and ρ' on the ball `s`: P and P' with (12.2i) and (12.2k)."""
     h = covered.piece.constants.h
-    rates = [f.derivative() for f in tangent.rows]
+    rates = [f.derivative() for f in tangent.P]
     return VariationBalls(
-        rho=[near(f, s) / tangent.unit + arb(0, tangent.error) for f in tangent.rows],
-        rate=[(near(f, s) / tangent.unit + arb(0, tangent.rate)) / h for f in rates],
+        rho=[near(f, s) / tangent.unit + arb(0, tangent.a) for f in tangent.P],
+        rate=[(near(f, s) / tangent.unit + arb(0, tangent.a_rate)) / h for f in rates],
     )
 
 
