@@ -22,8 +22,8 @@ def scales_of(balls: BoxBalls, names: list[str]) -> dict[str, int]:
     scales = {}
     for name in names:
         sensitivity = Sensitivity(balls, name, Fraction(0), 0)
-        lengths = sensitivity.end[:3]
-        rates = [*sensitivity.end[3:], *sensitivity.omega_q, sensitivity.drag_q]
+        lengths = sensitivity.end.rho
+        rates = [*sensitivity.end.chi, *sensitivity.omega_q, sensitivity.drag_q]
         sizes = [abs(float(x.mid())) for x in (*lengths, *(x / w0 for x in rates))]
         _, exponent = frexp(max(sizes) or 1.0)
         scales[name] = 1 - exponent
@@ -41,7 +41,7 @@ class TangentSource:
         self.drag_q = [float(x.drag_q) for x in sensitivities]
         # the matrices of r ↦ r × Ω_q
         self.crosses = hats(np.array(self.omega_q)).transpose(0, 2, 1)
-        self.ends = [np.array([*map(float, x.end)]) for x in sensitivities]
+        self.ends = [np.array([*map(float, [*x.end.rho, *x.end.chi])]) for x in sensitivities]
 
     def propose(self, step: TaylorStep) -> list[Any]:
         """Return for each input integer polynomials and the bits of their unit."""
