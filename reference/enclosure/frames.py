@@ -67,7 +67,8 @@ class ColumnSource:
 
     def linearised(self, step: TaylorStep) -> Linearised:
         """Return the equations of section 5 about the step's polynomials, linearised."""
-        h, M = float(step.h), ORDER
+        h = float(step.h)
+        M = ORDER
         omega = self.omega * h
         c = self.c * h * h
         drag = self.drag * h

@@ -62,7 +62,8 @@ class TangentSource:
 
     def _flow(self, step: TaylorStep) -> Any:
         """Return coefficients of six free solutions, and of one driven by each input, from 0."""
-        M, count = ORDER, len(self.ends)
+        M = ORDER
+        count = len(self.ends)
         field, forces = self._equations(step)
         flow = np.zeros((M + 1, 6, 6 + count))
         flow[0, :, :6] = np.eye(6)
@@ -74,7 +75,9 @@ class TangentSource:
 
     def _equations(self, step: TaylorStep) -> tuple[Any, Any]:
         """Return coefficients of the linearised equations' matrix, and of their forces (12.1)."""
-        h, M, count = float(step.h), ORDER, len(self.ends)
+        h = float(step.h)
+        M = ORDER
+        count = len(self.ends)
         linearised = self.columns.linearised(step)
         p = linearised.p
         K_less_omega = linearised.K_less_omega

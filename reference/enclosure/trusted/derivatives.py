@@ -396,7 +396,7 @@ class Tangents:
             return Covered(piece, tube(piece.constants, sizes, self.eta, gamma))
 
     def by_theorem_c(self, piece: Piece, widened: Widened, delta_omega: arb) -> Distance:
-        """Return Theorem C's bounds for all of the box; infinite ones from where Lemma 11.4 fails on."""
+        """Return Theorem C's bounds for all of the box; infinite ones once Lemma 11.4 has failed."""
         eta = arb("inf")
         if self.box_radius_holds:
             try:
@@ -436,7 +436,9 @@ class Tangents:
         self, step: BoxStep, norms: list[Norms], assumed: Distance, of_scene: Distance
     ) -> Reached:
         """Return E₁ and G₁ of Lemma 12.4, and the bounds they are made of, from E and G."""
-        r, H, bounds = of_scene.r, of_scene.H, list[Carried]()
+        r = of_scene.r
+        H = of_scene.H
+        bounds = list[Carried]()
         for sensitivity, norm in zip(self.sensitivities, norms, strict=True):
             bound = carried(step, sensitivity, norm, assumed)
             # (12.4a, b)
@@ -484,7 +486,8 @@ class ZeroDerivative:
 
 def motion_at(covered: Covered, s: arb) -> MotionBalls:
     """Return balls of r, r', r'' on the ball `s`: those of section 7."""
-    piece, bounds = covered.piece, covered.tube
+    piece = covered.piece
+    bounds = covered.tube
     h = piece.constants.h
 
     def enclosed(polynomials: list[fmpz_poly], radius: arb, time: Any) -> Vector:
@@ -526,17 +529,17 @@ def state_derivative(
     # s_q t
     later = derivative_of(varied.pace) * time
     # (12.3a)
-    r = [
+    r_series = [
         arb_series([r, v * later + rho], 2)
         for r, v, rho in zip(motion.r, motion.v, variation.rho, strict=True)
     ]
     # (12.3b)
-    v = [
+    v_series = [
         arb_series([v, a * later + rate], 2)
         for v, a, rate in zip(motion.v, motion.a, variation.rate, strict=True)
     ]
     # (12.3c)
-    state = on_the_sphere(*varied.turned(r, -1), *varied.turned(v, -1))
+    state = on_the_sphere(*varied.turned(r_series, -1), *varied.turned(v_series, -1))
     position = times(varied.length, state[:3])
     velocity = times(varied.length * varied.pace, state[3:])
     return [derivative_of(x) / sensitivity.scale for x in (*position, *velocity)]
@@ -723,7 +726,8 @@ class Derivatives:
 
     def take_output_times(self, step: CoveredStep) -> None:
         """Take the derivatives of states at output times that some pendulum has in this step."""
-        piece, pace = step.covered.piece, self.windows.pace
+        piece = step.covered.piece
+        pace = self.windows.pace
         for n in range(self.done, len(self.windows.times)):
             time = self.windows.times[n]
             low = pace.low * time
@@ -797,7 +801,8 @@ class Derivatives:
 
         `proved` are the zeros of `windows`, in each pendulum's own time.
         """
-        watched, sensitivities = self.watched[word], self.bound.sensitivities
+        watched = self.watched[word]
+        sensitivities = self.bound.sensitivities
         watched.take_closed(sensitivities)
         in_order = all(
             z.t.low <= after.t.low and z.t.high <= after.t.high
@@ -805,7 +810,8 @@ class Derivatives:
         )
         demand(in_order, "zeros must be in order")
 
-        zeros, derived = list[EnclosedZero](), list[DerivedZero]()
+        zeros = list[EnclosedZero]()
+        derived = list[DerivedZero]()
         # `proved` lacks the last of the scan's zeros if they come after the end
         rows = zip(proved, watched.scan.found, watched.derivatives, strict=False)
         for zero, in_course, derivatives in rows:
