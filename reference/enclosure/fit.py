@@ -43,7 +43,8 @@ class FunctionFit:
         last = double_below(piece.end)
         until = last
         while Fraction(last) > following.end + LEAST:
-            begin, end = following.end, Fraction(until)
+            begin = following.end
+            end = Fraction(until)
             rows = position(piece, begin, end, following.count)
             series = rows.entries()
             if self._rounding_of_z(series, variable_error(begin, end)) > ROUNDING:
@@ -66,7 +67,8 @@ class FunctionFit:
 
     def finish(self) -> ProvedFunction:
         """Finish the proof, with the lowest degree that costs next to nothing."""
-        pieces, count = self.following.pieces, self.following.count
+        pieces = self.following.pieces
+        count = self.following.count
         sizes = np.abs(np.array([piece.series for piece in pieces])).reshape(-1, count, CUT)
         of_proof = [[float(x) for x in piece.of_proof.entries()] for piece in pieces]
         errors = np.array(of_proof).reshape(-1, count, 4)

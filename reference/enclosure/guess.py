@@ -50,9 +50,11 @@ def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
 def _in_few_bits(form: Any, f: arb_poly, rate: arb_poly, s: arb) -> arb:
     """Return about where Newton's method leads from `s`."""
     if form.short is None:
-        short_f, short_rate = f.truncate(ORDERS), rate.truncate(ORDERS)
+        short_f = f.truncate(ORDERS)
+        short_rate = rate.truncate(ORDERS)
     else:
-        short_f, short_rate = form.short.value, form.short.rate
+        short_f = form.short.value
+        short_rate = form.short.rate
     for _ in range(POLISH):
         before = s
         s = (s - short_f(s).mid() / short_rate(s).mid()).mid()

@@ -1,6 +1,7 @@
-"""Run a proof: choose method and bits, and go from an approximant's steps to enclosed states; with more bits if needed.
+"""Run a proof: choose method and bits, take an approximant's steps, try again with more bits.
 
-Untrusted: no bound is computed here. Every step goes to the trusted `Course`, whose results are handed on as they are.
+Untrusted: no bound is computed here. Every step goes to the trusted `Course`, whose results are
+passed on as they are.
 """
 
 from __future__ import annotations
@@ -29,21 +30,23 @@ from .trusted.shapes import Proved, ProvedFunction, State
 from .trusted.system import SceneBalls
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
-COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
-# up to which one radius is always cheaper than columns: a step by columns takes six times as long
+COLUMN_MARGIN_BITS = 14  # lost in addition where the error is carried in columns
+# up to here one radius is always cheaper than columns: a step by columns takes six times as long
 RADIUS_BITS = 400
-# beyond that, share of the target bits that one radius may lose before columns are cheaper
+# beyond, the share of the target bits that one radius may lose before columns are cheaper
 RADIUS_SHARE = 0.2
-LEAST_BITS, MAX_BITS = 96, 2048
-LOOK_BITS = 128  # in which a scene is looked at before its proof
+LEAST_BITS = 96
+MAX_BITS = 2048
+LOOK_BITS = 128  # for a first look at a scene, before its proof
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
-USELESS = 2**12  # a state known this many times less closely than requested ends an attempt at once
+USELESS = 2**12  # an attempt ends at once if a state is this many times wider than requested
+LN_2 = 0.693
 TINY = -1e9  # stands for the logarithm of a width that is 0
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
-# bits that an approximant of so many loses, if one radius carries its error
+# bits that an approximant loses if one radius carries its error, as a function of its own bits
 Lost = Callable[[int], int]
 
 
@@ -77,6 +80,19 @@ class _TooWide(Exception):
         self.bits = bits
 
 
+@dataclass(frozen=True)
+class _Request:
+    """What is to be proved: the arguments of `enclose`."""
+
+    inputs: Any
+    times: list[Fraction]
+    radius: Fraction
+    zeros: tuple[str, ...]
+    progress: Callable[[float], None] | None
+    flint_only: bool
+    function: bool
+
+
 def enclose(
     inputs: Any,
     times: Sequence[Fraction],
@@ -90,42 +106,48 @@ def enclose(
     function: bool = False,
     lost: Lost | None = None,
 ) -> Enclosure:
-    """Prove where the pendulum is at `times` (s, increasing), and every zero of some forms up to the last of them.
+    """Prove where the pendulum is at `times`, and every zero of some forms up to the last of them.
 
     Args:
         inputs: the exact numbers of a scene (`Scene.exact`).
         times: output times in s, from 0 on, increasing.
         radius: largest half-width to accept, in m for positions and m/s for velocities.
-        approximant: function of a precision in bits that gives steps from t = 0 to the last time, as `pair` yields
-            them; it is called again, with more bits, where the bounds are too wide.
+        approximant: function of a precision in bits; it returns the steps from t = 0 to the last
+            time, as `pair` yields them. It is called again, with more bits, if the bounds are too
+            wide.
         zeros: words of the zeros to enclose: `XDOT` for transits, and those of sections.
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
-        flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
+        flint_only: prove by FLINT alone, and compare the sums of digits with its integers.
         function: also make the golden function, and bound it.
-        lost: bits that a run of so many loses besides `MARGIN_BITS`, if one radius carries its error (`Feed.lost`).
+        lost: bits that a run loses in addition to `MARGIN_BITS`, if one radius carries its error
+            (`Feed.lost`).
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
     """
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
         raise ValueError("times: got a sequence that is empty, negative or not increasing")
+    request = _Request(inputs, list(times), radius, zeros, progress, flint_only, function)
     try:
-        plan, reason = plan_for(inputs, times[-1], radius, method, lost), "nothing tried"
+        plan = plan_for(inputs, times[-1], radius, method, lost)
     except (ArithmeticError, ValueError) as error:
         advice = "Its numbers are too far apart: check lengths, rates and angles."
         raise UnreachableError(
             f"enclosure: no precision can be chosen for this scene; {error}.", advice
         ) from None
+
+    reason = "nothing tried"
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), radius, zeros, progress, flint_only, function)
-            return run.prove(approximant)
+            return _attempt(request, plan, approximant)
         except _TooWide as error:
-            reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
+            reason = str(error)
+            bits = max(error.bits, plan.bits + LEAST_RAISE)
         except (ArithmeticError, ValueError) as error:
             # a bound that is not finite, a matrix without inverse, a step that does not join
-            reason, bits = f"at {plan.bits} bits: {error}", plan.bits * 4 // 3
+            reason = f"at {plan.bits} bits: {error}"
+            bits = plan.bits * 4 // 3
         plan = plan._replace(bits=bits)
         if plan.bits > MAX_BITS:
             break
@@ -135,80 +157,121 @@ def enclose(
     )
 
 
-@dataclass
-class _Run:
-    """One attempt at one precision."""
+def _attempt(request: _Request, plan: ProofPlan, approximant: Approximant) -> Enclosure:
+    """Prove all steps at one precision; raise _TooWide if a state is wider than requested."""
+    steps = iter(approximant(plan.bits))
+    first = next(steps, None)
+    if first is None:
+        raise UnreachableError("enclosure: the approximant is empty.")
+    attempt = _Attempt(request, plan, first)
+    all_steps: Iterable[TaylorStep] = chain([first], steps)
+    if request.function:
+        from .fit import on_doubles
 
-    inputs: Any
-    plan: ProofPlan
-    times: list[Fraction]
-    radius: Fraction
-    zeros: tuple[str, ...]
-    progress: Callable[[float], None] | None
-    flint_only: bool
-    function: bool
+        # the same polynomials, each ended at the double below its end
+        all_steps = on_doubles(all_steps)
+    for step in until(all_steps, request.times[-1]):
+        attempt.advance(step)
+    return attempt.finish()
 
-    def prove(self, approximant: Approximant) -> Enclosure:
-        """Prove all steps; raise _TooWide if a state is known less closely than to the radius."""
-        steps, end = iter(approximant(self.plan.bits)), self.times[-1]
-        first = next(steps, None)
-        if first is None:
-            raise UnreachableError("enclosure: the approximant is empty.")
-        bits, order = first.bits, len(first.coefficients[0]) - 1
-        balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
-        columns = ColumnSource(balls) if self.plan.method == "columns" else None
-        course = Course(balls, self.times, columns is not None, self.zeros)
-        if self.flint_only:
-            course.followers.append(SumsChecked())
-        fit, steps, count, known, spent = None, chain([first], steps), 0, 0, 0.0
-        # a proof rests on the code of a function only where it has one
-        if self.function:
-            from .fit import FunctionFit, on_doubles
 
-            fit, steps = (
-                FunctionFit(course),
-                on_doubles(steps),
-            )  # the same polynomials, each ended at the double below its end
-        for step in until(steps, end):
-            begun = process_time()
-            course.advance(
-                step,
-                *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []),
-            )
-            if fit:
-                fit.add()
-            spent += process_time() - begun
-            count += 1
-            if len(course.states) > known:
-                known = len(course.states)
-                self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
-            if self.progress:
-                self.progress(float((step.centre + step.h * step.high) / end) if end else 1.0)
-        # the proof of a function finishes the course, and hands on what that has proved
-        begun, function = process_time(), fit.finish() if fit else None
-        proved = function.proved if function else course.finish()
-        position, velocity = self._check_widths(proved.states, end, 1, bits)
-        spent += process_time() - begun
+class _Attempt:
+    """One attempt at one precision: the course, and what proposes columns and series to it."""
+
+    def __init__(self, request: _Request, plan: ProofPlan, first: TaylorStep) -> None:
+        self.request = request
+        self.method = plan.method
+        self.bits = first.bits
+        self.order = len(first.coefficients[0]) - 1
+        balls = SceneBalls(request.inputs, first.bits + SCENE_GUARD_BITS, request.flint_only)
+        by_columns = plan.method == "columns"
+        self.columns = ColumnSource(balls) if by_columns else None
+        self.course = Course(balls, request.times, by_columns, request.zeros)
+        if request.flint_only:
+            self.course.followers.append(SumsChecked())
+        self.fit = None
+        if request.function:
+            # a proof rests on the code of a function only where it has one
+            from .fit import FunctionFit
+
+            self.fit = FunctionFit(self.course)
+        self.steps = 0
+        self.checked_states = 0
+        self.cpu_s = 0.0
+
+    def advance(self, step: TaylorStep) -> None:
+        """Prove the next step."""
+        begun = process_time()
+        if self.columns:
+            widths = [_log(z) for z in self.course.bound.z]
+            self.course.advance(step, self.columns.propose(step, widths))
+        else:
+            self.course.advance(step)
+        if self.fit:
+            self.fit.add()
+        self.cpu_s += process_time() - begun
+        self.steps += 1
+        self._check_last_state()
+        if self.request.progress:
+            end = self.request.times[-1]
+            self.request.progress(float((step.centre + step.h * step.high) / end) if end else 1.0)
+
+    def finish(self) -> Enclosure:
+        """Return what was proved; raise _TooWide if a state is wider than requested."""
+        begun = process_time()
+        # the proof of a function finishes the course, and passes on what that has proved
+        function = self.fit.finish() if self.fit else None
+        proved = function.proved if function else self.course.finish()
+        radii = _radii(proved.states)
+        self._check(radii, self.request.times[-1], 1)
         return Enclosure(
-            proved, bits, order, count, self.plan.method, position, velocity, spent, function
+            proved=proved,
+            bits=self.bits,
+            order=self.order,
+            steps=self.steps,
+            method=self.method,
+            position_radius=radii.position,
+            velocity_radius=radii.velocity,
+            cpu_s=self.cpu_s + process_time() - begun,
+            function=function,
         )
 
-    def _check_widths(
-        self, states: Sequence[State], time: Fraction, factor: int, bits: int
-    ) -> list[Fraction]:
-        """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""
-        widths = [[(i.high - i.low) / 2 for i in row] for row in states]
-        position, velocity = (
-            max(max(row[part]) for row in widths) for part in (slice(3), slice(3, 6))
-        )
-        if max(position, velocity) > factor * self.radius:
-            missing = magnitude(max(position, velocity) / self.radius) + 6
-            # what the rest of the run will lose, if it is like what lies behind
-            lost = max(0, bits + magnitude(position / self.inputs.length))
-            missing += ceil(lost * (self.times[-1] - time) / time) if time else lost
-            reason = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
-            raise _TooWide(reason, bits + 8 * ceil(missing / 8))
-        return [position, velocity]
+    def _check_last_state(self) -> None:
+        """Raise _TooWide if the last state of new ones is of no use."""
+        states = self.course.states
+        if len(states) > self.checked_states:
+            self.checked_states = len(states)
+            time = self.request.times[len(states) - 1]
+            self._check(_radii(states[-1:]), time, USELESS)
+
+    def _check(self, radii: _Radii, time: Fraction, factor: int) -> None:
+        """Raise _TooWide if states up to `time` are wider than `factor` radii."""
+        request = self.request
+        largest = max(radii.position, radii.velocity)
+        if largest <= factor * request.radius:
+            return
+        missing = magnitude(largest / request.radius) + 6
+        # what the rest of the run will lose, if it loses as much per time
+        lost = max(0, self.bits + magnitude(radii.position / request.inputs.length))
+        missing += ceil(lost * (request.times[-1] - time) / time) if time else lost
+        reached = f"{short(radii.position)} m and {short(radii.velocity)} m/s"
+        reason = f"{self.bits} bits gave {reached} ({self.method})"
+        raise _TooWide(reason, self.bits + 8 * ceil(missing / 8))
+
+
+@dataclass(frozen=True)
+class _Radii:
+    """Largest half-widths of states, in m and m/s."""
+
+    position: Fraction
+    velocity: Fraction
+
+
+def _radii(states: Sequence[State]) -> _Radii:
+    """Return the largest half-widths of states."""
+    positions = [(x.high - x.low) / 2 for state in states for x in state[:3]]
+    velocities = [(x.high - x.low) / 2 for state in states for x in state[3:]]
+    return _Radii(max(positions), max(velocities))
 
 
 def check_gates(inputs: Any, words: tuple[str, ...]) -> None:
@@ -249,21 +312,22 @@ def plan_for(
         UnreachableError: it would take more than MAX_BITS.
     """
     balls = SceneBalls(inputs, LOOK_BITS)
-    w, span = float(balls.w0), float(end)
-    loss = (
-        span
-        * float(max(balls.lambda_minus, balls.lambda_plus + balls.S**2, key=float))
-        / (2 * w)
-        / 0.693
-    )
-    target = magnitude(inputs.length / radius) + log2(2 + span * w)
-    cheap = (
-        target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS
-    )
-    method = method or ("radius" if cheap else "columns")
-    extra = loss if method == "radius" else COLUMN_MARGIN_BITS + 2 * log2(2 + span * w) / 2
+    w = float(balls.w0)
+    span = float(end)
+    # 2 w times the rate of Theorem C, but for its second-order terms
+    growth = float(max(balls.lambda_minus, balls.lambda_plus + balls.S**2, key=float))
+    loss = span * growth / (2 * w) / LN_2
+    log_radians = log2(2 + span * w)
+    target = magnitude(inputs.length / radius) + log_radians
+
+    if method is None:
+        few_bits = target + MARGIN_BITS + loss <= RADIUS_BITS
+        small_loss = loss <= RADIUS_SHARE * target + MARGIN_BITS
+        method = "radius" if few_bits or small_loss else "columns"
+    extra = loss if method == "radius" else COLUMN_MARGIN_BITS + log_radians
     bits = max(LEAST_BITS, 8 * ceil((target + MARGIN_BITS + extra) / 8))
-    bits += lost(bits) if lost and method == "radius" else 0
+    if lost and method == "radius":
+        bits += lost(bits)
     if bits > MAX_BITS:
         reason = f"enclosure: {short(radius)} m would take more than {MAX_BITS} bits."
         raise UnreachableError(reason, "Ask for fewer digits.")

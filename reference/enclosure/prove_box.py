@@ -1,4 +1,4 @@
-"""Run the proof of a box of inputs: precision from its width, steps of the scene's own motion. Untrusted."""
+"""Run the proof of a box of inputs, along the scene's own motion. Untrusted."""
 
 from __future__ import annotations
 
@@ -17,29 +17,24 @@ from .trusted.balls import interval, times
 from .trusted.box import BoxBalls, Windows
 from .trusted.shapes import Box, Interval, ProvedBox, ProvedDerivatives
 
-LOOK_BITS = 192  # in which a box is looked at
-BOX_BITS = 12  # the approximant is off by this part of the box at most
-# logarithm of what one radius grows by: beyond it the motion is followed by its derivatives
+LOOK_BITS = 192  # for a first look at a box
+BOX_BITS = 12  # the error of the approximant is at most 2^-12 of the width of the box
+# logarithm of the growth of one radius, from which on derivatives are used
 GROWTH = 1.0
 ADVICE = "Make the inputs less uncertain, or the run shorter (run.t_end)."
 
 
 @dataclass(frozen=True)
 class BoxEnclosure:
-    """A proof of a box as trusted code returned it, and how it was reached.
-
-    `radius` is that of the tube at the end, in m; `pace` the interval of the factors of time; `lean` how far unit
-    vectors across the plumb line are from the scene's, at most; `cpu_s` the CPU seconds,
-    without those of the approximant.
-    """
+    """A proof of a box as trusted code returned it, and how it was reached."""
 
     proved: ProvedBox
     bits: int
     steps: int
-    radius: Fraction
-    pace: Interval
-    lean: Fraction
-    cpu_s: float
+    radius: Fraction  # of the tube at the end, in m
+    pace: Interval  # of the factors of time (Lemma 11.1)
+    lean: Fraction  # a bound of how far unit vectors across the plumb line are from the scene's
+    cpu_s: float  # CPU seconds, without those of the approximant
     derivatives: ProvedDerivatives | None = None
 
 
@@ -52,64 +47,110 @@ def enclose_box(
     halves: dict[str, Fraction] | None = None,
     derivatives: bool = False,
 ) -> BoxEnclosure:
-    """Prove what holds at times from 0 on for all inputs of a box, and every zero up to the last of them.
+    """Prove the states at some times for all inputs of a box, and every zero up to the last of them.
 
     Args:
         box: the scene, and the least and largest inputs.
         until_times: output times in s, from 0 on, increasing.
-        approximant: function of a precision in bits and an end in s that gives steps of the scene's motion, paired.
+        approximant: function of a precision in bits and an end in s; it returns the steps of the
+            scene's motion, paired.
         zeros: words of the zeros to enclose: `XDOT` for transits, and those of sections.
         progress: called with the part of the time span that is proved.
-        halves: half of the width of each uncertain input by its full name; with them derivatives may be used.
-        derivatives: whether they are wanted; else they are used where one radius grows too much.
+        halves: half-width of each uncertain input by its full name; derivatives need them.
+        derivatives: whether they are wanted; else they are used if one radius grows too much.
 
     Raises:
         UnreachableError: the box is too wide; says up to which time it holds.
     """
-    begun, reached, count, end = process_time(), Fraction(0), 0, until_times[-1]
+    attempt: _Attempt | None = None
+    begun = process_time()
     try:
         balls = BoxBalls(box, LOOK_BITS)
         demand_rest_positions(balls, zeros)
-        bits = plan_for(
-            box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius"
-        ).bits
+        accuracy = box.inputs.length * _width(balls) / (1 << BOX_BITS)
+        bits = plan_for(box.inputs, until_times[-1], accuracy, "radius").bits
         windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, zeros)
-        course, latest = windows.course, windows.course.times[-1]
-        follower = source = None
-        # the rate at which Theorem C's radius grows, in 1/s
-        growth = float(max(balls.lambda_minus, balls.lambda_plus + balls.S**2, key=float)) / (
-            2 * float(balls.w0)
-        )
-        if halves and (derivatives or growth * float(latest) > GROWTH):
-            from .tangents import TangentSource, scales_of
-            from .trusted.derivatives import Derivatives
-
-            follower = Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
-            source = TangentSource(windows.balls, follower.bound.sensitivities)
-        cpu_s = process_time() - begun
+        latest = windows.course.times[-1]
+        grows = float(latest) * _growth_rate(balls) > GROWTH
+        attempt = _Attempt(windows, halves if derivatives or grows else None)
+        attempt.cpu_s = process_time() - begun
         for step in until(approximant(bits, latest), latest):
-            begun = process_time()
-            course.advance(step, *([source.propose(step)] if source else []))
-            reached, count, cpu_s = course.bound.time, count + 1, cpu_s + process_time() - begun
+            attempt.advance(step)
             if progress:
-                progress(float(reached / latest))
-        begun, found = process_time(), follower.finish() if follower else None
-        proved = found.proved if found else windows.finish()
-        cpu_s += process_time() - begun
+                progress(float(attempt.reached / latest))
+        proved = attempt.finish()
     except (ArithmeticError, ValueError):
-        holds = float(reached / windows.pace.high) if reached else 0.0
+        holds = float(attempt.reached / attempt.windows.pace.high) if attempt else 0.0
         raise UnreachableError(
             f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE
         ) from None
-    radius = interval(course.bound.eta * balls.length).high
+
+    radius = interval(windows.course.bound.eta * balls.length).high
     # these balls hold the scene's own
     lean = interval(sum((2 * x.rad() for x in balls.tilt), arb(0))).high
-    return BoxEnclosure(proved, bits, count, radius, windows.pace, lean, cpu_s, found)
+    return BoxEnclosure(
+        proved=proved,
+        bits=bits,
+        steps=attempt.steps,
+        radius=radius,
+        pace=windows.pace,
+        lean=lean,
+        cpu_s=attempt.cpu_s,
+        derivatives=attempt.derivatives,
+    )
+
+
+class _Attempt:
+    """The course of a box, and what proposes derivatives to it; without `halves` there are none."""
+
+    def __init__(self, windows: Windows, halves: dict[str, Fraction] | None) -> None:
+        self.windows = windows
+        self.follower = self.source = None
+        if halves:
+            from .tangents import TangentSource, scales_of
+            from .trusted.derivatives import Derivatives
+
+            scales = scales_of(windows.balls, list(halves))
+            self.follower = Derivatives(windows, halves, scales)
+            self.source = TangentSource(windows.balls, self.follower.bound.sensitivities)
+        self.derivatives: ProvedDerivatives | None = None
+        self.reached = Fraction(0)
+        self.steps = 0
+        self.cpu_s = 0.0
+
+    def advance(self, step: TaylorStep) -> None:
+        """Prove the next step."""
+        begun = process_time()
+        course = self.windows.course
+        if self.source:
+            course.advance(step, self.source.propose(step))
+        else:
+            course.advance(step)
+        self.reached = course.bound.time
+        self.steps += 1
+        self.cpu_s += process_time() - begun
+
+    def finish(self) -> ProvedBox:
+        """Return what was proved."""
+        begun = process_time()
+        if self.follower:
+            self.derivatives = self.follower.finish()
+            proved = self.derivatives.proved
+        else:
+            proved = self.windows.finish()
+        self.cpu_s += process_time() - begun
+        return proved
+
+
+def _growth_rate(balls: BoxBalls) -> float:
+    """Return the rate at which Theorem C's radius grows, in 1/s."""
+    two_w_mu = max(balls.lambda_minus, balls.lambda_plus + balls.S**2, key=float)
+    return float(two_w_mu) / (2 * float(balls.w0))
 
 
 def _width(balls: BoxBalls) -> Fraction:
     """Return about how far apart motions of the box are, over the length, after a time of 1/w0."""
-    w = balls.w0
-    slow = [balls.pace, *balls.r, *times(1 / w, [*balls.H, *balls.omega, balls.drag])]
-    widest = interval(max((arb(x.rad()) for x in slow), key=float)).high
+    rates = times(1 / balls.w0, [*balls.H, *balls.omega, balls.drag])
+    radii = [arb(x.rad()) for x in (balls.pace, *balls.r, *rates)]
+    widest = interval(max(radii, key=float)).high
     return max(widest, Fraction(1, 1 << LOOK_BITS // 2))

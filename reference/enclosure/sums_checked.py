@@ -1,4 +1,4 @@
-"""The sums of digits checked: they must be the integers that FLINT finds for the same polynomials."""
+"""An audit of the sums of digits: they must be FLINT's integers for the same polynomials."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .trusted.shapes import Covered
 
 
 class SumsChecked:
-    """Follows a course that is proved by FLINT alone; what did not come as digits needs no check."""
+    """Follows a course that is proved by FLINT alone; steps without digits need no check."""
 
     def advance(self, covered: Covered) -> None:
-        """Raise ArithmeticError unless sums of a step's digits are FLINT's."""
+        """Raise ArithmeticError unless the sums of a step's digits are FLINT's."""
         if isinstance(covered.piece.rows, Digits):
             from .trusted.digits import norms
 
@@ -23,10 +23,15 @@ class SumsChecked:
 
 
 def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
-    """Raise ArithmeticError unless a piece's exact sums are those it was proved with, and shortened ones bound them."""
-    table, whole = piece.rows.table, piece.constants.integers
-    sums = zip(
-        piece.norms, norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True
-    )
-    if not all(exact == own and bound >= own for own, exact, bound in sums):
-        raise ArithmeticError("audit: the sums of digits are not FLINT's")
+    """Raise ArithmeticError unless sums of a piece's digits are those it was proved with.
+
+    All rows of digits give the same integers; the rows that a proof takes bound them.
+    """
+    table = piece.rows.table
+    integers = piece.constants.integers
+    _, count, _ = table.shape
+    exact = norms(table, integers, count - 1)
+    bounds = norms(table, integers)
+    for own, sum_of_all, bound in zip(piece.norms, exact, bounds, strict=True):
+        if not (sum_of_all == own and bound >= own):
+            raise ArithmeticError("audit: the sums of digits are not FLINT's")

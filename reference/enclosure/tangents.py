@@ -22,8 +22,8 @@ def scales_of(balls: BoxBalls, names: list[str]) -> dict[str, int]:
     scales = {}
     for name in names:
         sensitivity = Sensitivity(balls, name, Fraction(0), 0)
-        lengths = sensitivity.end[:3]
-        rates = [*sensitivity.end[3:], *sensitivity.omega_q, sensitivity.drag_q]
+        lengths = sensitivity.end.rho
+        rates = [*sensitivity.end.chi, *sensitivity.omega_q, sensitivity.drag_q]
         sizes = [abs(float(x.mid())) for x in (*lengths, *(x / w0 for x in rates))]
         _, exponent = frexp(max(sizes) or 1.0)
         scales[name] = 1 - exponent
@@ -41,7 +41,7 @@ class TangentSource:
         self.drag_q = [float(x.drag_q) for x in sensitivities]
         # the matrices of r ↦ r × Ω_q
         self.crosses = hats(np.array(self.omega_q)).transpose(0, 2, 1)
-        self.ends = [np.array([*map(float, x.end)]) for x in sensitivities]
+        self.ends = [np.array([*map(float, [*x.end.rho, *x.end.chi])]) for x in sensitivities]
 
     def propose(self, step: TaylorStep) -> list[Any]:
         """Return for each input integer polynomials and the bits of their unit."""
@@ -62,7 +62,8 @@ class TangentSource:
 
     def _flow(self, step: TaylorStep) -> Any:
         """Return coefficients of six free solutions, and of one driven by each input, from 0."""
-        M, count = ORDER, len(self.ends)
+        M = ORDER
+        count = len(self.ends)
         field, forces = self._equations(step)
         flow = np.zeros((M + 1, 6, 6 + count))
         flow[0, :, :6] = np.eye(6)
@@ -74,9 +75,13 @@ class TangentSource:
 
     def _equations(self, step: TaylorStep) -> tuple[Any, Any]:
         """Return coefficients of the linearised equations' matrix, and of their forces (12.1)."""
-        h, M, count = float(step.h), ORDER, len(self.ends)
-        field, p, K_less_omega = self.columns.linearised(step)
-        omega = self.columns.w * h
+        h = float(step.h)
+        M = ORDER
+        count = len(self.ends)
+        linearised = self.columns.linearised(step)
+        p = linearised.p
+        K_less_omega = linearised.K_less_omega
+        omega = self.columns.omega * h
         K = K_less_omega.copy()
         K[0] += omega
         forces = np.zeros((M + 1, 6, 6 + count))
@@ -90,7 +95,7 @@ class TangentSource:
                 forces[0, 3:, 6 + j] += h * self.drag * omega_q
             if drag_q:
                 forces[:, 3:, 6 + j] -= drag_q * (K_less_omega + _along(omega, p))
-        return field, forces
+        return linearised.field, forces
 
 
 def _value(flow: Any, s: Fraction) -> Any:

@@ -53,7 +53,8 @@ def residuals_hold(module):
         poly = [[arb_poly(balls(column)) for column in rows.T] for rows in (p, K, P, Q)]
         with ctx.workprec(128):
             scene_motion = module.SceneMotion(balls(omega), *poly[:2])
-            norms = module.residuals(constants, scene_motion, sensitivity, [*poly[2], *poly[3]])
+            proposed = module.Proposed(*poly[2:])
+            norms = module.residuals(constants, scene_motion, sensitivity, proposed)
             found = (
                 norms.P, norms.Q, norms.R1, norms.R2, norms.off_sphere, norms.off_momentum
             )  # fmt: skip

@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
 
@@ -64,29 +64,53 @@ def derivative_of(x: Any) -> arb:
 # ------------------------------------------------- the bounds: Lemmas 12.2 and 12.4
 
 
+class Variation(NamedTuple):
+    """The derivative of a state to an input, or what is proposed for it: ρ and χ, this in 1/s."""
+
+    rho: Vector
+    chi: Vector
+
+
+class Proposed(NamedTuple):
+    """P and Q of a step, three polynomials each, with balls for coefficients."""
+
+    P: list[arb_poly]
+    Q: list[arb_poly]
+
+
 @dataclass(frozen=True)
 class Candidate:
-    """The polynomials P and Q that are proposed for a step: integers over `unit`, and so exact."""
+    """P and Q of a step as they are proposed: integers over `unit`, and so exact."""
 
-    rows: list[fmpz_poly]
+    P: list[fmpz_poly]
+    Q: list[fmpz_poly]
     unit: fmpz
 
-    def at(self, s: Fraction, h: arb) -> Vector:
-        """Return balls of P(s), and of Q(s) in 1/s."""
-        values = [f(ball(s)) / self.unit for f in self.rows]
-        return [*values[:3], *times(1 / h, values[3:])]
+    def at(self, s: Fraction, h: arb) -> Variation:
+        """Return balls of P(s) and Q(s)."""
+        P = [f(ball(s)) / self.unit for f in self.P]
+        Q = [f(ball(s)) / self.unit for f in self.Q]
+        return Variation(P, times(1 / h, Q))
 
-    def polynomials(self) -> list[arb_poly]:
-        """Return P and Q, three polynomials each, with balls for coefficients."""
-        return [arb_poly(f) * (1 / arb(self.unit)) for f in self.rows]
+    def polynomials(self) -> Proposed:
+        """Return P and Q as balls."""
+        P = [arb_poly(f) * (1 / arb(self.unit)) for f in self.P]
+        Q = [arb_poly(f) * (1 / arb(self.unit)) for f in self.Q]
+        return Proposed(P, Q)
+
+
+def candidate_of(rows: list[list[int]], bits: int) -> Candidate:
+    """Return a proposal: six rows of integers over 2^bits, read once."""
+    polynomials = [fmpz_poly(row) for row in rows]
+    return Candidate(polynomials[:3], polynomials[3:], fmpz(1) << bits)
 
 
 class Sensitivity:
     """How the motion depends on one input: what drives its derivative, and the radius of this.
 
-    `varied` has length, pace, axes, Ω, γ and release as series in x. `end` has P, and Q in 1/s, at
-    the end of the last step; at t = 0 it has balls of ρ and χ. Their first coefficients are those of
-    every pendulum of the box.
+    `varied` has length, pace, axes, Ω, γ and release as series in x, whose first coefficients are
+    those of every pendulum of the box. `end` has P and Q at the end of the last step; at t = 0 it has
+    balls of ρ and χ.
     """
 
     def __init__(self, balls: BoxBalls, name: str, half_width: Fraction, scale: int) -> None:
@@ -100,7 +124,7 @@ class Sensitivity:
             v = self.varied.v
             omega = self.varied.omega
             H = cross(r, add(v, cross(omega, r)))
-            self.end = [derivative_of(x) for x in (*r, *H)]
+            self.end = Variation([derivative_of(x) for x in r], [derivative_of(x) for x in H])
             self.omega_q = [derivative_of(x) for x in omega]
             self.drag_q = derivative_of(self.varied.drag)
 
@@ -109,10 +133,16 @@ class Sensitivity:
         h = piece.constants.h
         start = candidate.at(piece.step.low, h)
         end = candidate.at(piece.step.high, h)
-        jump = [(after - before).abs_upper() for after, before in zip(start, self.end, strict=True)]
+        P_jump = distances(start.rho, self.end.rho)
+        Q_jump = distances(start.chi, self.end.chi)
         # (12.2l)
-        self.epsilon = self.epsilon + size(jump[:3]) + size(jump[3:]) / self.w0
+        self.epsilon = self.epsilon + size(P_jump) + size(Q_jump) / self.w0
         self.end = end
+
+
+def distances(a: Vector, b: Vector) -> Vector:
+    """Return bounds of |a_i - b_i|."""
+    return [(x - y).abs_upper() for x, y in zip(a, b, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -190,7 +220,7 @@ def scene_motion(piece: Piece, omega_0: Vector) -> SceneMotion:
 
 
 def residuals(
-    constants: Scaled, scene: SceneMotion, sensitivity: Sensitivity, rows: list[arb_poly]
+    constants: Scaled, scene: SceneMotion, sensitivity: Sensitivity, proposed: Proposed
 ) -> Norms:
     """Return the norms of P and Q, of their residuals in (12.1), and of (12.1c) of p, K₀, P, Q.
 
@@ -198,10 +228,13 @@ def residuals(
         constants: the scene's γ₀ and c, and the step's h.
         scene: its motion on the step.
         sensitivity: Ω_q and γ_q.
-        rows: P and Q.
+        proposed: P and Q.
     """
-    omega_0, p, K_0 = scene.omega_0, scene.p, scene.K_0
-    P, Q = rows[:3], rows[3:]
+    omega_0 = scene.omega_0
+    p = scene.p
+    K_0 = scene.K_0
+    P = proposed.P
+    Q = proposed.Q
     P_rate = [f.derivative() for f in P]
     Q_rate = [f.derivative() for f in Q]
     omega_q = times(constants.h, sensitivity.omega_q)
@@ -334,9 +367,7 @@ class Tangents:
         widened = self.box_radius.widened(piece)
         # the same polynomials, read once, bound the scene's own motion
         self.scene = self.point.advance(Piece(self.balls.own, piece.step))
-        candidates = [
-            Candidate([fmpz_poly(row) for row in rows], fmpz(1) << bits) for rows, bits in proposal
-        ]
+        candidates = [candidate_of(rows, bits) for rows, bits in proposal]
 
         with ctx.workprec(2 * SHORT):
             scene = scene_motion(piece, self.balls.omega_0)
@@ -360,13 +391,12 @@ class Tangents:
             bounds = zip(self.sensitivities, candidates, reached.bounds, strict=True)
             for sensitivity, candidate, bound in bounds:
                 sensitivity.epsilon = bound.a
-                P = candidate.rows[:3]
-                self.tangents.append(Tangent(P, candidate.unit, bound.a, bound.a_rate))
+                self.tangents.append(Tangent(candidate.P, candidate.unit, bound.a, bound.a_rate))
             gamma = H_distance + sizes.p**2 * delta_omega  # (12.4f)
             return Covered(piece, tube(piece.constants, sizes, self.eta, gamma))
 
     def by_theorem_c(self, piece: Piece, widened: Widened, delta_omega: arb) -> Distance:
-        """Return Theorem C's bounds for all of the box; infinite ones from where Lemma 11.4 fails on."""
+        """Return Theorem C's bounds for all of the box; infinite ones once Lemma 11.4 has failed."""
         eta = arb("inf")
         if self.box_radius_holds:
             try:
@@ -406,7 +436,9 @@ class Tangents:
         self, step: BoxStep, norms: list[Norms], assumed: Distance, of_scene: Distance
     ) -> Reached:
         """Return E₁ and G₁ of Lemma 12.4, and the bounds they are made of, from E and G."""
-        r, H, bounds = of_scene.r, of_scene.H, list[Carried]()
+        r = of_scene.r
+        H = of_scene.H
+        bounds = list[Carried]()
         for sensitivity, norm in zip(self.sensitivities, norms, strict=True):
             bound = carried(step, sensitivity, norm, assumed)
             # (12.4a, b)
@@ -454,7 +486,8 @@ class ZeroDerivative:
 
 def motion_at(covered: Covered, s: arb) -> MotionBalls:
     """Return balls of r, r', r'' on the ball `s`: those of section 7."""
-    piece, bounds = covered.piece, covered.tube
+    piece = covered.piece
+    bounds = covered.tube
     h = piece.constants.h
 
     def enclosed(polynomials: list[fmpz_poly], radius: arb, time: Any) -> Vector:
@@ -471,10 +504,10 @@ def motion_at(covered: Covered, s: arb) -> MotionBalls:
 def variation_at(covered: Covered, tangent: Tangent, s: arb) -> VariationBalls:
     """Return balls of ρ and ρ' on the ball `s`: P and P' with (12.2i) and (12.2k)."""
     h = covered.piece.constants.h
-    rates = [f.derivative() for f in tangent.rows]
+    rates = [f.derivative() for f in tangent.P]
     return VariationBalls(
-        rho=[near(f, s) / tangent.unit + arb(0, tangent.error) for f in tangent.rows],
-        rate=[(near(f, s) / tangent.unit + arb(0, tangent.rate)) / h for f in rates],
+        rho=[near(f, s) / tangent.unit + arb(0, tangent.a) for f in tangent.P],
+        rate=[(near(f, s) / tangent.unit + arb(0, tangent.a_rate)) / h for f in rates],
     )
 
 
@@ -496,17 +529,17 @@ def state_derivative(
     # s_q t
     later = derivative_of(varied.pace) * time
     # (12.3a)
-    r = [
+    r_series = [
         arb_series([r, v * later + rho], 2)
         for r, v, rho in zip(motion.r, motion.v, variation.rho, strict=True)
     ]
     # (12.3b)
-    v = [
+    v_series = [
         arb_series([v, a * later + rate], 2)
         for v, a, rate in zip(motion.v, motion.a, variation.rate, strict=True)
     ]
     # (12.3c)
-    state = on_the_sphere(*varied.turned(r, -1), *varied.turned(v, -1))
+    state = on_the_sphere(*varied.turned(r_series, -1), *varied.turned(v_series, -1))
     position = times(varied.length, state[:3])
     velocity = times(varied.length * varied.pace, state[3:])
     return [derivative_of(x) / sensitivity.scale for x in (*position, *velocity)]
@@ -693,7 +726,8 @@ class Derivatives:
 
     def take_output_times(self, step: CoveredStep) -> None:
         """Take the derivatives of states at output times that some pendulum has in this step."""
-        piece, pace = step.covered.piece, self.windows.pace
+        piece = step.covered.piece
+        pace = self.windows.pace
         for n in range(self.done, len(self.windows.times)):
             time = self.windows.times[n]
             low = pace.low * time
@@ -767,7 +801,8 @@ class Derivatives:
 
         `proved` are the zeros of `windows`, in each pendulum's own time.
         """
-        watched, sensitivities = self.watched[word], self.bound.sensitivities
+        watched = self.watched[word]
+        sensitivities = self.bound.sensitivities
         watched.take_closed(sensitivities)
         in_order = all(
             z.t.low <= after.t.low and z.t.high <= after.t.high
@@ -775,7 +810,8 @@ class Derivatives:
         )
         demand(in_order, "zeros must be in order")
 
-        zeros, derived = list[EnclosedZero](), list[DerivedZero]()
+        zeros = list[EnclosedZero]()
+        derived = list[DerivedZero]()
         # `proved` lacks the last of the scan's zeros if they come after the end
         rows = zip(proved, watched.scan.found, watched.derivatives, strict=False)
         for zero, in_course, derivatives in rows:

@@ -82,7 +82,8 @@ def basis() -> arb_mat:
 @lru_cache(maxsize=1)
 def position(piece: Piece, begin: Fraction, end: Fraction, count: int) -> arb_mat:
     """Return Chebyshev coefficients of x, y (z) in m between two times of a step, up to order CUT."""
-    step, balls = piece.step, piece.balls
+    step = piece.step
+    balls = piece.balls
     with ctx.workprec(balls.prec):
         middle = ball(((begin + end) / 2 - step.centre) / step.h)
         half = ball((end - begin) / (2 * step.h))
@@ -174,7 +175,8 @@ class Following:
 
     def _of_proof(self, covered: Covered, begin: Fraction, end: Fraction, series: Any) -> arb_mat:
         """Return how far exact values of a piece are from the truth at most (Lemma 10.1)."""
-        piece, tube = covered.piece, covered.tube
+        piece = covered.piece
+        tube = covered.tube
         with ctx.workprec(self.balls.prec):
             exact = arb_mat(self.count, CUT, [*series])
             gaps = position(piece, begin, end, self.count) - exact

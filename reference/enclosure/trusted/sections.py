@@ -119,7 +119,8 @@ class SectionOnStep(FormOnStep):
     def __init__(self, covered: Covered, form: AffineForm, zero_at_release: bool = False) -> None:
         super().__init__(covered)
         piece = covered.piece
-        h, bits = piece.constants.h, piece.step.bits
+        h = piece.constants.h
+        bits = piece.step.bits
         self.unit = piece.unit**2
         self.zero_at_release = zero_at_release
 
@@ -133,7 +134,8 @@ class SectionOnStep(FormOnStep):
         )
         self.f = arb_poly(sum((n * g for n, g in terms if n), fmpz_poly()))
 
-        P, K = piece.sizes.p, piece.sizes.k
+        P = piece.sizes.p
+        K = piece.sizes.k
         orders = max(map(len, piece.p))
         self.lost = ByForm(
             value=a_miss * P + b_miss * K + d_miss,  # (13.1c)
@@ -141,7 +143,8 @@ class SectionOnStep(FormOnStep):
         )
 
         eta, U, A = covered.tube
-        a_size, b_size = h * size(form.a), size(form.b)
+        a_size = h * size(form.a)
+        b_size = size(form.b)
         # (13.1a, b)
         self.hold(ByForm(a_size * eta + b_size * U, a_size * U + b_size * A))
 
@@ -198,7 +201,8 @@ class ApsisOnStep(SectionOnStep):
 
     def __init__(self, covered: Covered, form: AffineForm, zero_at_release: bool = False) -> None:
         super().__init__(covered, form, zero_at_release)
-        piece, b = self.piece, form.b
+        piece = self.piece
+        b = form.b
         bits = piece.step.bits
         eta, U, A = covered.tube
         p = [f(UNIT) / piece.unit for f in piece.p]
@@ -225,7 +229,8 @@ class ApsisOnStep(SectionOnStep):
 
     def row(self, s: arb) -> dict[str, Any]:
         """Return the state over the length at a zero, read about the middle of the ball `s`."""
-        piece, tube = self.piece, self.covered.tube
+        piece = self.piece
+        tube = self.covered.tube
         middle = arb_poly([s.mid(), 1])
         off = s - s.mid()
         p = [arb_poly(f)(middle)(off) / piece.unit for f in piece.p]

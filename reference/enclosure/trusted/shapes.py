@@ -1,4 +1,15 @@
-"""TRUSTED. Data types of the proof: intervals and transits that it gives, bounds inside it. No arithmetic here."""
+"""TRUSTED. Data types of the proof: what it returns, and bounds inside it. No arithmetic here.
+
+| name                           | symbol                                  | unit          |
+|--------------------------------|-----------------------------------------|---------------|
+| `Sizes.d1`, `.d2`              | D1, D2                                  | a step's time |
+| `Sizes.p`, `.k`, `.tau`        | P, K, T                                 | a step's time |
+| `Sizes.d1_rate`                | a bound of |d1'|                        | a step's time |
+| `Tube.eta`, `.u`, `.a`         | η, U, A of section 7                    | a step's time |
+| `Tangent.P`                    | P of section 12, over `unit`            | scaled input  |
+| `Tangent.a`, `.a_rate`         | bounds of |ρ - P| and |ρ' - P'|         | scaled input  |
+| `Leaf.low`, `.high`            | the ends of a leaf of section 8, in s   | a step's time |
+"""
 
 from __future__ import annotations
 
@@ -102,7 +113,7 @@ class DerivedZero(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ProvedDerivatives:
-    """Derivatives to `names`, for all inputs of a box: of the states at its times, of the times of its zeros."""
+    """Derivatives to `names`, for all inputs of a box: of states, and of the times of zeros."""
 
     proved: ProvedBox
     names: tuple[str, ...]
@@ -111,16 +122,16 @@ class ProvedDerivatives:
 
 
 class Tangent(NamedTuple):
-    """Polynomials near the derivative of the position on a step, over `unit`; what they and their rates miss."""
+    """Polynomials near the derivative ρ of the position to an input, on a step, and its bounds."""
 
-    rows: list[Any]
+    P: list[Any]
     unit: Any
-    error: arb
-    rate: arb
+    a: arb
+    a_rate: arb
 
 
 class Sizes(NamedTuple):
-    """Sup norms on |s| <= 1: the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
+    """Upper bounds of sup norms on |s| <= 1: of the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
 
     d1: arb
     d2: arb
@@ -139,7 +150,7 @@ class Tube(NamedTuple):
 
 
 class Covered(NamedTuple):
-    """A step's piece with the tube that the motion stays in: what `advance` returns, and output and scan take."""
+    """A step's piece, with the tube about its polynomials in which the motion stays."""
 
     piece: Any
     tube: Tube

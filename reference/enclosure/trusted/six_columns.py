@@ -57,7 +57,10 @@ class Columns(CarriedState):
             self._take_columns(piece, columns)
 
         with ctx.workprec(SHORT):
-            Zp, ZK, D1, D2 = arb(0), arb(0), sizes.d1, sizes.d2
+            Zp = arb(0)
+            ZK = arb(0)
+            D1 = sizes.d1
+            D2 = sizes.d2
             for z, norms in zip(self.z, residuals(piece, columns), strict=True):
                 Zp += z * norms.Wp
                 ZK += z * norms.WK

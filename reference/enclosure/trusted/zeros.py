@@ -100,7 +100,8 @@ class XdotOnStep(FormOnStep):
 
     def __init__(self, covered: Covered) -> None:
         super().__init__(covered)
-        piece, tube = covered.piece, covered.tube
+        piece = covered.piece
+        tube = covered.tube
         self.unit = piece.unit
         self.value = Enclosed(piece.v[0], arb(0, tube.u))
         self.rate = Enclosed(piece.v[0].derivative(), arb(0, tube.a))
@@ -119,7 +120,8 @@ class XdotOnStep(FormOnStep):
 
     def row(self, s: arb) -> dict[str, Any]:
         """Return x, y, z, vy and ax at a transit; xdot, the velocity's first component, is 0."""
-        turned, h = self.piece.balls.turned, self.piece.constants.h
+        turned = self.piece.balls.turned
+        h = self.piece.constants.h
         r, v = state(self.covered, s, 1)
         x, y, z = turned(r, -1)
         _, vy, _ = turned([0, *v], -1)
@@ -223,8 +225,10 @@ class Scan:
 
     def _close(self, right: int) -> None:
         """Close the cluster at a leaf E with the sign `right`, or at T."""
-        leaves, left = self.cluster, self.left
-        self.cluster, self.left = [], right
+        leaves = self.cluster
+        left = self.left
+        self.cluster = []
+        self.left = right
         if not leaves:
             demand(left * right >= 0, "two enclosures contradict")
             return

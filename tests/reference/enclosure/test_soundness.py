@@ -97,7 +97,7 @@ def first_piece(true, other, method):
         bound = method(balls)
         bound.last = PhasePoint(here[:3], here[3:])
         if method is Columns:
-            bound.rest = [x.abs_upper() for x in gap]
+            bound.delta = [x.abs_upper() for x in gap]
             return (
                 balls,
                 piece,
