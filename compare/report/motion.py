@@ -1,4 +1,4 @@
-"""What pictures show of a motion: its path, swing plane and transits.
+"""A motion as pictures show it: its path, swing plane and transits.
 
 The motion is a golden dataset, a solution, or the rows of a candidate.
 """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import os
 import re
 import shlex
@@ -111,7 +110,7 @@ def test_the_help_states_the_default_that_the_code_has(foucault, command, option
 def test_limits_of_the_command_line_are_those_of_python():
     assert (studies.LIMIT_S, studies.STABILITY_LIMIT_S) == (STUDY_LIMIT_S, STABILITY_LIMIT_S)
     assert score.REPEATS == REPEATS
-    assert inspect.signature(studies.stability).parameters["limit"].default == STABILITY_LIMIT_S
+    assert studies.StabilityOptions().limit == STABILITY_LIMIT_S
 
 
 def asked(*words: str) -> dict[str, str]:
